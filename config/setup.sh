@@ -29,6 +29,7 @@ test_packages=(
   mosquitto-clients openssl                               # a publisher that is not ours; a certificate for the broker
   umockdev libumockdev-dev                                # USB devices without a kernel's
   libasound2-dev libasound2-plugins pulseaudio pulseaudio-utils # sound cards without a card
+  systemd lintian man-db                                  # independent judges of the units and of the package
   qemu-system-x86 busybox-static kmod cpio usbip alsa-utils     # USB and sound through a real kernel, in a virtual machine
 )
 

@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", error.what());  // its lines begin with the place, as a compiler's do
     return commands::kExitConfig;
   } catch (const commands::ExitError& error) {
-    std::fprintf(stderr, "yuragi: %s\n", error.what());
+    if (*error.what() != '\0') std::fprintf(stderr, "yuragi: %s\n", error.what());
     return error.code();
   } catch (const FailureError& error) {
     std::fprintf(stderr, "yuragi: %s\n", error.what());

@@ -43,6 +43,8 @@ void add_options(CLI::App& app, ViewerOptions& options) {
   app.add_flag("--overlay,!--no-overlay", options.overlay,
                "Show wind, sensors and stream over the picture (default in windows)");
   app.add_flag("--fullscreen", options.is_fullscreen, "Fill the screen");
+  app.add_flag("--dark-when-closed", options.is_dark_when_closed,
+               "Fade to black outside of the daemon's opening hours ([shaping] hours)");
   app.add_option("--monitor", options.monitor, "Which screen to use, counted from 0")->check(CLI::NonNegativeNumber);
   app.add_flag("--turn", options.is_turning, "Turn the camera slowly");
   app.add_option("--scene", options.scene, "Show only the scene of this name");

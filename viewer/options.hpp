@@ -19,6 +19,7 @@ struct ViewerOptions {
   bool is_fullscreen = false;
   std::optional<int> monitor;
   bool is_turning = false;
+  bool is_dark_when_closed = false;
   std::string scene;           ///< the only one to show; empty: all
   std::vector<double> camera;  ///< heading_deg, pitch_deg, distance_m; empty: chosen
   std::string screenshot;      ///< a file; empty: a window

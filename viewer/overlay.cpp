@@ -182,8 +182,9 @@ void write_stream(const OverlayFacts& facts) {
 void write_scenes(const OverlayFacts& facts) {
   for (std::size_t i = 0; i < std::min(facts.scenes.size(), facts.opacities.size()); ++i) {
     const float opacity = facts.opacities[i];
-    std::string text = facts.scenes[i].name;
-    if (facts.scenes[i].kind != text) text += " (" + facts.scenes[i].kind + ")";
+    const wire::SceneModel& scene = *facts.scenes[i];
+    std::string text = scene.name;
+    if (scene.kind != text) text += " (" + scene.kind + ")";
     if (opacity <= 0.0F) {
       text += ", hidden";
     } else if (opacity < 1.0F) {

@@ -18,7 +18,7 @@ struct OverlayFacts {
   const wire::Sensors* sensors = nullptr;  ///< null: none has come yet
   double pictures_per_s = 0.0;
   std::size_t nodes = 0;
-  std::span<const wire::SceneModel> scenes;
+  std::span<const wire::SceneModel* const> scenes;
   std::span<const float> opacities;  ///< one a scene
   double heading_deg = 0.0;          ///< of the camera: up on the compass
 };

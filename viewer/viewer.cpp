@@ -1,14 +1,16 @@
 #include "viewer/viewer.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
 
 #include "engine/base/address.hpp"
+#include "viewer/gl/dimmer.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/overlay.hpp"
 #include "viewer/picture_file.hpp"
-#include "viewer/stream/pose_timeline.hpp"
+#include "viewer/stream/scene_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
 #include "viewer/viewer_exit.hpp"
 #include "viewer/window.hpp"
@@ -20,6 +22,7 @@ constexpr double kIdleWait_s = 0.1;  // while there is nothing to draw on
 constexpr int kOverlayPictures = 2;  // the overlay's size is known after the first
 constexpr int kSamples = 4;          // a pixel
 constexpr double kRateSmoothing = 0.05;
+constexpr double kDimming_s = 0.5;  // between two of the daemon's statuses the brightness goes on
 
 double now_s() {
   return seconds(std::chrono::steady_clock::now().time_since_epoch());
@@ -47,6 +50,7 @@ class Viewer::Show {
                  .monitor = options.monitor}),
         began_s_(now_s()),
         last_s_(began_s_),
+        brightness_(options.is_dark_when_closed ? 0.0 : 1.0),
         has_overlay_(options.overlay.value_or(options.screenshot.empty())) {
 #ifdef YURAGI_GL_DEBUG
     gl::report_gl_errors();
@@ -54,6 +58,7 @@ class Viewer::Show {
     const bool is_slow = gl::is_software_renderer() && options.screenshot.empty();
     samples_ = options.samples.value_or(is_slow ? 1 : kSamples);
     stage_.emplace();
+    dimmer_.emplace();
     if (!options.scene.empty()) stage_->show_only(options.scene);
     overlay_.emplace(window_.handle(), window_.content_scale());
     camera_.set_turning(options.is_turning);
@@ -111,9 +116,9 @@ class Viewer::Show {
   void require_scene() const {
     if (options_.scene.empty()) return;
     std::string names;
-    for (const wire::SceneModel& scene : stage_->scenes()) {
-      if (scene.name == options_.scene) return;
-      names += names.empty() ? scene.name : ", " + scene.name;
+    for (const wire::SceneModel* scene : stage_->scenes()) {
+      if (scene->name == options_.scene) return;
+      names += names.empty() ? scene->name : ", " + scene->name;
     }
     throw ViewerExit(EX_USAGE,
                      "--scene: " + options_.connect + " has no scene '" + options_.scene + "'; it has: " + names);
@@ -146,25 +151,33 @@ class Viewer::Show {
   /// Takes what has arrived, and advances to now.
   void advance() {
     stream::Inbox inbox = connection_.take();
-    if (inbox.scenes) {
-      timeline_.set_scenes(inbox.scenes->scenes);
-      stage_->set_scenes(std::move(inbox.scenes->scenes));
+    if (inbox.scenes) timeline_.set_scenes(std::move(*inbox.scenes));
+    for (stream::TimedFrame& timed : inbox.frames)
+      timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
+    const bool is_first_status = inbox.sensors && !sensors_;
+    if (inbox.sensors) sensors_ = std::move(inbox.sensors);
+
+    const double now = now_s();
+    const double passed_s = now - last_s_;
+    last_s_ = now;
+    follow_opening_hours(is_first_status ? kDimming_s : passed_s);
+    camera_.advance(passed_s);
+    moment_ = &timeline_.advance(now);
+    if (auto scenes = timeline_.take_new_scenes()) {
+      stage_->set_scenes(std::move(*scenes));
       if (!has_framed_) {
         require_scene();
         frame_camera();
       }
       has_framed_ = true;
     }
-    for (stream::TimedFrame& timed : inbox.frames)
-      timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
-    if (inbox.sensors) sensors_ = std::move(inbox.sensors);
-
-    const double now = now_s();
-    const double passed_s = now - last_s_;
-    last_s_ = now;
-    camera_.advance(passed_s);
-    moment_ = &timeline_.advance(now);
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
+  }
+
+  /// Dark until the first status says whether it is open, so that a wall that starts at night stays dark.
+  void follow_opening_hours(double passed_s) {
+    if (!options_.is_dark_when_closed || !sensors_) return;
+    brightness_ += std::min(1.0, passed_s / kDimming_s) * (sensors_->shaping.openness - brightness_);
   }
 
   void draw(const PixelSize& size) {
@@ -172,6 +185,7 @@ class Viewer::Show {
       target_.emplace(size.width_px, size.height_px, samples_);
     }
     stage_->draw(*moment_, camera_, *target_);
+    dimmer_->draw(static_cast<float>(brightness_));
     if (!has_overlay_) return;
     overlay_->draw({.wind = moment_->wind,
                     .playback = timeline_.playback(),
@@ -195,17 +209,19 @@ class Viewer::Show {
   stream::StreamConnection connection_;
   Window window_;  // the members below need its context
   std::optional<looks::Stage> stage_;
+  std::optional<gl::Dimmer> dimmer_;
   std::optional<Overlay> overlay_;
   std::optional<gl::RenderTarget> target_;
 
   meshes::OrbitCamera camera_;
   bool has_framed_ = false;
-  stream::PoseTimeline timeline_;
+  stream::SceneTimeline timeline_;
   const stream::PoseMoment* moment_ = nullptr;
   std::optional<wire::Sensors> sensors_;
   double began_s_;
   double last_s_;
   double picture_s_ = 1.0 / 60.0;  // between pictures, smoothed
+  double brightness_;              // of the picture, 0 to 1
   bool has_overlay_;
   int samples_ = kSamples;
 };

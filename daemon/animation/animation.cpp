@@ -1,6 +1,8 @@
 #include "daemon/animation/animation.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <utility>
 
 #include "engine/pose/pose_arrays.hpp"
 
@@ -12,57 +14,75 @@ std::size_t most_pens(const settings::Config& config) {
   return std::min(wind::ground::WindStroke::kMostPens, config.sensors.size() + (config.wind.fallback ? 1 : 0));
 }
 
+/// The scenes that the daemon begins with: at once as visible as they are to be.
+std::unique_ptr<SceneList> first_scenes(const settings::Config& config,
+                                        const std::shared_ptr<const wind::turbulence::GustNoise>& gusts) {
+  SceneRoster roster{.generation = 0, .seed = config.seed, .gusts = gusts, .configs = config.scenes, .scenes = {}};
+  for (std::size_t i = 0; i < config.scenes.size(); ++i) {
+    roster.scenes.push_back(make_staged_scene(config, i, gusts));
+    roster.scenes.back()->fade = Fade(config.scenes[i].is_shown);
+  }
+  auto list = std::make_unique<SceneList>(std::make_shared<const SceneRoster>(std::move(roster)),
+                                          std::span<const SceneList::Entry>(), 0);
+  list->read_opacities();
+  return list;
+}
+
 }  // namespace
 
 Animation::Animation(const settings::Config& config, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts)
-    : pool_(config.animation.threads), tapes_(most_pens(config)) {
-  for (const settings::SceneConfig& scene : config.scenes) {
-    names_.push_back(scene.name);
-    kinds_.emplace_back(scene.kind->name);
-    scenes_.push_back(scene.kind->make(
-        scene.values, {.seed = config.seed + scenes_.size(), .placement = scene.placement, .gusts = gusts}));
-    gains_.push_back(scene.wind_gain);
-    fades_.emplace_back(scene.is_shown);
-    skeletons_.push_back(&scenes_.back()->skeleton());
-    poses_.push_back(&scenes_.back()->pose());
-    opacities_.push_back(fades_.back().opacity());
-  }
-  // The first frame shows every scene, so that the encoder allocates its largest buffer.
-  largest_frame_bytes_ = encoder_.encode({}, skeletons_, poses_).size();
-}
+    : scenes_(first_scenes(config, gusts)), pool_(config.animation.threads), tapes_(most_pens(config)) {}
 
 void Animation::step(const wind::ground::DrivingWind& wind, double dt_s) noexcept {
+  if (change_ && !change_->is_over && change_->has_faded_out()) finish_change();
   const wind::ground::GroundWind ground = written_to(tapes_, wind);
-  for (std::size_t i = 0; i < scenes_.size(); ++i) {
-    fades_[i].advance(dt_s);
-    opacities_[i] = fades_[i].opacity();
-    if (opacities_[i] == 0.0F) continue;
-    scenes::Scene& scene = *scenes_[i];
-    scene.shift(gains_[i] * ground, dt_s);
+  SceneList& list = *scenes_;
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].fade.advance(dt_s);
+  list.read_opacities();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list.opacities()[i] == 0.0F) continue;
+    scenes::Scene& scene = *list[i].scene;
+    scene.shift(list[i].wind_gain * ground, dt_s);
     pool_.run([&scene](Part part) { scene.sample_part(part); });
     pool_.run([&scene, dt_s](Part part) { scene.project_part(part, dt_s); });
   }
 }
 
 void Animation::cue(const SceneCue& cue) noexcept {
-  if (cue.scene >= fades_.size()) return;
+  const SceneRoster& roster = change_ ? *change_->roster : *scenes_->roster();
+  if (cue.scene >= roster.scenes.size()) return;
   if (cue.hide_others) {
-    for (Fade& fade : fades_) fade.begin(false, cue.over_s);
+    for (const auto& staged : roster.scenes) staged->fade.begin(false, cue.over_s);
   }
-  fades_[cue.scene].begin(cue.shown, cue.over_s);
+  roster.scenes[cue.scene]->fade.begin(cue.shown, cue.over_s);
 }
 
-wire::Scenes Animation::describe() const {
-  wire::Scenes all;
-  for (std::size_t index = 0; index < scenes_.size(); ++index) {
-    all.scenes.push_back({names_[index], kinds_[index], *skeletons_[index]});
+void Animation::begin_change(std::unique_ptr<SceneChange> change) noexcept {
+  assert(change && !change_);
+  change_ = std::move(change);
+  change_->begin_fades();
+  if (change_->leaving.empty()) {
+    finish_change();
+  } else if (change_->both) {
+    std::swap(scenes_, change_->both);
   }
-  return all;
+}
+
+/// The scenes that are given up stay in the change, to be freed by whoever takes it.
+void Animation::finish_change() noexcept {
+  std::swap(scenes_, change_->last);
+  scenes_->read_opacities();
+  change_->is_over = true;
+}
+
+std::unique_ptr<SceneChange> Animation::take_finished_change() noexcept {
+  if (!change_ || !change_->is_over) return nullptr;
+  return std::move(change_);
 }
 
 std::size_t Animation::node_count() const {
   std::size_t nodes = 0;
-  for (const pose::Skeleton* skeleton : skeletons_) nodes += pose::node_count(*skeleton);
+  for (const pose::Skeleton* skeleton : skeletons()) nodes += pose::node_count(*skeleton);
   return nodes;
 }
 

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "daemon/animation/fade.hpp"
+#include "daemon/animation/scene_change.hpp"
+#include "daemon/animation/scene_list.hpp"
 #include "daemon/settings/config.hpp"
 #include "engine/pose/reach.hpp"
-#include "engine/scenes/scene.hpp"
 #include "engine/wind/wind_state.hpp"
 #include "engine/wire/wire.hpp"
 #include "engine/workers/worker_pool.hpp"
@@ -23,11 +23,11 @@ struct SceneCue {
 };
 
 /// All scenes of an installation, each at its place and with its gain on the wind, stepped together, and the encoder of
-/// their frames. A hidden scene is not stepped. It has no clock: the daemon's loop, the lock-step replay and the tests
-/// step it.
+/// their frames. A hidden scene is not stepped. The scenes may be exchanged for others between two steps. It has no
+/// clock: the daemon's loop, the lock-step replay and the tests step it.
 ///
-/// Thread-safe: no. step(), cue() and encode() are realtime-safe; with [animation] threads above 1 a step waits for the
-/// pool's threads (WorkerPool). Poses do not depend on the number of threads.
+/// Thread-safe: no. What is noexcept, and encode(), are realtime-safe; with [animation] threads above 1 a step waits
+/// for the pool's threads (WorkerPool). Poses do not depend on the number of threads.
 class Animation {
  public:
   /// `gusts`: of the wind that step() will be given.
@@ -36,39 +36,44 @@ class Animation {
   /// Writes the wind onto the tapes, and advances every visible scene and every fade by dt_s.
   void step(const wind::ground::DrivingWind& wind, double dt_s) noexcept;
 
-  /// Begins a fade. Ignored for a scene that does not exist.
+  /// Begins a fade. Ignored for a scene that does not exist. While a change is carried out, scenes are counted as after
+  /// it.
   void cue(const SceneCue& cue) noexcept;
 
+  /// Begins to exchange the scenes, of which the change was made. Not while another change is carried out.
+  void begin_change(std::unique_ptr<SceneChange> change) noexcept;
+  /// The change that is over, with what is to be freed; null where there is none.
+  std::unique_ptr<SceneChange> take_finished_change() noexcept;
+
   /// The frame of the present poses, size prefix included; valid until the next call.
-  std::span<const std::uint8_t> encode(const wire::FrameInfo& info) {
-    return encoder_.encode(info, skeletons_, poses_, opacities_);
-  }
+  std::span<const std::uint8_t> encode(const wire::FrameInfo& info) { return scenes_->encode(info); }
+  /// The number of the list of scenes that the frame is of.
+  std::uint64_t generation() const noexcept { return scenes_->generation(); }
+  /// Sees to it that `buffer` has room for any frame of the present scenes.
+  void make_room_in(wire::Bytes& buffer) noexcept { scenes_->make_room_in(buffer); }
 
   /// The size of a frame in which every scene is visible, which is the largest.
-  std::size_t largest_frame_bytes() const noexcept { return largest_frame_bytes_; }
+  std::size_t largest_frame_bytes() const noexcept { return scenes_->largest_frame_bytes(); }
 
   /// The skeletons, for clients that join.
-  wire::Scenes describe() const;
+  wire::Scenes describe() const { return scenes_->describe(); }
+  /// What the next change is made from.
+  const std::shared_ptr<const SceneRoster>& roster() const noexcept { return scenes_->roster(); }
 
-  std::span<const pose::Skeleton* const> skeletons() const noexcept { return skeletons_; }
-  std::span<const pose::Pose* const> poses() const noexcept { return poses_; }
-  std::span<const float> opacities() const noexcept { return opacities_; }
+  std::span<const pose::Skeleton* const> skeletons() const noexcept { return scenes_->skeletons(); }
+  std::span<const pose::Pose* const> poses() const noexcept { return scenes_->poses(); }
+  std::span<const float> opacities() const noexcept { return scenes_->opacities(); }
   std::size_t node_count() const;
   /// From the middle of the scenes to the farthest place of any of them, hidden or not.
-  double reach_m() const noexcept { return pose::scenes_reach_m(skeletons_); }
+  double reach_m() const noexcept { return pose::scenes_reach_m(skeletons()); }
 
  private:
-  std::vector<std::string> names_, kinds_;
-  std::vector<std::unique_ptr<scenes::Scene>> scenes_;
+  void finish_change() noexcept;
+
+  std::unique_ptr<SceneList> scenes_;
+  std::unique_ptr<SceneChange> change_;  // that is being carried out, or over and not yet taken
   workers::WorkerPool pool_;
   wind::ground::WindTapes tapes_;
-  std::vector<double> gains_;
-  std::vector<Fade> fades_;
-  std::vector<const pose::Skeleton*> skeletons_;
-  std::vector<const pose::Pose*> poses_;
-  std::vector<float> opacities_;
-  wire::FrameEncoder encoder_;
-  std::size_t largest_frame_bytes_ = 0;
 };
 
 }  // namespace yuragi::daemon::animation

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <ctime>
+#include <exception>
 #include <system_error>
 
 #include <pthread.h>
@@ -11,9 +12,6 @@
 
 namespace yuragi::daemon::animation {
 namespace {
-
-// A frame may grow by a few bytes when a field differs from its default; the buffers have room for that.
-constexpr std::size_t kFrameSlack_bytes = 256;
 
 // The longest step after a halt of the machine, however long it was.
 constexpr double kLongestStep_s = 0.1;
@@ -26,8 +24,8 @@ void sleep_until(MonoTime deadline) {
   }
 }
 
-// Cues that may wait for the next tick.
-constexpr std::size_t kWaitingCues = 64;
+// Cues and changes that may wait for the next tick.
+constexpr std::size_t kWaitingOrders = 64;
 
 }  // namespace
 
@@ -37,8 +35,7 @@ AnimationLoop::AnimationLoop(Animation& animation, Latest<wind::ground::DrivingW
       wind_(wind),
       clock_(clock),
       rate_hz_(rate_hz),
-      frames_(wire::Bytes(animation.largest_frame_bytes() + kFrameSlack_bytes)),
-      cues_(kWaitingCues),
+      orders_(kWaitingOrders),
       frame_ready_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (frame_ready_fd_ < 0) throw std::system_error(errno, std::generic_category(), "eventfd");
 }
@@ -46,6 +43,9 @@ AnimationLoop::AnimationLoop(Animation& animation, Latest<wind::ground::DrivingW
 AnimationLoop::~AnimationLoop() {
   stop();
   close(frame_ready_fd_);
+  // What was handed over and not taken.
+  orders_.drain([](const Order& order) { const std::unique_ptr<SceneChange> owned(order.change); });
+  take_finished_change();
 }
 
 void AnimationLoop::start() {
@@ -59,7 +59,37 @@ void AnimationLoop::stop() {
   thread_.join();
 }
 
+bool AnimationLoop::begin_change(std::unique_ptr<SceneChange>& change) {
+  if (is_changing_ || !orders_.push({.change = change.get()})) return false;
+  static_cast<void>(change.release());  // the ring owns it
+  is_changing_ = true;
+  return true;
+}
+
+std::unique_ptr<SceneChange> AnimationLoop::take_finished_change() noexcept {
+  std::unique_ptr<SceneChange> finished(finished_.exchange(nullptr, std::memory_order_acquire));
+  if (finished) is_changing_ = false;
+  return finished;
+}
+
+std::optional<std::string> AnimationLoop::failure() const {
+  if (!has_failed_.load(std::memory_order_acquire)) return std::nullopt;
+  return failure_;
+}
+
+/// No exception leaves the thread. Scenes cannot throw (their steps are noexcept): what is left is the frame, where
+/// there is no memory for it, or a pose that is not of its skeleton's kind.
 void AnimationLoop::run(const std::stop_token& stop) {
+  try {
+    run_ticks(stop);
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+    has_failed_.store(true, std::memory_order_release);
+    wake_io_thread();
+  }
+}
+
+void AnimationLoop::run_ticks(const std::stop_token& stop) {
   TickSchedule schedule(clock_.now().mono, rate_hz_);
   while (!stop.stop_requested()) {
     sleep_until(schedule.next_deadline());
@@ -78,8 +108,9 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
   wind_.refresh();
   const wind::ground::DrivingWind& wind = wind_.value();
   const double dt_s = std::min(static_cast<double>(tick.skipped + 1) / rate_hz_, kLongestStep_s);
-  cues_.drain([this](const SceneCue& cue) { animation_.cue(cue); });
+  take_orders();
   animation_.step(wind, dt_s);
+  if (auto finished = animation_.take_finished_change()) finished_.store(finished.release(), std::memory_order_release);
 
   const wire::FrameInfo info{.sequence = sequence_++,
                              .tick = tick.number,
@@ -87,10 +118,24 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
                              .utc_ns = clock_.now().utc.time_since_epoch().count(),
                              .wind = wind.state};
   const std::span<const std::uint8_t> frame = animation_.encode(info);
-  frames_.writable().assign(frame.begin(), frame.end());
+  PublishedFrame& published = frames_.writable();
+  animation_.make_room_in(published.bytes);
+  published.bytes.assign(frame.begin(), frame.end());
+  published.generation = animation_.generation();
   frames_.publish();
+  wake_io_thread();
+}
 
-  // Wakes the I/O thread. It fails only when 2^64 frames have not been read.
+/// After the wind was taken: the I/O thread publishes wind for new scenes behind the change.
+void AnimationLoop::take_orders() {
+  orders_.drain([this](const Order& order) {
+    if (order.change == nullptr) return animation_.cue(order.cue);
+    animation_.begin_change(std::unique_ptr<SceneChange>(order.change));
+  });
+}
+
+/// Fails only when 2^64 frames have not been read.
+void AnimationLoop::wake_io_thread() noexcept {
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = write(frame_ready_fd_, &one, sizeof one);
 }

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
+#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -22,9 +23,15 @@ struct LoopCounters {
   DurationHistogram work;      ///< duration of each tick
 };
 
+/// An encoded frame, and the number of the list of scenes that it is of.
+struct PublishedFrame {
+  wire::Bytes bytes;
+  std::uint64_t generation = 0;
+};
+
 /// The animation's thread: at a fixed rate it takes the newest wind, steps the scenes, encodes the frame and publishes
-/// it. Once started it neither allocates nor blocks: wind and frames pass through triple buffers, cues through a ring,
-/// and an eventfd wakes the I/O thread.
+/// it. Once started it neither allocates nor blocks: wind and frames pass through triple buffers, cues and changes of
+/// the scenes through a ring, and an eventfd wakes the I/O thread.
 class AnimationLoop {
  public:
   /// `wind` must outlive the loop and is written by the I/O thread. The clock must be the system's: the loop sleeps on
@@ -43,26 +50,53 @@ class AnimationLoop {
   int frame_ready_fd() const noexcept { return frame_ready_fd_; }
 
   /// For the I/O thread: the newest frame, or null if it was taken already. Valid until the next call.
-  const wire::Bytes* take_frame() noexcept { return frames_.refresh() ? &frames_.value() : nullptr; }
+  const PublishedFrame* take_frame() noexcept { return frames_.refresh() ? &frames_.value() : nullptr; }
 
   /// For the I/O thread: queues a cue for the next tick. False where the ring is full: it is dropped.
-  bool cue(const SceneCue& cue) { return cues_.push(cue); }
+  bool cue(const SceneCue& cue) { return orders_.push({.cue = cue}); }
+
+  /// For the I/O thread: hands over a change of the scenes, which is carried out from the beginning of the next tick
+  /// on. Cues and changes take effect in the order in which they are handed over, and a wind that is published behind
+  /// this meets no scenes of before. False, and `change` stays as it is, where a change is being carried out or the
+  /// ring is full.
+  bool begin_change(std::unique_ptr<SceneChange>& change);
+  /// Was a change handed over that take_finished_change() has not returned?
+  bool is_changing() const noexcept { return is_changing_; }
+  /// For the I/O thread: the change that is over, once the animation has done with it; null while there is none.
+  std::unique_ptr<SceneChange> take_finished_change() noexcept;
 
   const LoopCounters& counters() const noexcept { return counters_; }
 
+  /// Why the loop has ended by itself: an exception, which is an error of this program. Nothing while it runs. The
+  /// frames until then have been published, and frame_ready_fd() wakes the I/O thread to look.
+  std::optional<std::string> failure() const;
+
  private:
+  /// A cue, or where there is one a change, which it owns.
+  struct Order {
+    SceneCue cue{};
+    SceneChange* change = nullptr;
+  };
+
   void run(const std::stop_token& stop);
+  void run_ticks(const std::stop_token& stop);
+  void wake_io_thread() noexcept;
   void tick(const TickSchedule::Tick& tick);
+  void take_orders();
 
   Animation& animation_;
   Latest<wind::ground::DrivingWind>& wind_;
   const drivers::sensor::Clock& clock_;
   double rate_hz_;
   std::uint64_t sequence_ = 0;
-  Latest<wire::Bytes> frames_;
-  SpscRing<SceneCue> cues_;
+  Latest<PublishedFrame> frames_;
+  SpscRing<Order> orders_;
+  std::atomic<SceneChange*> finished_{nullptr};  ///< owned; from the animation's thread to that of I/O
+  bool is_changing_ = false;                     ///< of the I/O thread
   LoopCounters counters_;
   int frame_ready_fd_;
+  std::atomic<bool> has_failed_{false};
+  std::string failure_;  ///< not written any more once has_failed_ is set
   std::jthread thread_;
 };
 

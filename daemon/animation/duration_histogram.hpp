@@ -10,12 +10,18 @@
 namespace yuragi::daemon::animation {
 
 /// A histogram of durations with eight classes to the octave, from 1 us to over an hour: percentiles in constant
-/// memory. A percentile is the upper end of its class, at most an eighth too large.
+/// memory, and the longest. A percentile is the upper end of its class, at most an eighth too large.
 ///
 /// Thread-safe: one writer, any number of readers. Realtime-safe: yes.
 class DurationHistogram {
  public:
-  void add(Nanoseconds duration) noexcept { counts_[class_of(duration)].fetch_add(1, std::memory_order_relaxed); }
+  void add(Nanoseconds duration) noexcept {
+    counts_[class_of(duration)].fetch_add(1, std::memory_order_relaxed);
+    if (duration > longest_.load(std::memory_order_relaxed)) longest_.store(duration, std::memory_order_relaxed);
+  }
+
+  /// The longest of all, s: exact; 0 where nothing was counted.
+  double max_s() const noexcept { return seconds(longest_.load(std::memory_order_relaxed)); }
 
   /// The duration that `share` (0 to 1) of all counted ones do not exceed, s; 0 where nothing was counted.
   double percentile_s(double share) const noexcept {
@@ -53,6 +59,7 @@ class DurationHistogram {
   }
 
   std::array<std::atomic<std::uint64_t>, kClasses> counts_{};
+  std::atomic<Nanoseconds> longest_{Nanoseconds::zero()};
 };
 
 }  // namespace yuragi::daemon::animation

@@ -22,6 +22,9 @@ class Fade {
 
   void advance(double dt_s) noexcept { since_s_ = std::min(since_s_ + dt_s, over_s_); }
 
+  /// Is it shown, or about to be?
+  bool is_shown() const noexcept { return to_ > 0.5; }
+
   float opacity() const noexcept { return static_cast<float>(value()); }
 
  private:

@@ -1,6 +1,7 @@
 #include "daemon/animation/scene_director.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -10,8 +11,23 @@ namespace yuragi::daemon::animation {
 
 SceneDirector::SceneDirector(const settings::Config& config, SendCue send_cue)
     : allowed_(config.stream.control), send_cue_(std::move(send_cue)) {
-  for (const settings::SceneConfig& scene : config.scenes)
+  for (const settings::SceneConfig& scene : config.scenes) {
     scenes_.push_back({scene.name, std::string(scene.kind->name), scene.is_shown});
+    configured_shown_.push_back(scene.is_shown);
+  }
+}
+
+void SceneDirector::follow(const SceneRoster& roster) {
+  const std::vector<wire::SceneState> before = std::exchange(scenes_, {});
+  const std::vector<bool> configured_before = std::exchange(configured_shown_, {});
+  for (const settings::SceneConfig& scene : roster.configs) {
+    bool is_shown = scene.is_shown;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      if (before[i].name == scene.name && configured_before[i] == scene.is_shown) is_shown = before[i].shown;
+    }
+    scenes_.push_back({scene.name, std::string(scene.kind->name), is_shown});
+    configured_shown_.push_back(scene.is_shown);
+  }
 }
 
 wire::ControlReply SceneDirector::handle(const wire::Control& control, bool is_local) {

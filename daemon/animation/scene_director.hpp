@@ -20,6 +20,13 @@ class SceneDirector {
 
   SceneDirector(const settings::Config& config, SendCue send_cue);
 
+  /// From now on the scenes are those of `roster`; cues count them as it does. What is shown stays shown, by its name,
+  /// unless the configuration's `shown` of it has changed (SceneChange).
+  void follow(const SceneRoster& roster);
+
+  /// Changes who may switch scenes.
+  void allow(settings::ControlPermission allowed) { allowed_ = allowed; }
+
   /// Carries out a client's request; the reply says why not. `is_local`: the client is on this machine.
   wire::ControlReply handle(const wire::Control& control, bool is_local);
 
@@ -28,6 +35,7 @@ class SceneDirector {
 
   settings::ControlPermission allowed_;
   std::vector<wire::SceneState> scenes_;
+  std::vector<bool> configured_shown_;  // one a scene
   SendCue send_cue_;
 };
 

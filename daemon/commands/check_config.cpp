@@ -1,14 +1,22 @@
 // `yuragi check-config` checks and prints a configuration; `yuragi describe` prints all keys.
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/sensing/fallback_recording.hpp"
+#include "daemon/commands/json_output.hpp"
+#include "daemon/service/config_check.hpp"
 #include "daemon/settings/config.hpp"
+#include "daemon/settings/secret_exposure.hpp"
 #include "daemon/settings/sensor_blend.hpp"
+#include "daemon/tools/sensors/description_json.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
+#include "daemon/tools/sensors/json_value.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -21,74 +29,148 @@ std::string length_reason(const settings::WindConfig& wind, const settings::Sens
   return fmt::format(" (height {:g} m{})", *height_m, brought);
 }
 
+nlohmann::ordered_json json_of(const ParameterValues& values) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const auto& [name, value] : values.all())
+    json[name] = std::visit([](const auto& shown) { return nlohmann::ordered_json(shown); }, printable(value));
+  return json;
+}
+
+/// What print_summary() shows, and with `full` every value.
+nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
+  nlohmann::ordered_json sensors = nlohmann::ordered_json::array();
+  for (const settings::SensorConfig& sensor : config.sensors) {
+    sensors.push_back({{"name", sensor.name},
+                       {"driver", sensor.driver->name},
+                       {"place", settings::place_text(sensor.blend)},
+                       {"gust_length_m", settings::gust_length_m(config.wind, sensor)},
+                       {"height_m", tools::sensors::json_or_null(sensor.heights.sensor_m)}});
+    if (!full) continue;
+    sensors.back()["values"] = json_of(sensor.values);
+    sensors.back()["calibration"] = json_of(sensor.by_name.calibration);
+    sensors.back()["judge"] = json_of(sensor.by_name.judge);
+    sensors.back()["blend"] = json_of(sensor.by_name.blend);
+  }
+  nlohmann::ordered_json scenes = nlohmann::ordered_json::array();
+  for (const settings::SceneConfig& scene : config.scenes) {
+    scenes.push_back({{"name", scene.name}, {"kind", scene.kind->name}});
+    if (full) scenes.back()["values"] = json_of(scene.values);
+  }
+  nlohmann::ordered_json json = {{"sensors", sensors}, {"scenes", scenes}};
+  if (!full) return json;
+  json["seed"] = config.seed;
+  json["stream"] = json_of(config.by_name.stream);
+  json["recording"] = json_of(config.by_name.recording);
+  json["animation"] = json_of(config.by_name.animation);
+  json["wind"] = json_of(config.by_name.wind);
+  json["shaping"] = json_of(config.by_name.shaping);
+  json["log"] = json_of(config.by_name.log);
+  return json;
+}
+
+void print_summary(const settings::Config& config, const std::filesystem::path& file) {
+  fmt::print("{}: no errors\n", file.string());
+  for (const settings::SensorConfig& sensor : config.sensors) {
+    fmt::print("  sensor {} ({}), {}, gusts of {:.0f} m{}\n", sensor.name, sensor.driver->name,
+               settings::place_text(sensor.blend), settings::gust_length_m(config.wind, sensor),
+               length_reason(config.wind, sensor));
+  }
+  for (const settings::SceneConfig& scene : config.scenes)
+    fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
+}
+
+struct CheckOptions {
+  std::filesystem::path file;
+  bool full = false;
+  bool as_json = false;
+};
+
+void check_config(const CheckOptions& options) {
+  const settings::Config config = settings::load_config(options.file);
+  service::check(config);
+  for (const std::string& warning : settings::exposed_secrets(config, options.file)) {
+    fmt::print(stderr, "warning: {}\n", warning);
+  }
+  if (options.as_json) {
+    print_json(config_json(config, options.full));
+  } else if (options.full) {
+    fmt::print("{}", settings::to_toml(config));
+  } else {
+    print_summary(config, options.file);
+  }
+}
+
 void add_check_config(CLI::App& app) {
   CLI::App* command = app.add_subcommand("check-config", "check a configuration, and show what it amounts to");
   command->footer(
       "Exit code 0: no error; 78: errors, each reported as file:line:column: key: what is wrong.\nNo device is opened. "
-      "--full prints the whole configuration with every default.");
-  auto file = std::make_shared<std::filesystem::path>();
-  auto full = std::make_shared<bool>(false);
-  command->add_option("file", *file, "the configuration")->required()->type_name("FILE.toml");
-  command->add_flag("--full", *full, "print every value, including defaults, as TOML");
-  command->callback([file, full] {
-    const settings::Config config = settings::load_config(*file);
-    for (const settings::SensorConfig& sensor : config.sensors) settings::open_sensor(sensor);
-    if (config.wind.fallback) sensing::check_fallback(*config.wind.fallback);
-    if (*full) {
-      fmt::print("{}", settings::to_toml(config));
-      return;
-    }
-    fmt::print("{}: no errors\n", file->string());
-    for (const settings::SensorConfig& sensor : config.sensors) {
-      fmt::print("  sensor {} ({}), {}, gusts of {:.0f} m{}\n", sensor.name, sensor.driver->name,
-                 settings::place_text(sensor.blend), settings::gust_length_m(config.wind, sensor),
-                 length_reason(config.wind, sensor));
-    }
-    for (const settings::SceneConfig& scene : config.scenes)
-      fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
-  });
+      "--full prints the whole configuration with every default; \"(secret)\" stands in place of a password.\n"
+      "Warns on standard error where others can read a password.\n"
+      "--json: sensors (name, driver, place, gust_length_m, height_m) and scenes (name, kind); with --full also the\n"
+      "values of every table by the keys of the configuration, without secrets.");
+  auto options = std::make_shared<CheckOptions>();
+  command->add_option("file", options->file, "the configuration")->required()->type_name("FILE.toml");
+  command->add_flag("--full", options->full, "print every value, including defaults, as TOML");
+  add_json(*command, options->as_json);
+  command->callback([options] { check_config(*options); });
 }
 
-void print_parameters(std::span<const Parameter> parameters) {
-  fmt::print("{}", tools::sensors::parameter_text(parameters));
-}
+/// A table of the configuration: its name in the file, what it is, its keys.
+struct DescribedTable {
+  std::string name;
+  std::string summary;
+  std::span<const Parameter> parameters;
+};
 
-void describe_everything() {
-  fmt::print("# A configuration is a TOML file. Everything has a default; an empty file is allowed.\n");
+std::vector<DescribedTable> all_tables() {
+  std::vector<DescribedTable> all;
   for (const settings::ConfigTable& table : settings::config_tables()) {
-    fmt::print("\n{}  # {}\n", table.name.empty() ? std::string() : fmt::format("[{}]", table.name), table.summary);
-    print_parameters(table.parameters);
+    all.push_back({table.name.empty() ? std::string() : fmt::format("[{}]", table.name), std::string(table.summary),
+                   table.parameters});
   }
   for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table()) {
-    fmt::print("\n[[sensor]]  # driver = \"{}\": {}\n", driver->name, driver->summary);
-    print_parameters(driver->parameters);
+    all.push_back(
+        {"[[sensor]]", fmt::format("driver = \"{}\": {}", driver->name, driver->summary), driver->parameters});
   }
-  fmt::print(
-      "\n"
-      "[sensor.calibration]  # below a [[sensor]] of any kind: from its readings to the wind; recordings hold "
-      "uncalibrated readings\n");
-  print_parameters(settings::calibration_parameters());
-  fmt::print(
-      "\n"
-      "[sensor.blend]  # below a [[sensor]] of any kind: how it is combined with other sensors\n");
-  print_parameters(settings::sensor_blend_parameters());
-  fmt::print(
-      "\n"
-      "[sensor.judge]  # below a [[sensor]] of any kind: which of its readings are accepted\n");
-  print_parameters(settings::judge_parameters());
-  fmt::print(
-      "\n"
-      "[[scene]]  # of any kind: its place and visibility\n");
-  print_parameters(settings::common_scene_parameters());
+  all.push_back({"[sensor.calibration]",
+                 "below a [[sensor]] of any kind: from its readings to the wind; recordings hold uncalibrated readings",
+                 settings::calibration_parameters()});
+  all.push_back({"[sensor.blend]", "below a [[sensor]] of any kind: how it is combined with other sensors",
+                 settings::sensor_blend_parameters()});
+  all.push_back({"[sensor.judge]", "below a [[sensor]] of any kind: which of its readings are accepted",
+                 settings::judge_parameters()});
+  all.push_back({"[[scene]]", "of any kind: its place and visibility", settings::common_scene_parameters()});
   for (const scenes::SceneDescription* scene : scenes::scene_table()) {
-    fmt::print("\n[[scene]]  # kind = \"{}\": {}\n", scene->name, scene->summary);
-    print_parameters(scene->parameters);
+    all.push_back({"[[scene]]", fmt::format("kind = \"{}\": {}", scene->name, scene->summary), scene->parameters});
+  }
+  return all;
+}
+
+void describe_everything(bool as_json) {
+  if (as_json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const DescribedTable& table : all_tables()) {
+      json.push_back({{"table", table.name},
+                      {"summary", table.summary},
+                      {"parameters", tools::sensors::parameters_json(table.parameters)}});
+    }
+    return print_json(json);
+  }
+  fmt::print("# A configuration is a TOML file. Everything has a default; an empty file is allowed.\n");
+  for (const DescribedTable& table : all_tables()) {
+    fmt::print("\n{}  # {}\n{}", table.name, table.summary, tools::sensors::parameter_text(table.parameters));
   }
 }
 
 void add_describe(CLI::App& app) {
   CLI::App* command = app.add_subcommand("describe", "list every key of a configuration: unit, range, default, help");
-  command->callback(describe_everything);
+  command->footer(
+      "--json: a list with table, summary, parameters for each table; of a parameter name, type, unit, default, "
+      "left_out\n"
+      "(what it means where it is left out), min, max, choices, help.");
+  auto as_json = std::make_shared<bool>(false);
+  add_json(*command, *as_json);
+  command->callback([as_json] { describe_everything(*as_json); });
 }
 
 }  // namespace

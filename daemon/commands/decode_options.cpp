@@ -120,7 +120,7 @@ void DecodeCommandOptions::add_line_options(CLI::App& command) {
           const char* type = std::is_same_v<Value, std::string> ? "TEXT" : "NUMBER";
           limit(command.add_option_function<Value>(option_of(name), take, help)->option_text(type), "line");
         },
-        parameter.default_value);
+        printable(parameter.default_value));
   }
 }
 

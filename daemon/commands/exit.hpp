@@ -7,7 +7,10 @@
 
 namespace yuragi::daemon::commands {
 
-// How commands end: 0, or one of sysexits.h, so that a service manager can tell what went wrong.
+// How commands end: 0, or one of sysexits.h, so that a service manager can tell what went wrong; or, where a command
+// judges something, one of the first two.
+inline constexpr int kExitAttention = 1;      ///< `status`, `doctor`, `accept`: something needs attention
+inline constexpr int kExitNoDaemon = 2;       ///< `status`: no daemon answers
 inline constexpr int kExitUsage = 64;         ///< the command line
 inline constexpr int kExitDataError = 65;     ///< an input file with invalid content
 inline constexpr int kExitNoInput = 66;       ///< a missing input file
@@ -37,7 +40,8 @@ constexpr int exit_code_of(FailureKind kind) {
 }
 
 /// A failure of a command, with a text for a person and an exit code for the shell. Thrown by commands alone, and
-/// caught once, in main. Rooms below return a Failure, or throw it as a FailureError.
+/// caught once, in main. An empty text: the command has printed all there is to say. Rooms below return a Failure, or
+/// throw it as a FailureError.
 class ExitError : public std::runtime_error {
  public:
   ExitError(int code, const std::string& message) : std::runtime_error(message), code_(code) {}

@@ -10,11 +10,17 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/run_options.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_export.hpp"
+#include "daemon/tools/csv/csv_quantities.hpp"
+#include "daemon/tools/csv/csv_resample.hpp"
 #include "drivers/windlog/format.hpp"
+#include "drivers/windlog/iso_time.hpp"
 #include "drivers/windlog/log_moment.hpp"
+#include "drivers/windlog/recording_parts.hpp"
 #include "engine/base/count_text.hpp"
+#include "engine/base/duration.hpp"
 
 namespace yuragi::daemon::commands {
 
@@ -26,11 +32,21 @@ constexpr const char* kExportFooter =
     "The CSV has the columns utc, time_s (seconds since the first reading), sensor, speed_m_s, direction_deg (where "
     "the\n"
     "wind comes from), gust_m_s and quality; `yuragi import` turns it into the same readings again.\n"
+    "With --resample each row is the mean of a block of so many seconds: utc and time_s of its beginning, at multiples "
+    "of\n"
+    "its length in UTC; the mean speed; the direction of the mean vector; the largest gust or speed; and the count of\n"
+    "readings, where 0 leaves the other values empty (means as in WMO-No. 8). At most 10 million rows.\n"
+    "With --quantities it writes what stations said besides the wind, at most one row a sensor and second, with the "
+    "columns\n"
+    "time_utc, sensor, vertical_speed_m_s (upward), air_temperature_c, pressure_hpa, relative_humidity_percent,\n"
+    "rain_total_mm (the station's counter) and rain_rate_mm_h; empty where it did not say that.\n"
     "A .windlog as output is a consistent copy, even of a recording that is being written.\n"
     "\n"
     "Examples:\n"
     "  yuragi export mast.windlog -o mast.csv\n"
     "  yuragi export mast.windlog -o - --from 2018-07-20T14:05:00Z --to 2018-07-20T14:06:00Z | head\n"
+    "  yuragi export mast.windlog -o week.csv --since 7d --resample 10min\n"
+    "  yuragi export mast.windlog -o weather.csv --quantities --since 24h\n"
     "  yuragi export live.windlog -o backup.windlog";
 
 struct ExportOptions {
@@ -38,6 +54,10 @@ struct ExportOptions {
   std::string output;
   std::string from;
   std::string to;
+  std::string since;
+  std::string until;
+  std::optional<double> resample_s;
+  bool quantities = false;
   bool force = false;
 };
 
@@ -51,21 +71,68 @@ std::optional<Nanoseconds> resolve(drivers::windlog::WindlogReader& reader, cons
   return *log_time;
 }
 
-void export_as_csv(drivers::windlog::WindlogReader& reader, const ExportOptions& options, std::FILE* out) {
+/// The log time of --since or --until: a moment, or a duration back from the end; nothing if it is after the end.
+std::optional<Nanoseconds> resolve_back(drivers::windlog::WindlogReader& reader, const std::string& option,
+                                        const std::string& text) {
+  if (const auto back_s = parse_duration_s(text)) {
+    const double last_s = seconds(reader.duration());
+    return *back_s >= last_s ? Nanoseconds{0} : reader.duration() - from_seconds(*back_s);
+  }
+  const auto moment = drivers::windlog::parse_iso_time(text);
+  if (!moment) {
+    throw ExitError(kExitUsage, option + ": \"" + text +
+                                    "\" is neither a time (2018-07-20T14:05:00Z; UTC if it has no zone) nor a duration "
+                                    "back from the end (24h, 7d)");
+  }
+  const auto log_time = reader.log_time_of(*moment);
+  if (!log_time) throw ExitError(kExitDataError, log_time.error().message);
+  return *log_time;
+}
+
+tools::csv::CsvExportRange range_of(drivers::windlog::WindlogReader& reader, const ExportOptions& options) {
   tools::csv::CsvExportRange range;
   if (!options.from.empty()) range.from = resolve(reader, "--from", options.from).value_or(Nanoseconds::max());
   if (!options.to.empty()) range.to = resolve(reader, "--to", options.to).value_or(Nanoseconds::max());
+  if (!options.since.empty()) {
+    range.from = resolve_back(reader, "--since", options.since).value_or(Nanoseconds::max());
+  }
+  if (!options.until.empty()) {
+    range.to = resolve_back(reader, "--until", options.until).value_or(Nanoseconds::max());
+  }
+  return range;
+}
 
+void export_quantities(const drivers::windlog::WindlogReader& reader, const tools::csv::CsvExportRange& range,
+                       const std::string& output, std::FILE* out) {
+  const auto report = tools::csv::export_quantities_csv(reader, range, out);
+  if (!report) throw ExitError(kExitDataError, report.error().message);
+  for (const std::string& damage : reader.damage()) fmt::print(stderr, "warning: {}\n", damage);
+  if (report->skipped > 0) {
+    fmt::print(stderr, "left out: {} that cannot be quantities\n", count_text(report->skipped, "row"));
+  }
+  fmt::print(stderr, "{}: {}\n", output == "-" ? "standard output" : output, count_text(report->written, "row"));
+}
+
+void export_as_csv(drivers::windlog::WindlogReader& reader, const ExportOptions& options, std::FILE* out) {
+  const tools::csv::CsvExportRange range = range_of(reader, options);
+  if (options.quantities) return export_quantities(reader, range, options.output, out);
   const bool is_watched = isatty(STDERR_FILENO) != 0 && isatty(fileno(out)) == 0;
   const auto began = std::chrono::steady_clock::now();
   bool has_shown = false;
-  const auto report = tools::csv::export_csv(reader, range, out, [&](std::size_t written) {
+  const auto progress = [&](std::size_t written) {
     if (!is_watched || std::chrono::steady_clock::now() - began < std::chrono::seconds(1)) return;
     fmt::print(stderr, "\r{} readings", written);
     has_shown = true;
-  });
+  };
+  const auto report = options.resample_s
+                          ? tools::csv::resample_csv(reader, range, from_seconds(*options.resample_s), out, progress)
+                          : tools::csv::export_csv(reader, range, out, progress);
   if (has_shown) fmt::print(stderr, "\n");
-  if (!report) throw ExitError(kExitDataError, report.error().message);
+  if (!report) {
+    const bool is_usage = report.error().kind == FailureKind::kUsage;
+    throw ExitError(is_usage ? kExitUsage : kExitDataError, report.error().message);
+  }
+  for (const std::string& damage : reader.damage()) fmt::print(stderr, "warning: {}\n", damage);
   if (report->skipped > 0)
     fmt::print(stderr, "left out: {} that cannot be readings\n", count_text(report->skipped, "row"));
   fmt::print(stderr, "{}: {}\n", options.output == "-" ? "standard output" : options.output,
@@ -75,15 +142,19 @@ void export_as_csv(drivers::windlog::WindlogReader& reader, const ExportOptions&
 void run_export(const ExportOptions& options) {
   auto reader = drivers::windlog::WindlogReader::open(options.input);
   if (!reader) {
-    const bool is_there = std::filesystem::exists(options.input);
+    const bool is_there = drivers::windlog::recording_exists(options.input);
     throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);
   }
   if (options.output == "-") return export_as_csv(*reader, options, stdout);
 
   settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   if (std::filesystem::path(options.output).extension() == ".windlog") {
-    if (!options.from.empty() || !options.to.empty()) {
-      throw ExitError(kExitUsage, "--from and --to are for CSV output; a copy is always of the whole recording");
+    if (!options.from.empty() || !options.to.empty() || !options.since.empty() || !options.until.empty() ||
+        options.resample_s || options.quantities) {
+      throw ExitError(
+          kExitUsage,
+          "--from, --to, --since, --until, --resample and --quantities are for CSV output; a copy is always "
+          "of the whole recording");
     }
     if (const auto copied = reader->copy_to(output.working_path()); !copied) {
       throw ExitError(kExitCannotCreate, options.output + ": cannot be written: " + copied.error().message);
@@ -107,8 +178,25 @@ void add_export(CLI::App& app) {
   command->add_option("file", options->input, "the recording (.windlog)")->required();
   command->add_option("-o,--output", options->output, "FILE.csv, COPY.windlog, or - for CSV on standard output")
       ->required();
-  command->add_option("--from", options->from, "where to begin: seconds, or a time such as 2018-07-20T14:05:00Z");
-  command->add_option("--to", options->to, "where to end, in the same form");
+  auto* const from =
+      command->add_option("--from", options->from, "where to begin: seconds, or a time such as 2018-07-20T14:05:00Z");
+  auto* const to = command->add_option("--to", options->to, "where to end, in the same form");
+  command
+      ->add_option("--since", options->since,
+                   "where to begin: a time such as 2018-07-20T14:05:00Z, or a duration back from the end: 24h, 7d")
+      ->type_name("WHEN")
+      ->excludes(from);
+  command->add_option("--until", options->until, "where to end, in the same form")->type_name("WHEN")->excludes(to);
+  auto* const resample = command
+                             ->add_option("--resample", options->resample_s,
+                                          "write means over blocks of this length: 60 (seconds), 10min, 1h")
+                             ->type_name("TIME")
+                             ->transform(duration_in_seconds())
+                             ->check(CLI::Range(1e-3, 366.0 * 86400.0));
+  command
+      ->add_flag("--quantities", options->quantities,
+                 "write what stations said besides the wind: temperature, pressure, humidity, rain")
+      ->excludes(resample);
   command->add_flag("--force", options->force, "overwrite the output");
   command->callback([options] { run_export(*options); });
 }

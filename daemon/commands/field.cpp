@@ -23,6 +23,7 @@
 #include "daemon/tools/plot/plot_map.hpp"
 #include "daemon/tools/plot/plot_script.hpp"
 #include "drivers/windlog/format.hpp"
+#include "drivers/windlog/recording_parts.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
 namespace yuragi::daemon::commands {
@@ -251,7 +252,7 @@ void run_field(FieldOptions options) {
   if (bytes > 1e11) {
     throw ExitError(kExitUsage, fmt::format("--size, --frames: that would be {:.0f} GB; allowed: 100 GB", bytes / 1e9));
   }
-  if (options.recording && !std::filesystem::exists(*options.recording)) {
+  if (options.recording && !drivers::windlog::recording_exists(*options.recording)) {
     throw ExitError(kExitNoInput, options.recording->string() + ": there is no such recording");
   }
   const std::filesystem::path beside = std::filesystem::path(options.output).replace_extension(".json");

@@ -1,17 +1,18 @@
 // `yuragi player`: shows and controls the recordings that a running daemon plays.
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <iterator>
 #include <memory>
 #include <thread>
 
-#include <fmt/chrono.h>
 #include <fmt/core.h>
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/json_output.hpp"
 #include "daemon/commands/send_control.hpp"
+#include "daemon/tools/sensors/player_text.hpp"
+#include "daemon/tools/sensors/sensor_json.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -23,32 +24,16 @@ constexpr auto kOrderPause = std::chrono::milliseconds(20);
 struct PlayerCommandOptions {
   std::string connect = fmt::format("127.0.0.1:{}", wire::kDefaultPort);
   wire::PlayerCommand command = {};
+  bool as_json = false;
 };
 
 wire::ControlReply send_command(const PlayerCommandOptions& options, const wire::PlayerCommand& command) {
   return send_control(options.connect, "player", {.scene = "", .player = command});
 }
 
-/// "1:02:03.4"
-std::string clock_text(double time_s) {
-  const auto tenths = static_cast<std::int64_t>(std::floor(time_s * 10.0 + 1e-6));
-  const std::int64_t whole_s = tenths / 10;
-  return fmt::format("{}:{:02}:{:02}.{}", whole_s / 3600, whole_s / 60 % 60, whole_s % 60, tenths % 10);
-}
-
-std::string player_text(const wire::PlayerState& player) {
-  if (!player.is_open) return fmt::format("{}: {} cannot be read at present\n", player.sensor, player.file);
-  const char* doing = player.is_finished ? "finished" : player.is_paused ? "paused" : "playing";
-  const std::time_t recorded =
-      std::chrono::floor<std::chrono::seconds>(std::chrono::nanoseconds(player.recorded_utc_ns)).count();
-  std::string text = fmt::format("{}: {} at {} of {}, rate {:g}", player.sensor, doing, clock_text(player.position_s),
-                                 clock_text(player.length_s), player.rate);
-  if (player.loops) text += fmt::format(", looping: round {}", player.rounds + 1);
-  return text + fmt::format(", recorded {:%Y-%m-%dT%H:%M:%S}Z, {}\n", fmt::gmtime(recorded), player.file);
-}
-
-void print_states(const std::vector<wire::PlayerState>& players) {
-  for (const wire::PlayerState& player : players) fmt::print("{}", player_text(player));
+void print_states(const PlayerCommandOptions& options, const std::vector<wire::PlayerState>& players) {
+  if (options.as_json) return print_json(tools::sensors::players_json(players));
+  for (const wire::PlayerState& player : players) fmt::print("{}", tools::sensors::player_text(player));
 }
 
 /// Waits until each player has carried out its order in `given`, and returns their states then.
@@ -61,7 +46,7 @@ std::vector<wire::PlayerState> wait_for_orders(const PlayerCommandOptions& optio
         reply.players, given, [](const auto& now, const auto& then) { return now.orders_done >= then.order; });
     if (is_done) return reply.players;
     if (std::chrono::steady_clock::now() > deadline) {
-      print_states(reply.players);
+      print_states(options, reply.players);
       throw ExitError(kExitUnavailable, "the request is pending: the recording cannot be read at present");
     }
     std::this_thread::sleep_for(kOrderPause);
@@ -71,7 +56,7 @@ std::vector<wire::PlayerState> wait_for_orders(const PlayerCommandOptions& optio
 void print_status(const PlayerCommandOptions& options) {
   const wire::ControlReply reply = send_command(options, options.command);
   if (!reply.done) throw ExitError(reply.players.empty() ? kExitUsage : kExitNoPermission, reply.message);
-  print_states(reply.players);
+  print_states(options, reply.players);
 }
 
 void give_order(const PlayerCommandOptions& options) {
@@ -81,7 +66,7 @@ void give_order(const PlayerCommandOptions& options) {
     throw ExitError(reply.players.empty() ? kExitUsage : kExitNoPermission, message);
   }
   const std::vector<wire::PlayerState> players = wait_for_orders(options, reply.players);
-  print_states(players);
+  print_states(options, players);
   std::string refusals;
   for (const wire::PlayerState& player : players) {
     if (player.refusal.empty()) continue;
@@ -100,6 +85,7 @@ CLI::App* add_action(CLI::App& player, const char* name, const char* help, const
                    "this sensor only; default: every sensor that plays a recording")
       ->type_name("NAME");
   command->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
+  add_json(*command, options->as_json);
   return command;
 }
 
@@ -116,6 +102,9 @@ void add_player(CLI::App& app) {
       "  yuragi player seek 2018-07-20T14:05:00Z  to a time (UTC if it has no zone)\n"
       "  yuragi player rate 4\n"
       "A seek fades from the old place to the new one ([[sensor]] seam), so that nothing jumps.\n"
+      "--json: a list with sensor, file, is_open, position_s, length_s, recorded_utc_ns, rate, is_paused, "
+      "is_finished,\n"
+      "loops, rounds, refusal for each recording; null while it cannot be read.\n"
       "Exit code 0: done; 64: there is no such sensor or place; 69: no daemon answers; 77: the daemon does not\n"
       "allow it from here (see `yuragi describe`, [stream] control).");
 

@@ -3,14 +3,18 @@
 #include <memory>
 
 #include <fmt/core.h>
+#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/daemon_log.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/run_options.hpp"
+#include "daemon/sensing/recorded_installation.hpp"
 #include "daemon/service/service.hpp"
 #include "daemon/tools/offline/lockstep_replay.hpp"
 #include "drivers/windlog/windlog_playback.hpp"
+#include "drivers/windlog/windlog_reader.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -24,6 +28,7 @@ struct ReplayOptions {
   bool at_time_of_day = false;
   std::string utc_offset;
   bool is_paused = false;
+  bool as_recorded = false;
 };
 
 constexpr double kMinRate = 0.01;
@@ -55,6 +60,28 @@ settings::SensorConfig replay_sensor(const ReplayOptions& options, double rate) 
   throw std::logic_error("no windlog driver");
 }
 
+/// The whole installation as the recording holds it. Logs what is not as it was.
+sensing::RecordedInstallation installation_of(const ReplayOptions& options, double rate) {
+  if (options.run.config_file) {
+    throw ExitError(kExitUsage, "--as-recorded takes the recording's own configuration: leave --config out");
+  }
+  if (options.playback.loop || options.at_time_of_day || !options.playback.sensor.empty()) {
+    throw ExitError(kExitUsage,
+                    "--as-recorded replays all sensors once, by the recorded clock: it takes neither --loop nor "
+                    "--same-time-of-day nor --sensor");
+  }
+  sensing::RecordedInstallation installation =
+      sensing::recorded_installation(
+          options.file,
+          {.playback = options.playback, .rate = rate, .seam_s = options.seam_s, .is_paused = options.is_paused})
+          .value();
+  for (const std::string& remark : installation.remarks) spdlog::warn("as recorded: {}", remark);
+  if (options.run.address) {
+    installation.config = settings::listening_at(std::move(installation.config), *options.run.address);
+  }
+  return installation;
+}
+
 void replay_at_full_speed(const ReplayOptions& options) {
   if (options.playback.loop && !options.run.duration_s) {
     throw ExitError(kExitUsage,
@@ -67,10 +94,12 @@ void replay_at_full_speed(const ReplayOptions& options) {
   const auto progress = [is_watched](double log_time_s) {
     if (is_watched) fmt::print(stderr, "\rreplayed {:.0f} s", log_time_s);
   };
+  const double duration_s = options.run.duration_s.value_or(0.0);
   const tools::offline::LockstepResult result =
-      tools::offline::replay_in_lockstep(options.run.config(), options.file,
-                                         {.playback = options.playback, .seam_s = options.seam_s},
-                                         options.run.duration_s.value_or(0.0), progress)
+      (options.as_recorded ? tools::offline::replay_in_lockstep(installation_of(options, 1.0), duration_s, progress)
+                           : tools::offline::replay_in_lockstep(
+                                 options.run.config(), options.file,
+                                 {.playback = options.playback, .seam_s = options.seam_s}, duration_s, progress))
           .value();
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   fmt::print(
@@ -84,7 +113,19 @@ void replay_at_full_speed(const ReplayOptions& options) {
 }
 
 void replay(const ReplayOptions& options) {
-  options.run.set_up_log();
+  const DaemonLog log(options.run.verbose);
+  if (const auto reader = drivers::windlog::WindlogReader::open(options.file)) {
+    for (const std::string& damage : reader->damage()) spdlog::warn("{}", damage);
+  }
+  if (options.as_recorded && options.rate != "max") {
+    const sensing::RecordedInstallation installation = installation_of(options, parse_rate(options.rate));
+    service::Service(installation.config, {.record = {},
+                                           .duration_s = options.run.duration_s,
+                                           .end_with_recordings = true,
+                                           .recorded_from = installation.begin})
+        .run();
+    return;
+  }
   drivers::windlog::WindlogPlayback::open(options.file, options.playback)
       .value();  // fails now; the daemon would wait for the file
   if (options.rate == "max") return replay_at_full_speed(options);
@@ -105,6 +146,18 @@ void add_replay(CLI::App& app) {
       "  yuragi replay storm.windlog --rate 4 --start 90\n"
       "  yuragi replay storm.windlog --rate max\n"
       "  yuragi replay year.windlog --same-time-of-day --loop\n"
+      "\n"
+      "With --as-recorded a day is replayed as it was: with the scenes, the shaping and its opening hours (by the "
+      "recorded\n"
+      "clock), and each sensor by its name with its calibration, judging and part in the blend, of the configuration "
+      "in "
+      "the\n"
+      "recording. That of the session in which it begins holds to the end; the log says where the recording has "
+      "another.\n"
+      "Not in a recording, and so not as they were: what had been learnt of the site before it began (site_file), the "
+      "fall-\n"
+      "back recording, messages that a driver refused, and passwords, which a replay does not need.\n"
+      "  yuragi replay wall.windlog --as-recorded --start 2026-05-01T06:00:00Z\n"
       "While it runs, in another terminal: yuragi player pause, step, seek, rate, status.");
   auto options = std::make_shared<ReplayOptions>();
   command->add_option("file", options->file, "the recording")->required()->type_name("FILE.windlog");
@@ -128,6 +181,8 @@ void add_replay(CLI::App& app) {
           "--utc-offset", options->utc_offset,
           "for that: how far the clocks where it was recorded were ahead of UTC; without it: this machine's zone")
       ->type_name("HOURS");
+  command->add_flag("--as-recorded", options->as_recorded,
+                    "with the configuration and all sensors of the recording, by its clock");
   command->add_flag("--paused", options->is_paused, "start paused, at the first reading (see `yuragi player`)");
   command->add_option("--sensor", options->playback.sensor, "which sensor; default: the one with the first reading")
       ->type_name("NAME");

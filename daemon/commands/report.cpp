@@ -22,6 +22,7 @@
 #include "daemon/tools/report/report_text.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/log_moment.hpp"
+#include "drivers/windlog/recording_parts.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/wind/blend/blend_source.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
@@ -125,7 +126,7 @@ void print_site(const tools::report::SensorNumbers& sensor) {
 void run_report(const ReportOptions& options) {
   auto reader = drivers::windlog::WindlogReader::open(options.input);
   if (!reader) {
-    const bool is_there = std::filesystem::exists(options.input);
+    const bool is_there = drivers::windlog::recording_exists(options.input);
     throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);
   }
   if (!options.json.empty() && options.json == options.output) {
@@ -152,6 +153,7 @@ void run_report(const ReportOptions& options) {
     progress.show(fmt::format("{} readings (each is read twice)", readings));
   });
   if (!numbers) throw ExitError(kExitDataError, options.input + ": " + numbers.error().message);
+  for (const std::string& damage : reader->damage()) fmt::print(stderr, "warning: {}\n", damage);
   const std::string source = std::filesystem::path(options.input).filename();
   std::vector<tools::report::SensorFigures> figures;
   for (const tools::report::SensorNumbers& sensor : numbers->sensors) {

@@ -1,12 +1,46 @@
 // `yuragi run` and `yuragi record`: the daemon, with and without scenes.
 #include <memory>
 
+#include <spdlog/spdlog.h>
+
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/daemon_log.hpp"
 #include "daemon/commands/run_options.hpp"
+#include "daemon/service/hold_back_hangups.hpp"
 #include "daemon/service/service.hpp"
+#include "daemon/settings/secret_exposure.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
+
+/// The configuration of the daemon; warns of secrets in it that others can read.
+settings::Config config_with_warnings(const RunOptions& options) {
+  settings::Config config = options.config();
+  if (options.config_file) {
+    for (const std::string& warning : settings::exposed_secrets(config, *options.config_file)) {
+      spdlog::warn("{}", warning);
+    }
+  }
+  return config;
+}
+
+/// Runs the daemon, whose configuration can be read again where it is a file. `record`: the recording in place of the
+/// configured one.
+void run_daemon(const RunOptions& options, const std::optional<std::filesystem::path>& record, bool with_scenes) {
+  service::hold_back_hangups();
+  const DaemonLog log(options.verbose);
+  const settings::Config config = config_with_warnings(options);
+  log.set_level(config.log.level);
+  service::ServiceOptions service{.record = record ? record : config.recording.file,
+                                  .duration_s = options.duration_s,
+                                  .with_scenes = with_scenes,
+                                  .set_log_level = [&log](settings::LogLevel level) { log.set_level(level); }};
+  if (options.config_file) {
+    service.config_file = *options.config_file;
+    service.read_config = [options] { return config_with_warnings(options); };
+  }
+  service::Service(config, service).run();
+}
 
 void add_run(CLI::App& app) {
   CLI::App* command =
@@ -15,32 +49,27 @@ void add_run(CLI::App& app) {
       "Without --config it uses a synthetic wind and shows a meadow. Then, in another terminal:\n"
       "  yuragi-viewer                show the scenes\n"
       "  yuragi sensors watch         show the sensors\n"
-      "  yuragi describe              list every key of a configuration");
+      "  yuragi describe              list every key of a configuration\n"
+      "  yuragi reload                read the configuration again while it runs; so does SIGHUP");
   auto options = std::make_shared<RunOptions>();
   auto record = std::make_shared<std::optional<std::filesystem::path>>();
   options->add_to(*command);
-  command->add_option("--record", *record, "also write every reading to this recording")->type_name("FILE.windlog");
-  command->callback([options, record] {
-    options->set_up_log();
-    service::Service(options->config(), {.record = *record, .duration_s = options->duration_s}).run();
-  });
+  command->add_option("--record", *record, "also write every reading to this recording, instead of [recording] file")
+      ->type_name("FILE.windlog");
+  command->callback([options, record] { run_daemon(*options, *record, true); });
 }
 
 void add_record(CLI::App& app) {
   CLI::App* command = app.add_subcommand("record", "record the sensors, without scenes");
   command->footer(
-      "A recording that exists is continued. Stop it with Ctrl-C; a crash loses at most half a second.\n"
+      "A recording that exists is continued. Stop it with Ctrl-C; a crash loses at most a second.\n"
       "  yuragi record storm.windlog --config roof.toml\n"
       "  yuragi replay storm.windlog --rate 4");
   auto options = std::make_shared<RunOptions>();
   auto file = std::make_shared<std::filesystem::path>();
   command->add_option("file", *file, "the recording")->required()->type_name("FILE.windlog");
   options->add_to(*command);
-  command->callback([options, file] {
-    options->set_up_log();
-    service::Service(options->config(), {.record = *file, .duration_s = options->duration_s, .with_scenes = false})
-        .run();
-  });
+  command->callback([options, file] { run_daemon(*options, *file, false); });
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 #include "daemon/commands/run_options.hpp"
 
 #include <fmt/core.h>
-#include <spdlog/sinks/stdout_color_sinks.h>
-#include <spdlog/spdlog.h>
 
 #include "engine/base/duration.hpp"
 
@@ -50,13 +48,6 @@ CLI::Validator duration_in_seconds() {
 settings::Config RunOptions::config() const {
   settings::Config config = config_file ? settings::load_config(*config_file) : settings::default_config();
   return address ? settings::listening_at(std::move(config), *address) : config;
-}
-
-void RunOptions::set_up_log() const {
-  static const auto logger = spdlog::stderr_color_mt("yuragi");
-  spdlog::set_default_logger(logger);
-  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
-  spdlog::set_level(verbose ? spdlog::level::debug : spdlog::level::info);
 }
 
 }  // namespace yuragi::daemon::commands

@@ -26,9 +26,6 @@ struct RunOptions {
   /// The configuration given by them, or the default one. Throws ConfigError.
   settings::Config config() const;
 
-  /// Directs the log to standard error, in the format for a journal or a terminal.
-  void set_up_log() const;
-
  private:
   void add_common(CLI::App& command);
 };

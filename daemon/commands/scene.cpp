@@ -6,8 +6,10 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/json_output.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/commands/send_control.hpp"
+#include "daemon/tools/sensors/sensor_json.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -15,6 +17,7 @@ namespace {
 struct SceneOptions {
   std::string connect = fmt::format("127.0.0.1:{}", wire::kDefaultPort);
   wire::Control control = {};
+  bool as_json = false;  ///< of the list
 };
 
 wire::ControlReply send(const SceneOptions& options) {
@@ -22,7 +25,9 @@ wire::ControlReply send(const SceneOptions& options) {
 }
 
 void list_scenes(const SceneOptions& options) {
-  for (const wire::SceneState& scene : send(options).scenes)
+  const wire::ControlReply reply = send(options);
+  if (options.as_json) return print_json(tools::sensors::scenes_json(reply.scenes));
+  for (const wire::SceneState& scene : reply.scenes)
     fmt::print("{:<24} {:<10} {}\n", scene.name, scene.kind, scene.shown ? "shown" : "hidden");
 }
 
@@ -64,6 +69,8 @@ void add_scene(CLI::App& app) {
   CLI::App* list = scene->add_subcommand("list", "list all scenes, and which are shown");
   auto options = std::make_shared<SceneOptions>();
   list->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
+  add_json(*list, options->as_json);
+  list->footer("--json: a list with name, kind, is_shown (true or false) for each scene.");
   list->callback([options] { list_scenes(*options); });
   add("show", "fade a scene in", true, false);
   add("hide", "fade a scene out", false, false);

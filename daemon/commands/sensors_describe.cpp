@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/json_output.hpp"
 #include "daemon/commands/sensors.hpp"
+#include "daemon/tools/sensors/description_json.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
 
 namespace yuragi::daemon::commands {
@@ -14,12 +16,15 @@ namespace {
 struct DescribeOptions {
   std::string driver;
   bool all = false;
+  bool as_json = false;
 };
 
 void describe(const DescribeOptions& options) {
   const auto drivers = drivers::sensor::driver_table();
-  if (options.all) {
+  if (options.all && !options.as_json) {
     fmt::print("{}", tools::sensors::driver_reference(drivers));
+  } else if (options.driver.empty() && options.as_json) {
+    print_json(tools::sensors::drivers_json(drivers));
   } else if (options.driver.empty()) {
     fmt::print(
         "{}\n"
@@ -32,6 +37,7 @@ void describe(const DescribeOptions& options) {
       throw ExitError(kExitUsage, fmt::format("there is no driver \"{}\"; there are:\n{}", options.driver,
                                               tools::sensors::driver_names(drivers)));
     }
+    if (options.as_json) return print_json(tools::sensors::drivers_json(std::span(&*found, 1)));
     fmt::print("{}", tools::sensors::describe_driver(**found));
   }
 }
@@ -45,6 +51,11 @@ void add_sensors_describe(CLI::App& sensors) {
   CLI::Option* driver = command->add_option("driver", options->driver, "which driver; default: a list of all");
   driver->option_text("[DRIVER]");
   command->add_flag("--all", options->all, "every driver, as a page of Markdown")->excludes(driver);
+  add_json(*command, options->as_json);
+  command->footer(
+      "--json: a list with name, summary, parameters for each driver; of a parameter name, type, unit, default, "
+      "left_out\n"
+      "(what it means where it is left out), min, max, choices, help.");
   command->callback([options] { describe(*options); });
 }
 

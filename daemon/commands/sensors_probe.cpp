@@ -7,10 +7,13 @@
 #include <memory>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/json_output.hpp"
 #include "daemon/commands/sensors.hpp"
+#include "daemon/tools/sensors/json_value.hpp"
 #include "drivers/bus/serial_ports.hpp"
 #include "drivers/modbus/modbus_probe.hpp"
 
@@ -27,6 +30,7 @@ struct ProbeOptions {
   double timeout_s = 0.2;
   bool tries_all = false;
   std::string profile_dir;
+  bool as_json = false;
 };
 
 /// While it lives, Ctrl-C sets an interruption instead of ending the program.
@@ -173,12 +177,36 @@ void show_hit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::Modb
   std::fflush(stdout);
 }
 
+/// On a line of its own as soon as it is found.
+void show_hit_as_json(const drivers::modbus::ModbusHit& hit) {
+  const bool is_tcp = hit.line.framing == drivers::decode::modbus::ModbusFraming::kTcp;
+  nlohmann::ordered_json fits = nlohmann::ordered_json::array();
+  for (const drivers::modbus::ModbusFit& fit : hit.fits) {
+    fits.push_back({{"profile", fit.profile},
+                    {"device", fit.device},
+                    {"speed_m_s", tools::sensors::json_or_null(fit.speed_m_s)},
+                    {"direction_deg", tools::sensors::json_or_null(fit.direction_deg)},
+                    {"gust_m_s", tools::sensors::json_or_null(fit.gust_m_s)},
+                    {"has_factory_settings", fit.is_at_home}});
+  }
+  nlohmann::ordered_json json = {{"line", describe(hit.line)}, {"baud", nullptr}, {"parity", nullptr},
+                                 {"stop_bits", nullptr},       {"slave", hit.id}, {"fits", fits}};
+  if (!is_tcp) {
+    json["baud"] = hit.line.baud;
+    json["parity"] = std::string(1, hit.line.parity);
+    json["stop_bits"] = hit.line.stop_bits;
+  }
+  end_progress();
+  print_json_line(json);
+}
+
 void probe(const ProbeOptions& options) {
   const drivers::modbus::ModbusProbePlan plan = plan_of(options);
   if (plan.lines.empty()) throw ExitError(kExitUsage, "--baud and --parity leave nothing to try");
   const WakeOnInterrupt interrupt;
   const auto hits = drivers::modbus::probe_modbus(
-      plan, show_progress, [&plan](const drivers::modbus::ModbusHit& hit) { show_hit(hit, plan); },
+      plan, show_progress,
+      [&](const drivers::modbus::ModbusHit& hit) { options.as_json ? show_hit_as_json(hit) : show_hit(hit, plan); },
       interrupt.interruption());
   end_progress();
   if (interrupt.interruption().is_set()) fmt::print(stderr, "interrupted\n");
@@ -202,7 +230,10 @@ void add_sensors_probe(CLI::App& sensors) {
       "uses\n"
       "the serial port exclusively: stop it first.\n"
       "  yuragi sensors probe modbus /dev/ttyUSB0\n"
-      "  yuragi sensors probe modbus 192.168.1.20:502 --id 1-10");
+      "  yuragi sensors probe modbus 192.168.1.20:502 --id 1-10\n"
+      "--json: an object a line for each device: line, baud, parity, stop_bits (null over TCP), slave, fits; of each "
+      "fit\n"
+      "profile, device, speed_m_s, direction_deg, gust_m_s (null where it has none), has_factory_settings.");
   auto options = std::make_shared<ProbeOptions>();
   command->add_option("where", options->where, "serial port, or HOST:PORT of a device or gateway")
       ->required()
@@ -220,6 +251,7 @@ void add_sensors_probe(CLI::App& sensors) {
   command->add_flag("--all", options->tries_all, "serial: try further settings even after a device has answered");
   command->add_option("--profile-dir", options->profile_dir, "a directory to look for profiles in first")
       ->type_name("FOLDER");
+  add_json(*command, options->as_json);
   command->callback([options] { probe(*options); });
 }
 

@@ -5,10 +5,13 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "daemon/commands/daemon_log.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/json_output.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/commands/sensors.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
@@ -17,6 +20,7 @@
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/stream/stream_client.hpp"
 #include "daemon/tools/decode/raw_text.hpp"
+#include "daemon/tools/sensors/sensor_json.hpp"
 #include "daemon/tools/sensors/sensor_table.hpp"
 
 namespace yuragi::daemon::commands {
@@ -32,6 +36,7 @@ struct WatchOptions {
   bool once = false;
   bool raw = false;
   bool hex = false;
+  bool as_json = false;
   std::string sensor;  ///< of raw messages; empty: all
 };
 
@@ -61,11 +66,15 @@ class Screen {
 /// Shows tables: in place on a terminal, one below the other elsewhere.
 class TableScreen final : public Screen {
  public:
-  explicit TableScreen(bool once) : once_(once) {}
+  TableScreen(bool once, bool as_json) : once_(once), as_json_(as_json) {}
 
   wire::Subscribe subscription() const override { return {.poses = false, .sensors = true, .client = "sensors watch"}; }
 
   bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
+    if (as_json_) {
+      print_json_line(tools::sensors::sensors_json(sensors));
+      return !once_;
+    }
     constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
     const bool in_place = isatty(STDOUT_FILENO) != 0 && !once_;
     settings::write_at_once(fmt::format("{}{}\n{}{}", in_place ? kHomeAndClear : "", source,
@@ -78,6 +87,7 @@ class TableScreen final : public Screen {
 
  private:
   bool once_;
+  bool as_json_;
 };
 
 /// Shows the messages to and from the devices, one below the other.
@@ -107,6 +117,10 @@ class RawScreen final : public Screen {
   }
 
   bool show_message(const wire::RawTrace& trace) override {
+    if (options_.as_json) {
+      print_json_line(tools::sensors::raw_trace_json(trace));
+      return !options_.once;
+    }
     const std::string text = options_.hex ? hex_lines_.line_of(trace) : tools::decode::raw_text(trace);
     settings::write_at_once(text);
     return !options_.once || text.empty();
@@ -164,10 +178,11 @@ void watch_devices(const settings::Config& config, const std::string& why, const
 }
 
 void watch(const WatchOptions& options) {
+  if (options.hex && options.as_json) throw ExitError(kExitUsage, "--hex and --json exclude each other");
   if (!options.raw && (options.hex || !options.sensor.empty())) {
     throw ExitError(kExitUsage, "a SENSOR and --hex are for raw messages: add --raw");
   }
-  options.run.set_up_log();
+  const DaemonLog log(options.run.verbose);
   if (!options.run.verbose) spdlog::set_level(spdlog::level::warn);  // the table shows the rest
   const settings::Config config = options.run.config();
   const std::string& address = config.stream.listen;
@@ -175,7 +190,7 @@ void watch(const WatchOptions& options) {
   if (options.raw) {
     screen = std::make_unique<RawScreen>(options);
   } else {
-    screen = std::make_unique<TableScreen>(options.once);
+    screen = std::make_unique<TableScreen>(options.once, options.as_json);
   }
   const Deadline deadline(options.run.duration_s);
   auto client = stream::StreamClient::connect(address, kConnectTimeout);
@@ -204,12 +219,23 @@ void add_sensors_watch(CLI::App& sensors) {
       "distance from the middle of the scenes, and the time that a gust takes to it, are shown next to it.\n"
       "If [shaping] changes the wind of the scenes (floor, site gain, gusts, opening hours, ceiling), that is shown, "
       "too.\n"
+      "Since the daemon's start: clients refused (no place), stuck (they stopped reading) and idle (they asked for\n"
+      "nothing), and the lateness of its I/O thread and of the animation's ticks: median, 99th percentile, maximum.\n"
+      "Raw messages are shown only where [stream] control allows it. To clients of other machines, files are named\n"
+      "without their folders.\n"
+      "--json: an object a line: wind (speed_m_s, direction_deg, source, ...), sensors (a list: name, driver, state,\n"
+      "state_reason, speed_m_s, direction_deg, gust_m_s, age_s, interval_s, frames, readings, reconnects, refused, "
+      "...),\n"
+      "shaping, recorder (null: nothing is recorded), clients, late_ticks, io_lateness and tick_lateness (p50_s, "
+      "p99_s,\n"
+      "max_s). With --raw: sensor, utc_ns, mono_ns, is_received, hex, length_bytes, lost. What is not known is null.\n"
       "  yuragi sensors watch --raw roof                            every message to and from its device\n"
       "  yuragi sensors watch --raw roof --hex | tee roof.hex       to be read by `yuragi decode FORMAT --hex`");
   auto options = std::make_shared<WatchOptions>();
   options->run.add_to_client(*command);
   command->add_flag("--once", options->once, "print one table, or one message, and end");
   command->add_flag("--raw", options->raw, "show the messages to and from the devices");
+  add_json(*command, options->as_json);
   command->add_option("sensor", options->sensor, "with --raw: of this sensor only")->option_text("[SENSOR]");
   command->add_flag("--hex", options->hex,
                     "with --raw: hexadecimal digits only, one message per line, for `yuragi decode --hex`");

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/json_output.hpp"
 #include "daemon/tools/plot/plot.hpp"
 #include "daemon/tools/plot/plot_script.hpp"
 #include "engine/wind/turbulence/wind_spectrum.hpp"
@@ -34,6 +36,8 @@ constexpr const char* kSpectrumFooter =
     "class\n"
     "B. Without --length, L_u is 8.1 Lambda (Lambda is 0.7 z below 60 m, 42 m above).\n"
     "\n"
+    "--json: model, component, speed_m_s, height_m, variance_m2_s2, and the lists frequency_hz and density_m2_s2_hz.\n"
+    "\n"
     "Example: yuragi spectrum --model kaimal --speed 8 --height 10 --frequency 0.01,0.1,1 --plot kaimal.svg";
 
 struct SpectrumOptions {
@@ -42,6 +46,7 @@ struct SpectrumOptions {
   wind::turbulence::SpectrumSettings settings;
   std::vector<double> frequencies_hz;
   std::string plot;
+  bool as_json = false;
 };
 
 template <class Enum, std::size_t N>
@@ -85,6 +90,24 @@ void draw_spectrum(const SpectrumOptions& options, const wind::turbulence::WindS
   tools::plot::draw_plot(options.plot, std::span(&panel, 1)).value();
 }
 
+void print_spectrum(const SpectrumOptions& options, const wind::turbulence::WindSpectrum& spectrum) {
+  fmt::print("# {} {}, mean speed {:g} m/s, height {:g} m, variance {:.6g} m^2/s^2\n# f_Hz S_m2_s2_Hz\n", options.model,
+             options.component, options.settings.speed_m_s, options.settings.height_m, spectrum.variance_m2_s2());
+  for (const double f : options.frequencies_hz) fmt::print("{} {}\n", f, spectrum.density_m2_s2_hz(f));
+}
+
+void print_spectrum_as_json(const SpectrumOptions& options, const wind::turbulence::WindSpectrum& spectrum) {
+  std::vector<double> densities;
+  for (const double f : options.frequencies_hz) densities.push_back(spectrum.density_m2_s2_hz(f));
+  print_json({{"model", options.model},
+              {"component", options.component},
+              {"speed_m_s", options.settings.speed_m_s},
+              {"height_m", options.settings.height_m},
+              {"variance_m2_s2", spectrum.variance_m2_s2()},
+              {"frequency_hz", options.frequencies_hz},
+              {"density_m2_s2_hz", densities}});
+}
+
 void run_spectrum(SpectrumOptions options) {
   if (!options.plot.empty()) tools::plot::check_plot_name(options.plot).value();
   options.settings.model = named<wind::turbulence::SpectrumModel>(wind::turbulence::kSpectrumModelNames, options.model);
@@ -95,9 +118,11 @@ void run_spectrum(SpectrumOptions options) {
     throw ExitError(kExitUsage, fmt::format("--model {}: {}", options.model, explain(spectrum.error())));
   }
 
-  fmt::print("# {} {}, mean speed {:g} m/s, height {:g} m, variance {:.6g} m^2/s^2\n# f_Hz S_m2_s2_Hz\n", options.model,
-             options.component, options.settings.speed_m_s, options.settings.height_m, spectrum->variance_m2_s2());
-  for (const double f : options.frequencies_hz) fmt::print("{} {}\n", f, spectrum->density_m2_s2_hz(f));
+  if (options.as_json) {
+    print_spectrum_as_json(options, *spectrum);
+  } else {
+    print_spectrum(options, *spectrum);
+  }
   if (!options.plot.empty()) draw_spectrum(options, *spectrum);
 }
 
@@ -120,6 +145,7 @@ void add_spectrum(CLI::App& app) {
                               ->delimiter(',')
                               ->check(CLI::Range(0.0, 1e9));
   auto* const plot = command->add_option("--plot", options->plot, "Draw it into FILE.png or FILE.svg");
+  add_json(*command, options->as_json);
   command->callback([options, frequency, plot] {
     if (frequency->empty() && plot->empty()) {
       throw CLI::ValidationError("--frequency", "give frequencies, or --plot FILE.svg to draw the whole spectrum");

@@ -22,6 +22,7 @@
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
 #include "drivers/windlog/format.hpp"
+#include "drivers/windlog/recording_parts.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
@@ -110,7 +111,8 @@ GroundPlace parse_place(const std::string& option, const std::string& text) {
 }
 
 const std::filesystem::path& existing(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) throw ExitError(kExitNoInput, file.string() + ": there is no such recording");
+  if (!drivers::windlog::recording_exists(file))
+    throw ExitError(kExitNoInput, file.string() + ": there is no such recording");
   return file;
 }
 

@@ -42,19 +42,31 @@ FallbackRecording::FallbackRecording(const settings::Config& config, const drive
     : clock_(clock) {
   if (!config.wind.fallback) return;
   const settings::FallbackConfig& fallback = *config.wind.fallback;
-  const std::string recorded = check_fallback(fallback);
-  const auto same = std::ranges::find(config.sensors, recorded, &settings::SensorConfig::name);
-  if (same != config.sensors.end()) {
-    calibration_ = same->calibration;
-    judged_by_ = same->judge;
-  }
+  recorded_ = check_fallback(fallback);
+  take_settings(config);
   sensor_ = fallback_sensor(fallback);
   file_ = fallback.recording.string();
   after_ = from_seconds(fallback.after_s);
 }
 
+void FallbackRecording::change(const settings::Config& config) {
+  if (!sensor_) return;
+  take_settings(config);
+  // It plays seldom, and begins anew whenever it does: what was found out about its last readings may be lost.
+  judge_ = wind::judging::ReadingJudge(judged_by_.value_or(wind::judging::JudgeSettings{}));
+}
+
+/// Takes the settings of the sensor that was recorded, where it is configured.
+void FallbackRecording::take_settings(const settings::Config& config) {
+  const auto same = std::ranges::find(config.sensors, recorded_, &settings::SensorConfig::name);
+  if (same == config.sensors.end()) return;
+  calibration_ = same->calibration;
+  judged_by_ = same->judge;
+}
+
 void FallbackRecording::advance(bool is_any_sensor_live, const Use& use) {
   if (!sensor_) return;
+  std::erase_if(ending_, [](const auto& runner) { return runner->has_ended(); });
   const MonoTime now = clock_.now().mono;
   if (is_any_sensor_live) {
     silent_since_.reset();
@@ -89,7 +101,8 @@ void FallbackRecording::start(MonoTime now) {
 
 void FallbackRecording::stop() {
   if (!runner_) return;
-  runner_.reset();
+  runner_->end();
+  ending_.push_back(std::move(runner_));
   spdlog::info("a sensor is live again: stopped the fallback recording {} after {}", file_,
                count_text(readings_, "reading"));
 }

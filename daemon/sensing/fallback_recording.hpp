@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "daemon/sensing/sensor_runner.hpp"
 #include "daemon/settings/config.hpp"
@@ -20,13 +21,16 @@ namespace yuragi::daemon::sensing {
 ///
 /// The readings in a recording are raw: they are calibrated and judged with the settings of the configured sensor that
 /// has the same name as the recorded one; where there is none, uncalibrated and judged with the defaults.
-/// Belongs to the I/O thread; the file is read on a thread of its own.
+/// Belongs to the I/O thread; the file is read on a thread of its own, for whose end that one does not wait.
 class FallbackRecording {
  public:
   using Use = std::function<void(const wind::WindReading&)>;
 
   /// Checks the recording, if one is configured. Throws ConfigError where it cannot be played.
   FallbackRecording(const settings::Config& config, const drivers::sensor::Clock& clock);
+
+  /// Calibrates and judges from now on as a configuration with the same recording says.
+  void change(const settings::Config& config);
 
   /// Starts or stops playing, and passes readings that are due to `use`.
   void advance(bool is_any_sensor_live, const Use& use);
@@ -35,6 +39,7 @@ class FallbackRecording {
   std::optional<wire::SensorStatus> status(const wind::SourceReport& report) const;
 
  private:
+  void take_settings(const settings::Config& config);
   void start(MonoTime now);
   void stop();
   void log_changes();
@@ -42,13 +47,15 @@ class FallbackRecording {
   const drivers::sensor::Clock& clock_;
   std::optional<settings::SensorConfig> sensor_;  ///< none: no recording is configured
   std::string file_;
+  std::string recorded_;  ///< the name of the recorded sensor
   wind::judging::Calibration calibration_;
   std::optional<wind::judging::JudgeSettings> judged_by_{
       wind::judging::JudgeSettings{}};  ///< none: every reading is believed
   wind::judging::ReadingJudge judge_;
   Nanoseconds after_{0};
 
-  std::unique_ptr<SensorRunner> runner_;  ///< while it plays
+  std::unique_ptr<SensorRunner> runner_;               ///< while it plays
+  std::vector<std::unique_ptr<SensorRunner>> ending_;  ///< that were stopped, and may still wait for the disk
   std::optional<MonoTime> silent_since_;
   MonoTime retry_at_{};
   std::uint64_t readings_ = 0;

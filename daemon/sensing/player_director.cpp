@@ -90,6 +90,16 @@ wire::ControlReply PlayerDirector::handle(const wire::PlayerCommand& command, bo
   return reply;
 }
 
+std::optional<UtcTime> PlayerDirector::recorded_clock() const {
+  std::optional<drivers::windlog::PlayerPosition> newest;
+  for (const NamedPlayer& named : players_) {
+    const auto position = named.player->report().position;
+    if (position && (!newest || position->held_for < newest->held_for)) newest = position;
+  }
+  if (!newest) return std::nullopt;
+  return newest->recorded + newest->held_for;
+}
+
 wire::PlayerState PlayerDirector::state_of(const NamedPlayer& named) const {
   const drivers::recording::PlayerReport report = named.player->report();
   wire::PlayerState state;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "daemon/settings/control_permission.hpp"
 #include "drivers/recording/recording_player.hpp"
+#include "engine/base/time.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::sensing {
@@ -27,8 +29,15 @@ class PlayerDirector {
   /// `allowed`: [stream] control.
   PlayerDirector(settings::ControlPermission allowed, std::vector<NamedPlayer> players);
 
+  /// Changes who may give orders.
+  void allow(settings::ControlPermission allowed) { allowed_ = allowed; }
+
   /// Carries out a client's command; the reply says why not. `is_local`: the client is on this machine.
   wire::ControlReply handle(const wire::PlayerCommand& command, bool is_local);
+
+  /// What the clock of the recording machine showed at the place that is played now: by the newest reading, and the
+  /// time for which it has held. Nothing until a recording plays.
+  std::optional<UtcTime> recorded_clock() const;
 
  private:
   wire::PlayerState state_of(const NamedPlayer& named) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -35,6 +36,11 @@ bool is_trouble(wind::judging::SensorState state) {
 std::string passed_over_text(const ChangeGate& gate) {
   if (gate.passed_over() == 0) return {};
   return fmt::format("; {} short changes in between", gate.passed_over());
+}
+
+/// Is it compared with other sensors? One whose scale is unknown is not.
+bool is_compared(const settings::SensorConfig& sensor) {
+  return sensor.judge && sensor.is_compared && !sensor.blend.is_relative;
 }
 
 /// The SiteSpectrum that a configuration expects, before any readings.
@@ -83,7 +89,8 @@ wind::blend::BlendedEstimator make_estimator(const settings::Config& config,
 }
 
 SensorHub::SensorHub(const settings::Config& config, const drivers::sensor::Clock& clock,
-                     std::shared_ptr<const wind::turbulence::GustNoise> noise, Listener listener, double reach_m)
+                     std::shared_ptr<const wind::turbulence::GustNoise> noise, Listener listener, double reach_m,
+                     SensorThread thread)
     : clock_(clock),
       listener_(std::move(listener)),
       site_(make_site_spectrum(config.wind)),
@@ -92,18 +99,45 @@ SensorHub::SensorHub(const settings::Config& config, const drivers::sensor::Cloc
       vote_(config.sensors.size()),
       fallback_(config, clock) {
   // Construct all before starting any, so that an error in the last one stops no running thread.
-  std::vector<std::unique_ptr<drivers::sensor::Sensor>> sensors;
-  for (const settings::SensorConfig& sensor : config.sensors) sensors.push_back(settings::open_sensor(sensor));
+  std::vector<std::unique_ptr<drivers::sensor::Sensor>> sensors = settings::open_sensors(config.sensors);
   for (std::size_t index = 0; index < sensors.size(); ++index) {
     Channel channel;
     channel.config = config.sensors[index];
     const std::optional<wind::judging::JudgeSettings>& judged_by = channel.config.judge;
     channel.judge = wind::judging::ReadingJudge(judged_by.value_or(wind::judging::JudgeSettings{}));
-    // A sensor whose scale is unknown is not compared.
-    channel.is_compared = judged_by && channel.config.is_compared && !channel.config.blend.is_relative;
-    channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_);
+    channel.is_compared = is_compared(channel.config);
+    channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_, thread);
     channels_.push_back(std::move(channel));
   }
+}
+
+void SensorHub::change(const settings::Config& config) {
+  for (std::size_t index = 0; index < channels_.size(); ++index) change(index, config.sensors.at(index));
+  fallback_.change(config);
+}
+
+void SensorHub::change(std::size_t index, const settings::SensorConfig& config) {
+  Channel& channel = channels_[index];
+  const settings::SensorConfig before = std::exchange(channel.config, config);
+  if (before.by_name.calibration.all() != config.by_name.calibration.all()) {
+    if (const auto& last = channel.last_raw) {
+      channel.judge.recalibrate(before.calibration.applied_to(*last), config.calibration.applied_to(*last));
+    }
+    vote_.forget_mean(index);
+  }
+  // A judge that has not judged has nothing to keep.
+  if (before.judge && config.judge) channel.judge.change(*config.judge);
+  if (before.judge.has_value() != config.judge.has_value()) {
+    channel.judge = wind::judging::ReadingJudge(config.judge.value_or(wind::judging::JudgeSettings{}));
+  }
+  channel.is_compared = is_compared(config);
+
+  drivers::recording::RecordingPlayer* const player = channel.runner->player();
+  if (player == nullptr || !config.values.has("rate")) return;
+  const double rate = config.values.number("rate");
+  if (rate == before.values.number("rate")) return;
+  player->order({.kind = drivers::recording::PlayerOrder::Kind::kRate, .rate = rate});
+  channel.runner->wake();
 }
 
 const wind::WindState& SensorHub::advance() {
@@ -116,6 +150,9 @@ const wind::WindState& SensorHub::advance() {
         if (listener_) listener_(index, reading);
       }
       take(index, reading);
+    });
+    channel.runner->drain_quantities([&](const wind::StationQuantities& quantities) {
+      if (quantities_listener_) quantities_listener_(index, quantities);
     });
     judge_refusals(channel);
   }
@@ -186,7 +223,7 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
   return {.link = channel.link.state,
           .link_detail = channel.link.detail,
           .report = channel.record.report(now, stale_intervals_),
-          .is_replay = channel.config.driver->plays_recordings,
+          .is_replay = channel.config.driver->plays_recordings || channel.config.stand_in,
           .fault = channel.judge.fault(),
           .vote = vote_.vote_on(index),
           .same_count = channel.judge.same_count(),
@@ -297,6 +334,11 @@ void SensorHub::log_summary() const {
   for (const wire::SensorStatus& sensor : status()) {
     spdlog::info("sensor {}: {} from {}, {}; refused: {}", sensor.name, count_text(sensor.readings, "reading"),
                  count_text(sensor.frames, "frame"), count_text(sensor.reconnects, "reconnect"), refusal_text(sensor));
+  }
+  for (const Channel& channel : channels_) {
+    const std::uint64_t lost = channel.runner->lost_quantities_count();
+    if (lost > 0)
+      spdlog::info("sensor {}: dropped {} besides the wind", channel.config.name, count_text(lost, "message"));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "daemon/sensing/change_gate.hpp"
@@ -33,11 +34,25 @@ class SensorHub {
  public:
   /// Gets each plausible reading, before calibration; for the recorder.
   using Listener = std::function<void(std::size_t sensor, const wind::WindReading&)>;
+  /// Gets what a station says besides the wind; for the recorder.
+  using QuantitiesListener = std::function<void(std::size_t sensor, const wind::StationQuantities&)>;
 
-  /// Opens and starts every sensor. `noise`: of the gusts; `reach_m`: as make_estimator() takes it. Throws ConfigError
-  /// where a sensor cannot be constructed from its values.
+  /// Opens and starts every sensor. `noise`: of the gusts; `reach_m`: as make_estimator() takes it; `thread`: the
+  /// sensors'. Throws ConfigError where a sensor cannot be constructed from its values.
   SensorHub(const settings::Config& config, const drivers::sensor::Clock& clock,
-            std::shared_ptr<const wind::turbulence::GustNoise> noise, Listener listener = {}, double reach_m = 0.0);
+            std::shared_ptr<const wind::turbulence::GustNoise> noise, Listener listener = {}, double reach_m = 0.0,
+            SensorThread thread = SensorThread::kOwn);
+
+  /// Takes what may change while it runs from a configuration with the same sensors in the same order
+  /// (ReloadPlan::next): calibration and judging, and the rate of recordings that play. Counts, states and what is
+  /// known of each sensor stay; a new calibration is neither a spike nor a contradiction to the other sensors.
+  void change(const settings::Config& config);
+
+  /// Passes what stations say besides the wind to `listener` from now on; without one it is dropped.
+  void listen_to_quantities(QuantitiesListener listener) { quantities_listener_ = std::move(listener); }
+
+  /// The scenes reach as far as this from now on, as make_estimator() takes it. The wind does not jump.
+  void set_reach(double reach_m) noexcept { estimator_.set_reach(reach_m); }
 
   /// Takes the readings that have arrived, and returns the wind now. Logs each change of a sensor's state once.
   const wind::WindState& advance();
@@ -90,6 +105,7 @@ class SensorHub {
     std::optional<wind::WindReading> last_raw;  ///< before calibration
   };
 
+  void change(std::size_t index, const settings::SensorConfig& config);
   void take(std::size_t index, const wind::WindReading& reading);
   static SensorCounts counts_of(const Channel& channel);
   void judge_refusals(Channel& channel) const;
@@ -100,6 +116,7 @@ class SensorHub {
 
   const drivers::sensor::Clock& clock_;
   Listener listener_;
+  QuantitiesListener quantities_listener_;
   std::shared_ptr<wind::turbulence::SiteSpectrum> site_;
   wind::blend::BlendedEstimator estimator_;
   double stale_intervals_;

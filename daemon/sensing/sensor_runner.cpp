@@ -13,13 +13,22 @@ constexpr Nanoseconds kPauseAfterException = std::chrono::seconds(10);
 
 }  // namespace
 
-SensorRunner::SensorRunner(std::unique_ptr<drivers::sensor::Sensor> sensor, const drivers::sensor::Clock& clock)
-    : sensor_(std::move(sensor)), clock_(clock), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+SensorRunner::SensorRunner(std::unique_ptr<drivers::sensor::Sensor> sensor, const drivers::sensor::Clock& clock,
+                           SensorThread thread)
+    : sensor_(std::move(sensor)), clock_(clock), thread_kind_(thread) {
+  if (thread == SensorThread::kOwn) {
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+}
 
 SensorRunner::~SensorRunner() {
+  end();
+  if (thread_.joinable()) thread_.join();
+}
+
+void SensorRunner::end() noexcept {
   thread_.request_stop();
   sensor_->interrupt();
-  thread_.join();
 }
 
 void SensorRunner::run(const std::stop_token& stop) {
@@ -28,6 +37,7 @@ void SensorRunner::run(const std::stop_token& stop) {
     std::unique_lock lock(sleep_mutex_);
     clock_.wait_until(next, lock, wake_, stop, [this] { return std::exchange(is_woken_, false); });
   }
+  has_ended_.store(true, std::memory_order_release);
 }
 
 /// A driver throws for nothing that a device does. Where one does all the same (memory, an error of its own), the
@@ -57,8 +67,15 @@ void SensorRunner::reading(const wind::WindReading& reading) {
   }
 }
 
-void SensorRunner::refused(drivers::decode::Refusal why) {
-  refused_[static_cast<std::size_t>(why)].fetch_add(1, std::memory_order_relaxed);
+/// What is out of range is left out without a word: it says nothing about the wind, whose faults are judged by
+/// refusals.
+void SensorRunner::quantities(const wind::StationQuantities& quantities) {
+  const auto plausible = wind::plausible_part(quantities);
+  if (plausible && !quantities_.push(*plausible)) lost_quantities_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void SensorRunner::refused(drivers::decode::Refusal why, std::uint64_t times) {
+  refused_[static_cast<std::size_t>(why)].fetch_add(times, std::memory_order_relaxed);
 }
 
 void SensorRunner::link(wind::LinkState state, std::string_view detail) {

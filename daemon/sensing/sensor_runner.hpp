@@ -37,14 +37,22 @@ struct RawMessage {
   }
 };
 
+/// On which thread a sensor is polled.
+enum class SensorThread : std::uint8_t {
+  kOwn,
+  kOfCaller,  ///< in drain(), when it is due: for sensors that wait for nothing, in steps of a clock that the caller
+              ///< moves
+};
+
 /// Runs one sensor on a thread of its own, since a device may block. Readings wait in a ring until the I/O thread takes
 /// them, so that no device delays that thread.
 ///
 /// Thread-safe: the public functions may be called from one other thread.
 class SensorRunner final : private drivers::sensor::SensorSink {
  public:
-  SensorRunner(std::unique_ptr<drivers::sensor::Sensor> sensor, const drivers::sensor::Clock& clock);
-  ~SensorRunner() override;  ///< ends the thread, interrupting a poll that waits
+  SensorRunner(std::unique_ptr<drivers::sensor::Sensor> sensor, const drivers::sensor::Clock& clock,
+               SensorThread thread = SensorThread::kOwn);
+  ~SensorRunner() override;  ///< ends the thread and waits for that, interrupting a poll that waits
 
   SensorRunner(const SensorRunner&) = delete;
   SensorRunner& operator=(const SensorRunner&) = delete;
@@ -52,7 +60,14 @@ class SensorRunner final : private drivers::sensor::SensorSink {
   /// Passes each reading that has arrived to `use`, oldest first.
   template <class Use>
   void drain(Use&& use) {
+    if (thread_kind_ == SensorThread::kOfCaller && clock_.now().mono >= next_poll_) next_poll_ = poll();
     readings_.drain(use);
+  }
+
+  /// Passes what the station has said besides the wind to `use`, oldest first.
+  template <class Use>
+  void drain_quantities(Use&& use) {
+    quantities_.drain(use);
   }
 
   /// Starts or stops keeping the messages exchanged with the device for drain_trace(). Allocates the ring at the first
@@ -64,6 +79,11 @@ class SensorRunner final : private drivers::sensor::SensorSink {
   void drain_trace(Use&& use) {
     if (trace_) trace_->drain(use);
   }
+
+  /// Ends the thread, without waiting for that.
+  void end() noexcept;
+  /// Has the thread ended? Then the destructor waits for nothing.
+  bool has_ended() const noexcept { return has_ended_.load(std::memory_order_acquire); }
 
   /// Polls the sensor at once, if it is waiting.
   void wake();
@@ -85,23 +105,31 @@ class SensorRunner final : private drivers::sensor::SensorSink {
   std::uint64_t reconnect_count() const noexcept { return reconnects_.load(std::memory_order_relaxed); }
   /// Readings dropped because the ring was full.
   std::uint64_t lost_count() const noexcept { return lost_.load(std::memory_order_relaxed); }
+  /// Further quantities of a station dropped for the same reason.
+  std::uint64_t lost_quantities_count() const noexcept { return lost_quantities_.load(std::memory_order_relaxed); }
 
  private:
   static constexpr std::size_t kRingCapacity = 1024;
+  static constexpr std::size_t kQuantitiesCapacity = 256;
   static constexpr std::size_t kTraceCapacity = 256;
 
   void run(const std::stop_token& stop);
   MonoTime poll();
   void reading(const wind::WindReading& reading) override;
-  void refused(drivers::decode::Refusal why) override;
+  void quantities(const wind::StationQuantities& quantities) override;
+  void refused(drivers::decode::Refusal why, std::uint64_t times = 1) override;
   void link(wind::LinkState state, std::string_view detail) override;
   void raw(drivers::sensor::RawDirection direction, std::span<const std::uint8_t> message) override;
 
   std::unique_ptr<drivers::sensor::Sensor> sensor_;
   const drivers::sensor::Clock& clock_;
+  const SensorThread thread_kind_;
+  MonoTime next_poll_ = MonoTime::min();  ///< by the caller
   SpscRing<wind::WindReading> readings_{kRingCapacity};
+  SpscRing<wind::StationQuantities> quantities_{kQuantitiesCapacity};
   std::array<std::atomic<std::uint64_t>, drivers::decode::kRefusalCount> refused_{};
   std::atomic<std::uint64_t> lost_{0};
+  std::atomic<std::uint64_t> lost_quantities_{0};
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> reconnects_{0};
   bool has_been_connected_ = false;  // of the sensor's thread
@@ -114,6 +142,7 @@ class SensorRunner final : private drivers::sensor::SensorSink {
   LinkReport link_;
   std::atomic<std::uint64_t> link_reports_{0};
 
+  std::atomic<bool> has_ended_{false};
   std::mutex sleep_mutex_;
   bool is_woken_ = false;
   std::condition_variable_any wake_;

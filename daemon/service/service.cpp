@@ -1,9 +1,12 @@
 #include "daemon/service/service.hpp"
 
+#include <algorithm>
 #include <csignal>
+#include <optional>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <fmt/format.h>
@@ -13,10 +16,18 @@
 #include "daemon/animation/animation.hpp"
 #include "daemon/animation/animation_loop.hpp"
 #include "daemon/animation/scene_director.hpp"
+#include "daemon/animation/scene_exchange.hpp"
 #include "daemon/recording/recorder.hpp"
 #include "daemon/sensing/player_director.hpp"
+#include "daemon/sensing/recording_folders.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/sensing/system_clock.hpp"
+#include "daemon/service/config_check.hpp"
+#include "daemon/service/hangup.hpp"
+#include "daemon/service/reload.hpp"
+#include "daemon/service/reload_report.hpp"
+#include "daemon/service/service_manager.hpp"
+#include "daemon/settings/config_file.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/stream/tcp_stream.hpp"
 #include "engine/base/count_text.hpp"
@@ -38,6 +49,21 @@ void ignore_what_need_not_end_it() {
   for (const int signal : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2}) std::signal(signal, SIG_IGN);
 }
 
+wire::RecorderStatus to_wire(const recording::RecorderStatus& status) {
+  static_assert(static_cast<int>(wire::RecorderState::kHanging) ==
+                static_cast<int>(recording::RecorderState::kHanging));
+  return {.state = static_cast<wire::RecorderState>(status.state),
+          .written = status.written,
+          .waiting = status.waiting,
+          .lost = status.lost,
+          .free_bytes = status.free_bytes,
+          .error = status.error};
+}
+
+wire::Lateness lateness_of(const animation::DurationHistogram& histogram) {
+  return {.p50_s = histogram.percentile_s(0.5), .p99_s = histogram.percentile_s(0.99), .max_s = histogram.max_s()};
+}
+
 }  // namespace
 
 class Service::Io {
@@ -49,18 +75,29 @@ class Service::Io {
         animation_(options.with_scenes ? std::make_unique<animation::Animation>(config, gusts_) : nullptr),
         director_(config, [this](const animation::SceneCue& cue) { return loop_ && loop_->cue(cue); }),
         stream_(io_, config.stream.listen, stream_settings(config)),
-        recorder_(options.record ? make_recorder(config, *options.record) : nullptr),
         hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0),
         shaper_(config, gusts_),
-        players_(config.stream.control, hub_.players()) {
+        players_(config.stream.control, hub_.players()),
+        folders_(config, options.record),
+        control_(config.stream.control),
+        reload_(config, reload_parts(config)) {
     if (animation_) {
       shaper_.keep_site_file(hub_.site());
       loop_ = std::make_unique<animation::AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
+      scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);
       frame_ready_.assign(dup(loop_->frame_ready_fd()));
+    }
+    if (options.record) {
+      recorder_ = make_recorder(config, *options.record);
+      hub_.listen_to_quantities([this](std::size_t sensor, const wind::StationQuantities& quantities) {
+        recorder_->push(sensor, quantities);
+      });
     }
   }
 
   void run() {
+    // Not before: during the set-up, which may wait for a disk or a network, these signals end the program at once.
+    for (const int signal : {SIGINT, SIGTERM}) signals_.add(signal);
     ignore_what_need_not_end_it();
     spdlog::info("listening on {}", stream_.local_endpoint());
     if (recorder_) spdlog::info("recording to {}", options_.record->string());
@@ -69,6 +106,7 @@ class Service::Io {
     signals_.async_wait([this](const boost::system::error_code& error, int signal) {
       if (!error) end(signal == SIGINT ? "interrupted" : "terminated");
     });
+    wait_for_hangup();
     if (options_.duration_s) {
       end_timer_.expires_after(from_seconds(*options_.duration_s));
       end_timer_.async_wait([this](const boost::system::error_code& error) {
@@ -81,6 +119,9 @@ class Service::Io {
     if (loop_) {
       wait_for_frame();
       loop_->start();
+    } else {
+      is_up_ = true;
+      say_ready();
     }
 
     io_.run();
@@ -89,33 +130,120 @@ class Service::Io {
     hub_.advance();
     if (recorder_) recorder_->close();
     log_summary();
+    if (failure_) throw std::runtime_error(*failure_);
   }
 
  private:
-  /// Throws where the scenes exceed the stream's limits: clients would refuse them.
-  static void refuse_what_no_client_takes(const wire::Scenes& scenes) {
-    const wire::Bytes message = wire::encode(scenes);
-    if (wire::decode(std::span(message).subspan(wire::kSizePrefixBytes))) return;
-    throw settings::ConfigError(
-        fmt::format("[[scene]]: the scenes are larger than the stream allows; allowed in total: {} scenes, {} strands, "
-                    "joints of cloth and points of surfaces",
-                    wire::kMaxScenes, wire::kMaxStrands));
-  }
-
   stream::TcpStreamSettings stream_settings(const settings::Config& config) {
     stream::TcpStreamSettings settings;
     settings.hello.software = with_version("yuragi");
     settings.hello.tick_rate_hz = rate_hz_;
     if (animation_) {
       settings.scenes = animation_->describe();
-      refuse_what_no_client_takes(settings.scenes);
+      animation::checked_scenes_message(settings.scenes);
     }
     settings.on_control = [this](const wire::Control& control, bool is_local) { return handle(control, is_local); };
-    settings.max_clients = config.stream.max_clients;
+    settings.on_reload = [this](const wire::ReloadCommand& command, bool is_local, const auto& reply) {
+      request_reload(command, is_local, reply);
+    };
+    settings.raw_refusal = [this](bool is_local) {
+      return daemon::settings::control_refusal(control_, is_local, "raw messages cannot be watched");
+    };
+    settings.admission = admission_of(config.stream);
     return settings;
   }
 
+  static stream::AdmissionLimits admission_of(const settings::StreamConfig& stream) {
+    return {.max_clients = stream.max_clients, .max_clients_per_address = stream.max_clients_per_address};
+  }
+
+  // ---- reading the configuration again ----
+
+  ReloadParts reload_parts(const settings::Config& config) {
+    ReloadParts parts;
+    parts.post = [this](std::function<void()> work) { asio::post(io_, std::move(work)); };
+    if (options_.read_config) {
+      parts.file = settings::absolute_path(options_.config_file);
+      parts.read = [read = options_.read_config, running = std::make_shared<const settings::Config>(config)] {
+        settings::Config wanted = read();
+        check_restart(*running, wanted);
+        return wanted;
+      };
+    }
+    parts.apply = [this](const settings::ReloadPlan& plan) { apply(plan); };
+    if (options_.with_scenes) {
+      parts.make_scenes = [this](const settings::Config& next, const auto&) -> ReloadParts::Adopt {
+        auto change = std::make_shared<std::unique_ptr<animation::SceneChange>>(
+            animation::make_scene_change(*scenes_->present(), next));
+        return [this, change] {
+          hub_.set_reach((*change)->reach_m);
+          next_scenes_ = std::move(*change);
+          exchange_scenes();
+        };
+      };
+      parts.is_settling = [this] { return next_scenes_ || scenes_->is_changing(); };
+    }
+    return parts;
+  }
+
+  void wait_for_hangup() {
+    hangups_.signals.async_wait([this](const boost::system::error_code& error, int) {
+      if (error) return;
+      if (terminal_.is_closed()) return end("its terminal was closed");
+      spdlog::info("reload: asked by SIGHUP");
+      reload({}, {});
+      wait_for_hangup();
+    });
+  }
+
+  void request_reload(const wire::ReloadCommand& command, bool is_local,
+                      const std::function<void(const wire::ControlReply&)>& reply) {
+    const auto answer = [is_local, reply](const wire::ReloadReport& report) {
+      const wire::ReloadReport told = is_local ? report : without_folders(report);
+      reply({.done = told.outcome == wire::ReloadOutcome::kDone,
+             .message = summary_of(told),
+             .scenes = {},
+             .players = {},
+             .reload = told});
+    };
+    if (auto why = settings::control_refusal(control_, is_local, "the configuration cannot be read again")) {
+      return answer({.outcome = wire::ReloadOutcome::kNotAllowed, .mistakes = {std::move(*why)}});
+    }
+    reload(command.file, answer);
+  }
+
+  void reload(const std::string& expected_file, Reload::Reply reply) {
+    reload_.request(expected_file, std::move(reply));
+    if (reload_.is_under_way()) manager_.say_reloading();
+  }
+
+  /// Hands the scenes that wait to the animation, unless too many cues do; then with the next frame. What they have
+  /// replaced is freed once it has faded out.
+  void exchange_scenes() {
+    if (next_scenes_) scenes_->begin(next_scenes_);
+    if (scenes_->take_finished()) reload_.go_on();
+  }
+
+  /// All at once, between two steps of the wind.
+  void apply(const settings::ReloadPlan& plan) {
+    const settings::Config& next = plan.next;
+    hub_.change(next);
+    if (plan.changes_shaping) shaper_.change(next.shaping);
+    control_ = next.stream.control;
+    director_.allow(control_);
+    players_.allow(control_);
+    stream_.set_admission(admission_of(next.stream));
+    if (options_.set_log_level) options_.set_log_level(next.log.level);
+    if (recorder_) recorder_->begin_session(recording_info(next, clock_.now()), next.recording);
+  }
+
   wire::ControlReply handle(const wire::Control& control, bool is_local) {
+    wire::ControlReply reply = carry_out(control, is_local);
+    if (!is_local) folders_.remove_from(reply);
+    return reply;
+  }
+
+  wire::ControlReply carry_out(const wire::Control& control, bool is_local) {
     if (control.player) return players_.handle(*control.player, is_local);
     if (animation_) return director_.handle(control, is_local);
     return {.done = false, .message = "this daemon has no scenes", .scenes = {}};
@@ -123,19 +251,21 @@ class Service::Io {
 
   std::unique_ptr<recording::Recorder> make_recorder(const settings::Config& config,
                                                      const std::filesystem::path& file) const;
+  static recording::RecordingInfo recording_info(const settings::Config& config, Instant started);
 
   sensing::SensorHub::Listener listener() {
-    if (!recorder_) return {};
+    if (!options_.record) return {};
     return [this](std::size_t sensor, const wind::WindReading& reading) { recorder_->push(sensor, reading); };
   }
 
   /// Takes readings and advances the wind, at the rate of the animation.
   void step_wind() {
     wind::ground::DrivingWind wind{hub_.advance(), hub_.ground(), hub_.stroke()};
-    shaper_.shape(wind, clock_.now().utc, hub_.is_any_live());
+    shaper_.shape(wind, time_for_the_hours(), hub_.is_any_live());
     wind_.publish(wind);
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
     hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
+    manager_.went_round(clock_.now().mono, loop_ ? loop_->counters().ticks.load(std::memory_order_relaxed) : 0);
     if (options_.end_with_recordings && hub_.is_finished()) return end("the recording has ended");
 
     // Steps are at fixed times; those missed while the machine was halted are skipped.
@@ -143,19 +273,37 @@ class Service::Io {
     next_wind_ = std::max(next_wind_ + period, asio::steady_timer::clock_type::now() - period);
     wind_timer_.expires_at(next_wind_);
     wind_timer_.async_wait([this](const boost::system::error_code& error) {
-      if (!error) step_wind();
+      if (error) return;
+      io_lateness_.add(asio::steady_timer::clock_type::now() - next_wind_);
+      step_wind();
     });
+  }
+
+  UtcTime time_for_the_hours() const {
+    if (!options_.recorded_from) return clock_.now().utc;
+    return players_.recorded_clock().value_or(*options_.recorded_from);
   }
 
   void wait_for_frame() {
     frame_ready_.async_read_some(asio::buffer(&frames_made_, sizeof frames_made_),
                                  [this](const boost::system::error_code& error, std::size_t) {
                                    if (error) return;
-                                   if (const wire::Bytes* frame = loop_->take_frame()) {
-                                     stream_.publish(std::make_shared<const wire::Bytes>(*frame));
+                                   if (const animation::PublishedFrame* frame = loop_->take_frame()) {
+                                     if (auto scenes = scenes_->new_scenes(frame->generation))
+                                       stream_.publish_scenes(std::move(scenes));
+                                     stream_.publish(std::make_shared<const wire::Bytes>(frame->bytes));
+                                     exchange_scenes();
+                                     is_up_ = true;
+                                     say_ready();
                                    }
+                                   if (const auto why = loop_->failure()) return end_with_failure(*why);
                                    wait_for_frame();
                                  });
+  }
+
+  /// At first, and again after each reload.
+  void say_ready() {
+    if (is_up_ && !reload_.is_under_way()) manager_.say_ready();
   }
 
   void send_status() {
@@ -165,7 +313,22 @@ class Service::Io {
     status.shaping = shaper_.status();
     status.late_ticks = loop_ ? loop_->counters().skipped_ticks.load(std::memory_order_relaxed) : 0;
     status.clients = static_cast<std::uint32_t>(stream_.client_count());
-    stream_.publish_sensors(std::make_shared<const wire::Bytes>(wire::encode(status)));
+    const stream::ClientCounts& counts = stream_.counts();
+    status.refused_clients = counts.refused;
+    status.stuck_clients = counts.stuck;
+    status.idle_clients = counts.idle;
+    status.io_lateness = lateness_of(io_lateness_);
+    if (loop_) status.tick_lateness = lateness_of(loop_->counters().lateness);
+    if (recorder_) status.recorder = to_wire(recorder_->status());
+    manager_.say_status(status);
+    say_ready();
+    const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
+    stream::SharedBytes elsewhere;
+    if (stream_.has_remote_clients()) {
+      folders_.remove_from(status);
+      elsewhere = std::make_shared<const wire::Bytes>(wire::encode(status));
+    }
+    stream_.publish_sensors(here, elsewhere);
 
     status_timer_.expires_after(kStatusInterval);
     status_timer_.async_wait([this](const boost::system::error_code& error) {
@@ -175,11 +338,20 @@ class Service::Io {
 
   void log_summary() const;
 
+  /// The scenes stand still for good: whoever started the daemon starts it again.
+  void end_with_failure(const std::string& why) {
+    failure_ = "the animation has failed (" + why + ")";
+    spdlog::critical("{}: an error of this program, which is ended to be started again", *failure_);
+    end("the animation has failed");
+  }
+
   void end(const char* why) {
     spdlog::info("ending: {}", why);
+    manager_.say_stopping(why);
     if (loop_) loop_->stop();
     stream_.close();
     signals_.cancel();
+    hangups_.signals.cancel();
     end_timer_.cancel();
     wind_timer_.cancel();
     status_timer_.cancel();
@@ -190,37 +362,56 @@ class Service::Io {
   ServiceOptions options_;
   double rate_hz_;
   sensing::SystemClock clock_;
+  const Instant started_ = clock_.now();
   asio::io_context io_{1};
-  asio::signal_set signals_{io_, SIGINT, SIGTERM, SIGHUP};
+  asio::signal_set signals_{io_};
+  Hangups hangups_{io_};
+  Terminal terminal_;
   asio::steady_timer end_timer_{io_}, wind_timer_{io_}, status_timer_{io_};
   asio::steady_timer::time_point next_wind_;
+  animation::DurationHistogram io_lateness_;  ///< of each step of the wind
   asio::posix::stream_descriptor frame_ready_{io_};
   std::uint64_t frames_made_ = 0;
+  std::optional<std::string> failure_;  ///< why it ends although nobody asked it to
 
-  // In this order, so that a second daemon fails at the address in use before it touches the recording or a sensor.
+  // In this order, so that a second daemon fails at the address in use before it touches a sensor. The recording is
+  // opened last, once nothing else can fail: a start that fails writes nothing into it.
   std::shared_ptr<const wind::turbulence::GustNoise> gusts_;
   std::unique_ptr<animation::Animation> animation_;
   animation::SceneDirector director_;
   stream::TcpStream stream_;
-  std::unique_ptr<recording::Recorder> recorder_;
   sensing::SensorHub hub_;
   shaping::WindShaper shaper_;
   sensing::PlayerDirector players_;
+  sensing::RecordingFolders folders_;
   Latest<wind::ground::DrivingWind> wind_;
   std::unique_ptr<animation::AnimationLoop> loop_;
+  std::unique_ptr<animation::SceneExchange> scenes_;
+  std::unique_ptr<animation::SceneChange> next_scenes_;  ///< of a reload, not yet the animation's
+  std::unique_ptr<recording::Recorder> recorder_;
+  ServiceManager manager_{options_.with_scenes};
+  bool is_up_ = false;  ///< it has begun, with its first frame where it has scenes
+
+  settings::ControlPermission control_;
+  Reload reload_;  ///< last: it uses all of the above
 };
 
 std::unique_ptr<recording::Recorder> Service::Io::make_recorder(const settings::Config& config,
                                                                 const std::filesystem::path& file) const {
-  recording::RecordingInfo info{.started = clock_.now(),
+  return std::make_unique<recording::Recorder>(
+      file, recording_info(config, started_), [](std::string_view news) { spdlog::warn("recording: {}", news); },
+      recording::RecorderLimits{}, config.recording);
+}
+
+recording::RecordingInfo Service::Io::recording_info(const settings::Config& config, Instant started) {
+  recording::RecordingInfo info{.started = started,
                                 .software = with_version("yuragi"),
-                                .configuration = settings::to_toml(config),
+                                .configuration = settings::to_recorded_toml(config),
                                 .sensors = {}};
   for (const settings::SensorConfig& sensor : config.sensors) {
     info.sensors.push_back({sensor.name, std::string(sensor.driver->name), settings::to_toml(sensor.values)});
   }
-  return std::make_unique<recording::Recorder>(file, std::move(info),
-                                               [](std::string_view news) { spdlog::warn("recording: {}", news); });
+  return info;
 }
 
 void Service::Io::log_summary() const {

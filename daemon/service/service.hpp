@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
 #include "daemon/settings/config.hpp"
+#include "engine/base/time.hpp"
 
 namespace yuragi::daemon::service {
 
@@ -13,6 +15,15 @@ struct ServiceOptions {
   std::optional<double> duration_s;             ///< end after this long
   bool end_with_recordings = false;             ///< end when every sensor is a recording that has ended
   bool with_scenes = true;                      ///< false: sensors, recording and their stream only
+  /// Opening hours by the clock of the recordings that play, from this moment on; nothing: by this machine's clock.
+  std::optional<UtcTime> recorded_from{};
+
+  /// The file of the configuration, and how it is read again on SIGHUP or for a client: on another thread, which may
+  /// outlive the service and everything else; throws ConfigError. Empty: there is no file.
+  std::filesystem::path config_file = {};
+  std::function<settings::Config()> read_config = {};
+  /// Called with [log] level when it has changed.
+  std::function<void(settings::LogLevel)> set_log_level = {};
 };
 
 /// The daemon: joins sensors, wind, animation, stream and recording. The data flow:
@@ -24,11 +35,15 @@ struct ServiceOptions {
 /// caller of run().
 class Service {
  public:
-  /// Opens the sensors, the listening socket and the recording. Throws ConfigError or FailureError.
+  /// Opens the listening socket, the sensors and, when all else stands, the recording: a start that fails leaves it as
+  /// it was. Throws ConfigError or FailureError. SIGINT and SIGTERM keep their default action until run(); a SIGHUP
+  /// that was held back (hold_back_hangups()) waits for it.
   Service(const settings::Config& config, const ServiceOptions& options);
   ~Service();
 
-  /// Runs until SIGINT or SIGTERM, or until the options end it. Returns in under a second after that.
+  /// Runs until SIGINT, SIGTERM, a terminal that is closed, or until the options end it; SIGHUP reads the configuration
+  /// again (Reload). Returns in under a second after that. Throws std::runtime_error, with the recording closed, where
+  /// the animation has failed by an error of this program.
   void run();
 
  private:

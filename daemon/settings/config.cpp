@@ -1,12 +1,17 @@
 #include "daemon/settings/config.hpp"
 
-#include <fstream>
-#include <iterator>
+#include <cerrno>
+#include <cstring>
+#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
 
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
 #include <toml++/toml.h>
+#include <unistd.h>
 
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
@@ -60,6 +65,8 @@ class ConfigReader {
     config.seed = static_cast<std::uint64_t>(general.integer("seed"));
     config.by_name.stream = read_table(root, "", "stream", stream_parameters());
     config.stream = typed(root, "", "stream", stream_config_of(config.by_name.stream));
+    config.by_name.recording = read_table(root, "", "recording", recording_parameters());
+    config.recording = recording_config_of(config.by_name.recording);
     config.by_name.animation = read_table(root, "", "animation", animation_parameters());
     config.animation = animation_config_of(config.by_name.animation);
     config.by_name.wind = read_table(root, "", "wind", wind_parameters());
@@ -67,6 +74,8 @@ class ConfigReader {
     if (config.wind.fallback) config.wind.fallback->origin = place(root["wind"]["fallback_recording"].node()->source());
     config.by_name.shaping = read_table(root, "", "shaping", shaping_parameters());
     config.shaping = typed(root, "", "shaping", shaping_config_of(config.by_name.shaping, config.wind));
+    config.by_name.log = read_table(root, "", "log", log_parameters());
+    config.log = log_config_of(config.by_name.log);
 
     for_each_entry(root, "sensor", "driver", kMostSensors, drivers::sensor::driver_table(),
                    [&](const std::string& name, const drivers::sensor::DriverDescription& driver,
@@ -122,7 +131,8 @@ class ConfigReader {
       for (const ConfigTable& table : config_tables()) known = known || table.name == key.str();
       if (!known) {
         mistake(key.source(), std::string(key.str()),
-                "is not known here; allowed: seed, [stream], [animation], [wind], [shaping], [[sensor]], [[scene]]");
+                "is not known here; allowed: seed, [stream], [recording], [animation], [wind], [shaping], [log], "
+                "[[sensor]], [[scene]]");
       } else if (is_array && !(node.is_array_of_tables() || (node.is_array() && node.as_array()->empty()))) {
         mistake(key.source(), std::string(key.str()),
                 "is one table; write [[" + std::string(key.str()) + "]] above it");
@@ -301,7 +311,7 @@ SceneConfig grass_scene() {
 toml::table to_table(const ParameterValues& values) {
   toml::table table;
   for (const auto& [name, value] : values.all()) {
-    std::visit([&table, &key = name](const auto& held) { table.insert(key, held); }, value);
+    std::visit([&table, &key = name](const auto& held) { table.insert(key, held); }, printable(value));
   }
   return table;
 }
@@ -342,32 +352,97 @@ Config parse_config(std::string_view toml_text, const std::string& source_name) 
 }
 
 std::string read_config_text(const std::filesystem::path& file) {
-  std::ifstream input(file, std::ios::binary);
-  if (!input.is_open() || std::filesystem::is_directory(file)) {
-    throw ConfigError(file.string() + ":1:1: file: cannot be read; check its path and permissions");
+  const auto refuse = [&file](const std::string& why) { return ConfigError(file.string() + ":1:1: file: " + why); };
+  // Without waiting for somebody who writes into a pipe.
+  const int descriptor = open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (descriptor < 0) throw refuse("cannot be read; check its path and permissions");
+  const std::unique_ptr<const int, void (*)(const int*)> closed(&descriptor, [](const int* one) { close(*one); });
+
+  struct stat status {};
+  if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
+    throw refuse("cannot be read; it is no regular file, but a folder, a pipe or a device");
   }
-  return {std::istreambuf_iterator<char>(input), {}};
+  std::string text(kLargestConfig_bytes + 1, '\0');
+  std::size_t length = 0;
+  while (length < text.size()) {
+    const ssize_t count = read(descriptor, text.data() + length, text.size() - length);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw refuse(std::string("cannot be read: ") + std::strerror(errno));
+    if (count == 0) break;
+    length += static_cast<std::size_t>(count);
+  }
+  if (length > kLargestConfig_bytes) throw refuse("is too large; allowed: up to 1 MB");
+  text.resize(length);
+  return text;
 }
 
 Config load_config(const std::filesystem::path& file) {
   return parse_config(read_config_text(file), file.string());
 }
 
+namespace {
+
+ConfigError cannot_open(const SensorConfig& sensor, const std::exception& why) {
+  return ConfigError((sensor.origin.empty() ? sensor.name : sensor.origin) + ": sensor: " + why.what());
+}
+
+}  // namespace
+
 std::unique_ptr<drivers::sensor::Sensor> open_sensor(const SensorConfig& sensor) {
   try {
-    return sensor.driver->open(sensor.values);
+    return sensor.stand_in ? sensor.stand_in->open() : sensor.driver->open(sensor.values);
   } catch (const std::exception& error) {
-    throw ConfigError((sensor.origin.empty() ? sensor.name : sensor.origin) + ": sensor: " + error.what());
+    throw cannot_open(sensor, error);
   }
+}
+
+void check_sensor(const SensorConfig& sensor) {
+  try {
+    sensor.driver->open(sensor.values);
+  } catch (const drivers::sensor::LineInUse&) {
+    return;  // by what runs until the restart
+  } catch (const std::exception& error) {
+    throw cannot_open(sensor, error);
+  }
+}
+
+void refuse_shared_devices(std::span<const SensorConfig> sensors) {
+  struct Claim {
+    const SensorConfig* sensor;
+    bool is_shared;
+  };
+  std::map<std::string, Claim> claims;
+  for (const SensorConfig& sensor : sensors) {
+    if (sensor.driver->claims == nullptr) continue;
+    for (const drivers::sensor::DeviceClaim& claim : sensor.driver->claims(sensor.values)) {
+      const auto [first, is_new] = claims.try_emplace(claim.device, Claim{&sensor, claim.is_shared});
+      const SensorConfig& other = *first->second.sensor;
+      const bool can_share = claim.is_shared && first->second.is_shared && other.driver == sensor.driver;
+      if (is_new || &other == &sensor || can_share) continue;
+      throw ConfigError(fmt::format("{}: sensor: \"{}\" and \"{}\" need the same {}, which only one can have",
+                                    sensor.origin.empty() ? sensor.name : sensor.origin, sensor.name, other.name,
+                                    claim.device));
+    }
+  }
+}
+
+std::vector<std::unique_ptr<drivers::sensor::Sensor>> open_sensors(std::span<const SensorConfig> sensors) {
+  std::vector<std::unique_ptr<drivers::sensor::Sensor>> opened;
+  opened.reserve(sensors.size());
+  for (const SensorConfig& sensor : sensors) opened.push_back(open_sensor(sensor));
+  refuse_shared_devices(sensors);
+  return opened;
 }
 
 std::string to_toml(const Config& config) {
   toml::table root;
   root.insert("seed", static_cast<std::int64_t>(config.seed));
   root.insert("stream", to_table(config.by_name.stream));
+  root.insert("recording", to_table(config.by_name.recording));
   root.insert("animation", to_table(config.by_name.animation));
   root.insert("wind", to_table(config.by_name.wind));
   root.insert("shaping", to_table(config.by_name.shaping));
+  root.insert("log", to_table(config.by_name.log));
 
   const auto append = [&root](const char* list, const char* kind_key, std::string_view kind, const std::string& name,
                               const ParameterValues& values) {
@@ -388,6 +463,11 @@ std::string to_toml(const Config& config) {
   std::ostringstream out;
   out << root << '\n';
   return out.str();
+}
+
+std::string to_recorded_toml(Config config) {
+  if (!config.shaping.hours.is_always_open()) config.by_name.shaping.set("zone", config.shaping.hours.zone_name());
+  return to_toml(config);
 }
 
 std::string to_toml(const ParameterValues& values) {

@@ -12,6 +12,8 @@
 
 #include "daemon/settings/animation_config.hpp"
 #include "daemon/settings/config_tables.hpp"
+#include "daemon/settings/log_config.hpp"
+#include "daemon/settings/recording_config.hpp"
 #include "daemon/settings/scene_config.hpp"
 #include "daemon/settings/sensor_config.hpp"
 #include "daemon/settings/shaping_config.hpp"
@@ -31,15 +33,17 @@ inline constexpr std::size_t kMostScenes = 64;
 struct Config {
   std::uint64_t seed = 1;
   StreamConfig stream;
+  RecordingConfig recording;
   AnimationConfig animation;
   WindConfig wind;
   ShapingConfig shaping;
+  LogConfig log;
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
 
-  /// The values of the tables by key, from which the members above were made. For to_toml() only.
+  /// The values of the tables by key, from which the members above were made. For to_toml() and plan_reload() only.
   struct ByName {
-    ParameterValues stream, animation, wind, shaping;
+    ParameterValues stream, recording, animation, wind, shaping, log;
   } by_name;
 };
 
@@ -63,7 +67,11 @@ Config listening_at(Config config, const std::string& address);
 /// Reads a configuration. `source_name` is the file name in error messages. Throws ConfigError with every error found.
 Config parse_config(std::string_view toml_text, const std::string& source_name);
 
-/// The text of a file. Throws ConfigError where it cannot be read.
+/// The largest configuration that is read, in bytes: many times what any installation needs.
+inline constexpr std::size_t kLargestConfig_bytes = 1 << 20;
+
+/// The text of a file. Throws ConfigError where it cannot be read, is no regular file (a folder, a pipe), or is larger
+/// than kLargestConfig_bytes. Waits for nothing but the disk.
 std::string read_config_text(const std::filesystem::path& file);
 
 /// Reads a configuration file. Throws ConfigError, also where the file cannot be read.
@@ -72,13 +80,28 @@ Config load_config(const std::filesystem::path& file);
 /// Makes the sensor, without touching its device. Throws ConfigError where its values contradict each other.
 std::unique_ptr<drivers::sensor::Sensor> open_sensor(const SensorConfig& sensor);
 
+/// Makes all sensors, so that it also throws where two of them cannot be used together (different settings for one
+/// serial line, two that need the same device for themselves).
+std::vector<std::unique_ptr<drivers::sensor::Sensor>> open_sensors(std::span<const SensorConfig> sensors);
+
+/// Makes a sensor and forgets it, without touching its device. Throws ConfigError where its values contradict each
+/// other; not where they contradict those of a sensor that runs on the same line.
+void check_sensor(const SensorConfig& sensor);
+
+/// Throws ConfigError where two sensors need the same device for themselves (DriverDescription::claims).
+void refuse_shared_devices(std::span<const SensorConfig> sensors);
+
 /// The configuration as TOML with every value written out, except keys without a default that are not set. Stored in
-/// recordings and printed by `check-config`. Written from `seed`, `by_name` and the tables of sensors and scenes: a
-/// change of other members has no effect on it.
+/// recordings and printed by `check-config`. In place of a secret stands Secret::kWithheld. Written from `seed`,
+/// `by_name` and the tables of sensors and scenes: a change of other members has no effect on it.
 std::string to_toml(const Config& config);
 std::string to_toml(const ParameterValues& values);
 
-/// The reverse for one table, such as a recording stores for each sensor. Fails with the first error.
+/// The same for a recording: the opening hours name their time zone, also where that is the machine's own.
+std::string to_recorded_toml(Config config);
+
+/// The reverse for one table, such as a recording stores for each sensor. Fails with the first error. A secret in it is
+/// withheld (Secret::is_withheld).
 Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::span<const Parameter> parameters);
 
 }  // namespace yuragi::daemon::settings

@@ -58,6 +58,12 @@ Result<void, Failure> prove(const std::filesystem::path& file, const Config& bef
 
 }  // namespace
 
+std::string absolute_path(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(file, error);
+  return (error ? file : absolute).lexically_normal().string();
+}
+
 Result<std::filesystem::path, Failure> replace_config(const std::filesystem::path& file, std::string_view old_text,
                                                       std::string_view new_text) {
   std::error_code error;

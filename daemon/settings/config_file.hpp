@@ -8,6 +8,10 @@
 
 namespace yuragi::daemon::settings {
 
+/// The absolute path of a file without "." and "..", by which two programs on a machine know that they mean the same
+/// one. Links are not followed: what they lead to may change.
+std::string absolute_path(const std::filesystem::path& file);
+
 /// Replaces the text of a configuration file, as a whole or not at all. The new text is checked first: it must parse,
 /// and every sensor that could be constructed from the old text can be constructed from it. The old text is kept as
 /// FILE.bak. Permissions stay, and a symbolic link keeps pointing at its file.

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "daemon/settings/control_permission.hpp"
+#include "daemon/settings/log_config.hpp"
+#include "daemon/settings/recording_config.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 #include "engine/wind/wind_reading.hpp"
@@ -30,13 +32,63 @@ const std::array kStreamParameters = {
               .default_value = std::int64_t{32},
               .min = 1,
               .max = 1000,
-              .help = "simultaneous connections; more are refused"},
+              .help = "simultaneous connections; more are refused. The last 4 (of fewer than 8: half of them) are for "
+                      "clients on this machine"},
+    Parameter{.name = "max_clients_per_address",
+              .unit = "",
+              .default_value = std::int64_t{8},
+              .min = 1,
+              .max = 1000,
+              .help = "simultaneous connections from each other machine; this machine has no such limit"},
     Parameter{.name = "control",
               .unit = "",
               .default_value = std::string("loopback"),
-              .help = "clients that may control scenes and recordings (yuragi scene, yuragi player): on this machine, "
-                      "anywhere, or nobody",
+              .help =
+                  "clients that may control scenes and recordings (yuragi scene, yuragi player), have this file read "
+                  "again (yuragi reload), and see raw messages (yuragi sensors watch --raw): on this machine, "
+                  "anywhere, or nobody",
               .choices = kControlPermissionNames},
+};
+
+const std::array kRecordingParameters = {
+    Parameter{
+        .name = "file",
+        .unit = "",
+        .default_value = std::string(),
+        .help = "record every reading into this file (.windlog); empty: record nothing; --record FILE overrides it"},
+    Parameter{.name = "rotate",
+              .unit = "",
+              .default_value = std::string("never"),
+              .help =
+                  "begin a new file: never, or each day (UTC); completed files lie beside it, each with the moment of "
+                  "its beginning in its name, and all of them are read as one recording",
+              .choices = kRotationNames},
+    Parameter{.name = "max_file_size",
+              .unit = "MB",
+              .default_value = 0.0,
+              .min = 0.0,
+              .max = 1e6,
+              .help = "begin a new file when this one is larger; 0: never"},
+    Parameter{.name = "keep_days",
+              .unit = "days",
+              .default_value = std::int64_t{0},
+              .min = 0,
+              .max = 36500,
+              .help = "delete completed files that ended longer ago; 0: keep them"},
+    Parameter{.name = "max_size",
+              .unit = "MB",
+              .default_value = 0.0,
+              .min = 0.0,
+              .max = 1e9,
+              .help = "delete the oldest completed files while all files together are larger; 0: keep them"},
+    Parameter{.name = "min_free",
+              .unit = "MB",
+              .default_value = 200.0,
+              .min = 0.0,
+              .max = 1e9,
+              .help =
+                  "space to leave free on the disk: below it the oldest completed files are deleted, and where that is "
+                  "not enough nothing is recorded"},
 };
 
 const std::array kAnimationParameters = {
@@ -124,6 +176,15 @@ const std::array kWindParameters = {
               .min = 1.0,
               .max = 86400.0,
               .help = "for how long every sensor must have been silent before it is played"},
+};
+
+const std::array kLogParameters = {
+    Parameter{.name = "level",
+              .unit = "",
+              .default_value = std::string("info"),
+              .help = "lines of the log below this are not written; debug also has every attempt to connect to a "
+                      "sensor, and --verbose sets it",
+              .choices = kLogLevelNames},
 };
 
 const std::array kCalibrationParameters = {
@@ -261,10 +322,12 @@ const std::array kCommonSceneParameters = {
 const std::array kConfigTables = {
     ConfigTable{"", "at the top of the file", kGeneralParameters},
     ConfigTable{"stream", "where viewers connect", kStreamParameters},
+    ConfigTable{"recording", "what is recorded, and how much of it is kept", kRecordingParameters},
     ConfigTable{"animation", "the pace", kAnimationParameters},
     ConfigTable{"wind", "the wind without a live sensor, and the transition from one wind to another", kWindParameters},
     ConfigTable{"shaping", "days without wind, storms, opening hours: from the real wind to the scenes'",
                 shaping_parameters()},
+    ConfigTable{"log", "what the daemon writes to standard error", kLogParameters},
 };
 
 }  // namespace
@@ -281,12 +344,20 @@ std::span<const Parameter> stream_parameters() {
   return kStreamParameters;
 }
 
+std::span<const Parameter> recording_parameters() {
+  return kRecordingParameters;
+}
+
 std::span<const Parameter> animation_parameters() {
   return kAnimationParameters;
 }
 
 std::span<const Parameter> wind_parameters() {
   return kWindParameters;
+}
+
+std::span<const Parameter> log_parameters() {
+  return kLogParameters;
 }
 
 std::span<const Parameter> calibration_parameters() {

@@ -19,8 +19,10 @@ std::span<const ConfigTable> config_tables();
 
 std::span<const Parameter> general_parameters();  ///< at the top of the file
 std::span<const Parameter> stream_parameters();
+std::span<const Parameter> recording_parameters();
 std::span<const Parameter> animation_parameters();
 std::span<const Parameter> wind_parameters();
+std::span<const Parameter> log_parameters();
 
 /// The keys of [sensor.calibration] and of [sensor.judge].
 std::span<const Parameter> calibration_parameters();

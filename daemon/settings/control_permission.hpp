@@ -9,7 +9,7 @@
 
 namespace yuragi::daemon::settings {
 
-/// Where clients may control scenes and recordings from: [stream] control.
+/// Where clients may control scenes and recordings, and see raw messages, from: [stream] control.
 enum class ControlPermission : std::uint8_t { kLoopback, kAnywhere, kNobody };
 inline constexpr std::array<std::string_view, 3> kControlPermissionNames = {"loopback", "anywhere", "nobody"};
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -26,6 +29,12 @@ struct SensorTables {
   ParameterValues blend;        ///< sensor_blend_parameters()
 };
 
+/// What plays a sensor's part where a recording is replayed as it was.
+struct StandIn {
+  std::filesystem::path recording;
+  std::function<std::unique_ptr<drivers::sensor::Sensor>()> open;
+};
+
 /// A sensor of an installation, as parse_config() or default_sensor() makes it.
 struct SensorConfig {
   std::string name;
@@ -40,6 +49,8 @@ struct SensorConfig {
   wind::blend::BlendSourceSettings blend{};  ///< [sensor.blend]; length_m from the height, 0 if that is unknown
 
   SensorTables by_name{};  ///< from which the members above were made
+
+  std::optional<StandIn> stand_in{};  ///< in place of its device, which is not opened; none: the device
 };
 
 /// The integral length of the gusts at a sensor before it is fitted to its readings, m: [wind] default_length where it

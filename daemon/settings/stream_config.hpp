@@ -13,7 +13,9 @@ namespace yuragi::daemon::settings {
 struct StreamConfig {
   std::string listen;  ///< HOST:PORT, see parse_address()
   std::size_t max_clients = 0;
-  ControlPermission control = ControlPermission::kNobody;  ///< who may switch scenes and control recordings
+  std::size_t max_clients_per_address = 0;  ///< of each other machine
+  ControlPermission control =
+      ControlPermission::kNobody;  ///< who may switch scenes, control recordings, see raw messages
 };
 
 /// From the values of stream_parameters(). An error names the key.

@@ -70,6 +70,11 @@ void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> 
   }
 }
 
+void WindShaper::change(const settings::ShapingConfig& shaping) {
+  shaping_.change(shaping.settings);
+  hours_ = shaping.hours;
+}
+
 void WindShaper::shape(wind::ground::DrivingWind& wind, UtcTime utc, bool is_any_live) {
   const MonoTime now = wind.state.time;
   const bool is_time_to_look = !has_looked_ || now - looked_ >= kLookAtHoursEvery;
@@ -167,7 +172,8 @@ wire::Shaping WindShaper::status() const {
           .site_strong_m_s = report.strong_m_s,
           .site_known_s = report.known_s,
           .text = shaping_text(report, shaping_.settings(), opening()),
-          .gusts = report.gusts};
+          .gusts = report.gusts,
+          .openness = std::clamp(report.openness, 0.0, 1.0)};
 }
 
 }  // namespace yuragi::daemon::shaping

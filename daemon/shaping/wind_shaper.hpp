@@ -28,6 +28,10 @@ class WindShaper {
   /// site. `gusts`: the spectrum that is kept in the file too; null: not kept.
   void keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts = {});
 
+  /// Shapes by other settings and opening hours from now on: what was learnt of the site stays, and nothing jumps
+  /// (WindShaping::change). The site file stays as it was.
+  void change(const settings::ShapingConfig& shaping);
+
   /// Changes the real wind into the one that moves the scenes. `utc`: for the opening hours alone; it may jump.
   /// `is_any_live`: a sensor is live. Otherwise (the fall-back recording plays) nothing is learnt of the site.
   void shape(wind::ground::DrivingWind& wind, UtcTime utc, bool is_any_live);

@@ -2,61 +2,88 @@
 
 #include <utility>
 
+#include <fmt/core.h>
+
 namespace yuragi::daemon::stream {
 
-std::string_view name_of(Overdue why) {
+std::string reason_text(Overdue why, const ClientLimits& limits) {
   switch (why) {
     case Overdue::kNeverSubscribed:
-      return "it did not subscribe";
+      return fmt::format("it did not subscribe within {:g} s", seconds(limits.subscribe_within));
     case Overdue::kStuck:
-      return "it stopped reading";
+      return fmt::format("it stopped reading for {:g} s", seconds(limits.stuck_after));
+    case Overdue::kIdle:
+      return fmt::format("it subscribed to nothing and requested nothing for {:g} min",
+                         seconds(limits.idle_after) / 60.0);
   }
   return "?";
 }
 
 ClientQueue::ClientQueue(const ClientLimits& limits, SharedBytes hello, MonoTime now)
-    : limits_(limits), connected_(now), moved_(now) {
+    : limits_(limits), connected_(now), asked_(now), moved_(now) {
   setup_.push_back(std::move(hello));
 }
 
-void ClientQueue::subscribe(bool poses, bool sensors, SharedBytes scenes, SharedBytes newest_frame,
-                            SharedBytes newest_sensors) {
+void ClientQueue::subscribe(const Wanted& wanted, SharedBytes scenes, SharedBytes newest_frame,
+                            SharedBytes newest_sensors, MonoTime now) {
   subscribed_ = true;
-  wants_poses_ = poses;
-  wants_sensors_ = sensors;
-  if (poses && scenes) setup_.push_back(std::move(scenes));
+  asked_ = now;
+  wanted_ = wanted;
+  if (scenes) offer_scenes(std::move(scenes));
   if (newest_frame) offer_frame(std::move(newest_frame));
   if (newest_sensors) offer_sensors(std::move(newest_sensors));
 }
 
+void ClientQueue::dismiss(SharedBytes last) {
+  dismissed_ = true;
+  wanted_ = {};
+  setup_.clear();
+  traces_.clear();
+  pending_scenes_.reset();
+  pending_sensors_.reset();
+  pending_frame_.reset();
+  setup_.push_back(std::move(last));
+}
+
+void ClientQueue::offer_scenes(SharedBytes scenes) {
+  if (!wanted_.poses) return;
+  if (pending_frame_) ++frames_skipped_;
+  pending_frame_.reset();
+  pending_scenes_ = std::move(scenes);
+}
+
 void ClientQueue::offer_frame(SharedBytes frame) {
-  if (!wants_poses_) return;
+  if (!wanted_.poses) return;
   if (pending_frame_) ++frames_skipped_;
   pending_frame_ = std::move(frame);
 }
 
 void ClientQueue::offer_sensors(SharedBytes sensors) {
-  if (wants_sensors_) pending_sensors_ = std::move(sensors);
+  if (wanted_.sensors) pending_sensors_ = std::move(sensors);
 }
 
 bool ClientQueue::offer_reply(SharedBytes reply) {
   constexpr std::size_t kMostWaiting = 16;
-  if (setup_.size() >= kMostWaiting) return false;
+  if (dismissed_ || setup_.size() >= kMostWaiting) return false;
   setup_.push_back(std::move(reply));
   return true;
 }
 
 bool ClientQueue::offer_trace(SharedBytes trace) {
   constexpr std::size_t kMostWaiting = 256;
-  if (traces_.size() >= kMostWaiting) return false;
+  if (dismissed_ || traces_.size() >= kMostWaiting) return false;
   traces_.push_back(std::move(trace));
   return true;
 }
 
 std::span<const std::uint8_t> ClientQueue::to_write(MonoTime now) {
   if (!in_flight_) {
-    // Sensors and traces take precedence over frames: they are small and rare, while frames are always waiting.
-    if (!setup_.empty()) {
+    // Scenes come before everything that may be about them. Sensors and traces take precedence over frames: they are
+    // small and rare, while frames are always waiting.
+    if (is_greeted_ && pending_scenes_) {
+      in_flight_ = std::exchange(pending_scenes_, nullptr);
+    } else if (!setup_.empty()) {
+      is_greeted_ = true;
       in_flight_ = std::move(setup_.front());
       setup_.pop_front();
     } else if (pending_sensors_) {
@@ -89,8 +116,11 @@ void ClientQueue::written(std::size_t bytes, MonoTime now) {
 }
 
 std::optional<Overdue> ClientQueue::overdue(MonoTime now) const {
-  if (!subscribed_ && now - connected_ >= limits_.subscribe_within) return Overdue::kNeverSubscribed;
   if (in_flight_ && now - moved_ >= limits_.stuck_after) return Overdue::kStuck;
+  if (dismissed_) return std::nullopt;
+  if (!subscribed_ && now - connected_ >= limits_.subscribe_within) return Overdue::kNeverSubscribed;
+  const bool wants_nothing = !wanted_.poses && !wanted_.sensors && !wanted_.traces;
+  if (subscribed_ && wants_nothing && now - asked_ >= limits_.idle_after) return Overdue::kIdle;
   return std::nullopt;
 }
 

@@ -5,7 +5,7 @@
 #include <deque>
 #include <optional>
 #include <span>
-#include <string_view>
+#include <string>
 
 #include "daemon/stream/transport.hpp"
 #include "engine/base/time.hpp"
@@ -15,18 +15,29 @@ namespace yuragi::daemon::stream {
 struct ClientLimits {
   Nanoseconds subscribe_within = std::chrono::seconds(5);
   Nanoseconds stuck_after = std::chrono::seconds(5);
+  /// Of a client that subscribed to nothing: the longest time between its requests.
+  Nanoseconds idle_after = std::chrono::minutes(10);
 };
 
 /// The time limit that a client has exceeded.
 enum class Overdue : std::uint8_t {
   kNeverSubscribed,  ///< connected, but did not subscribe
   kStuck,            ///< reads nothing of what is being written to it
+  kIdle,             ///< subscribed to nothing, and requests nothing
 };
-std::string_view name_of(Overdue why);
+/// "it subscribed to nothing and requested nothing for 10 min": for the log and for the client.
+std::string reason_text(Overdue why, const ClientLimits& limits);
+
+/// What a client subscribes to.
+struct Wanted {
+  bool poses = false;
+  bool sensors = false;
+  bool traces = false;
+};
 
 /// The messages to one client, their order, and its time limits. One message is in flight; behind it wait at most one
-/// frame and one state of the sensors, each replaced by a newer one, and a bounded number of raw traces, which are
-/// never replaced. Pure: it has no socket, and time is a parameter.
+/// list of scenes, one frame and one state of the sensors, each replaced by a newer one, and a bounded number of raw
+/// traces, which are never replaced. Pure: it has no socket, and time is a parameter.
 ///
 /// The caller writes to_write() to its socket, passes the number of bytes written to written(), and repeats.
 /// Thread-safe: no.
@@ -36,8 +47,24 @@ class ClientQueue {
   ClientQueue(const ClientLimits& limits, SharedBytes hello, MonoTime now);
 
   /// The client subscribes. Sends those that are not null, in this order: scenes, the newest sensors, the newest frame.
-  void subscribe(bool poses, bool sensors, SharedBytes scenes, SharedBytes newest_frame, SharedBytes newest_sensors);
+  void subscribe(const Wanted& wanted, SharedBytes scenes, SharedBytes newest_frame, SharedBytes newest_sensors,
+                 MonoTime now);
   bool is_subscribed() const noexcept { return subscribed_; }
+
+  /// The scenes have changed: `scenes` is sent before the frames that are offered from now on, and the frame that
+  /// waits, of the scenes before, is dropped. Scenes that still wait are replaced. Ignored unless poses are subscribed
+  /// to.
+  void offer_scenes(SharedBytes scenes);
+  bool wants_poses() const noexcept { return wanted_.poses; }
+
+  /// The client sent a request at `now`: it is not idle.
+  void requested(MonoTime now) noexcept { asked_ = now; }
+
+  /// Behind the message in flight only `last` is sent, and nothing that is offered later.
+  void dismiss(SharedBytes last);
+  bool is_dismissed() const noexcept { return dismissed_; }
+  /// Has all been written to a dismissed client? Then it should be disconnected.
+  bool is_done() const noexcept { return dismissed_ && setup_.empty() && !in_flight_; }
 
   /// Replaces a waiting message of the same kind; one in flight is finished. Ignored unless subscribed to.
   void offer_frame(SharedBytes frame);
@@ -66,12 +93,15 @@ class ClientQueue {
  private:
   ClientLimits limits_;
   MonoTime connected_;
+  MonoTime asked_;  // when it subscribed, or last requested something
   bool subscribed_ = false;
-  bool wants_poses_ = false;
-  bool wants_sensors_ = false;
+  bool dismissed_ = false;
+  Wanted wanted_;
 
-  std::deque<SharedBytes> setup_;  // hello, scenes and replies: sent first, never replaced
+  bool is_greeted_ = false;        // hello, the first of setup_, has been sent or is in flight
+  std::deque<SharedBytes> setup_;  // hello and replies: never replaced
   std::deque<SharedBytes> traces_;
+  SharedBytes pending_scenes_;
   SharedBytes pending_sensors_;
   SharedBytes pending_frame_;
 

@@ -10,9 +10,10 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/read.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <spdlog/spdlog.h>
 
+#include "daemon/stream/client_log.hpp"
 #include "engine/base/address.hpp"
+#include "engine/base/printable_text.hpp"
 #include "engine/base/result.hpp"
 
 namespace yuragi::daemon::stream {
@@ -25,6 +26,17 @@ using boost::system::error_code;
 constexpr std::size_t kMinSendBufferBytes = 256u << 10;
 constexpr auto kAcceptBackOff = std::chrono::milliseconds(100);
 
+// Of what a client says, the log shows so many characters.
+constexpr std::size_t kShownNameCharacters = 64;
+constexpr std::size_t kShownReplyCharacters = 200;
+
+// A client that vanished without a word is noticed after 30 s + 3 * 10 s without an answer from its machine, and after
+// the same time where something is on its way to it.
+constexpr int kKeepAliveIdle_s = 30;
+constexpr int kKeepAliveInterval_s = 10;
+constexpr int kKeepAliveProbes = 3;
+constexpr int kUnacknowledged_ms = 60'000;
+
 std::string text_of(const tcp::endpoint& endpoint) {
   return to_string(Address{endpoint.address().to_string(), endpoint.port()});
 }
@@ -33,11 +45,43 @@ SharedBytes share(wire::Bytes bytes) {
   return std::make_shared<const wire::Bytes>(std::move(bytes));
 }
 
-/// Loopback, also of an IPv4 client on an IPv6 socket.
-bool is_of_this_machine(const asio::ip::address& address) {
-  if (address.is_v6() && address.to_v6().is_v4_mapped())
-    return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).is_loopback();
-  return address.is_loopback();
+/// The address as IPv4 where an IPv4 client is on an IPv6 socket.
+asio::ip::address unmapped(const asio::ip::address& address) {
+  if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
+  return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
+}
+
+/// A number that TCP takes as an option, for which Asio has no type.
+template <int kName>
+struct TcpNumber {
+  int value;
+
+  template <class Protocol>
+  int level(const Protocol& /*protocol*/) const {
+    return IPPROTO_TCP;
+  }
+  template <class Protocol>
+  int name(const Protocol& /*protocol*/) const {
+    return kName;
+  }
+  template <class Protocol>
+  const int* data(const Protocol& /*protocol*/) const {
+    return &value;
+  }
+  template <class Protocol>
+  std::size_t size(const Protocol& /*protocol*/) const {
+    return sizeof value;
+  }
+};
+
+/// Lets the kernel ask whether the other side is still there.
+void keep_alive(tcp::socket& socket) {
+  error_code ignored;  // without them a vanished client stays longer
+  socket.set_option(asio::socket_base::keep_alive(true), ignored);
+  socket.set_option(TcpNumber<TCP_KEEPIDLE>{kKeepAliveIdle_s}, ignored);
+  socket.set_option(TcpNumber<TCP_KEEPINTVL>{kKeepAliveInterval_s}, ignored);
+  socket.set_option(TcpNumber<TCP_KEEPCNT>{kKeepAliveProbes}, ignored);
+  socket.set_option(TcpNumber<TCP_USER_TIMEOUT>{kUnacknowledged_ms}, ignored);
 }
 
 /// Opens the listening socket. Throws with what to do.
@@ -65,29 +109,42 @@ struct Feed {
   SharedBytes hello;
   SharedBytes scenes;
   SharedBytes newest_frame;
-  SharedBytes newest_sensors;
+  SharedBytes newest_sensors_here, newest_sensors_elsewhere;
   std::size_t send_buffer_bytes = kMinSendBufferBytes;
+  std::unique_ptr<ClientLog> log;
+
+  const SharedBytes& newest_sensors(bool is_local) const {
+    return is_local ? newest_sensors_here : newest_sensors_elsewhere;
+  }
+
+  /// The Hello by which a connection is refused or ended.
+  wire::Bytes goodbye(std::string why) const {
+    wire::Hello last = settings.hello;
+    last.refused = std::move(why);
+    return wire::encode(last);
+  }
 };
 
 /// One client. Its pending handlers hold it, so it lives until the last of them has run.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket socket, std::shared_ptr<const Feed> feed)
+  Connection(tcp::socket socket, Peer peer, std::shared_ptr<const Feed> feed)
       : socket_(std::move(socket)),
         feed_(std::move(feed)),
-        queue_(feed_->settings.limits, feed_->hello, feed_->settings.now()) {
+        queue_(feed_->settings.limits, feed_->hello, feed_->settings.now()),
+        peer_(std::move(peer)) {
     error_code ignored;
-    const tcp::endpoint peer = socket_.remote_endpoint(ignored);
-    peer_ = text_of(peer);
-    is_local_ = is_of_this_machine(peer.address());
+    endpoint_ = text_of(socket_.remote_endpoint(ignored));
     socket_.set_option(tcp::no_delay(true), ignored);
+    keep_alive(socket_);
     limit_send_buffer();
   }
 
   bool is_open() const { return socket_.is_open(); }
+  const Peer& peer() const { return peer_; }
 
   void start() {
-    spdlog::info("client {} connected", peer_);
+    feed_->log->info("client {} connected", endpoint_);
     read_prefix();
     write();
   }
@@ -97,8 +154,15 @@ class Connection : public std::enable_shared_from_this<Connection> {
     write();
   }
 
-  void offer_sensors(const SharedBytes& sensors) {
-    queue_.offer_sensors(sensors);
+  void offer_scenes(const SharedBytes& scenes) {
+    if (!queue_.wants_poses()) return;
+    if (!takes_new_scenes_) return dismiss("the scenes have changed; connect again");
+    queue_.offer_scenes(scenes);
+    write();
+  }
+
+  void offer_newest_sensors() {
+    if (const SharedBytes& sensors = feed_->newest_sensors(peer_.is_local)) queue_.offer_sensors(sensors);
     write();
   }
 
@@ -128,27 +192,39 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// Disconnects the client if it has exceeded a time limit, which is returned.
   std::optional<Overdue> check(MonoTime now) {
     const auto overdue = is_open() ? queue_.overdue(now) : std::nullopt;
-    if (overdue) {
-      // It will not read what the kernel still holds for it: discard that, too.
-      error_code ignored;
-      socket_.set_option(asio::socket_base::linger(true, 0), ignored);
-      end(name_of(*overdue));
+    if (!overdue) return overdue;
+    const std::string why = reason_text(*overdue, feed_->settings.limits);
+    if (*overdue != Overdue::kStuck) {
+      dismiss(why);
+      return overdue;
     }
+    // It will not read what the kernel still holds for it: discard that, too.
+    error_code ignored;
+    socket_.set_option(asio::socket_base::linger(true, 0), ignored);
+    end(why);
     return overdue;
   }
 
   void end(std::string_view why) {
     if (!is_open()) return;
-    spdlog::info("client {} {} disconnected: {}; {} frames sent, {} skipped", peer_, client_name_, why,
-                 queue_.frames_sent(), queue_.frames_skipped());
+    feed_->log->info("client {} {} disconnected: {}; {} frames sent, {} skipped", endpoint_, client_name_, why,
+                     queue_.frames_sent(), queue_.frames_skipped());
     error_code ignored;
     socket_.close(ignored);
   }
 
  private:
+  /// Tells the client why, and disconnects it once that has been sent.
+  void dismiss(std::string why) {
+    queue_.dismiss(share(feed_->goodbye(why)));
+    dismissed_because_ = std::move(why);
+    write();
+  }
+
   /// Starts the next write, unless one is in progress.
   void write() {
     if (is_writing_ || !is_open()) return;
+    if (queue_.is_done()) return end(dismissed_because_);
     const auto bytes = queue_.to_write(feed_->settings.now());
     if (bytes.empty()) return;
     is_writing_ = true;
@@ -180,6 +256,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// A client may send one subscription, and after that Controls.
   void take_message() {
+    if (queue_.is_dismissed()) return;  // and nothing more is read
     const auto message = wire::decode(body_);
     if (!message) return end("its message was refused: " + std::string(name_of(message.error())));
     const auto* control = std::get_if<wire::Control>(&*message);
@@ -188,34 +265,59 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (wish == nullptr || queue_.is_subscribed()) return end("it sent a message that clients must not send");
     if (wish->protocol != wire::kProtocol) return end("it speaks protocol " + std::to_string(wish->protocol));
 
-    client_name_ = "(" + wish->client + ")";
-    spdlog::info("client {} {} subscribes to{}{}{}{}", peer_, client_name_, wish->poses ? " poses" : "",
-                 wish->sensors ? " sensors" : "", wish->raw ? " raw messages" : "",
-                 wish->poses || wish->sensors || wish->raw ? "" : " nothing");
+    client_name_ = "(" + shortened(wish->client, kShownNameCharacters) + ")";
+    feed_->log->info("client {} {} subscribes to{}{}{}{}", endpoint_, client_name_, wish->poses ? " poses" : "",
+                     wish->sensors ? " sensors" : "", wish->raw ? " raw messages" : "",
+                     wish->poses || wish->sensors || wish->raw ? "" : " nothing");
+    const auto& raw_refusal = feed_->settings.raw_refusal;
+    if (wish->raw && raw_refusal) {
+      if (auto why = raw_refusal(peer_.is_local)) return dismiss(std::move(*why));
+    }
+    takes_new_scenes_ = wish->takes_new_scenes;
     wants_traces_ = wish->raw;
     traced_sensor_ = wish->raw_sensor;
-    queue_.subscribe(wish->poses, wish->sensors, feed_->scenes, feed_->newest_frame, feed_->newest_sensors);
+    queue_.subscribe({.poses = wish->poses, .sensors = wish->sensors, .traces = wish->raw}, feed_->scenes,
+                     feed_->newest_frame, feed_->newest_sensors(peer_.is_local), feed_->settings.now());
     write();
     read_prefix();  // notices when it closes the connection
   }
 
   void take_control(const wire::Control& wish) {
+    queue_.requested(feed_->settings.now());
+    if (wish.reload && feed_->settings.on_reload) return take_reload(*wish.reload);
     const auto& answer = feed_->settings.on_control;
     const wire::ControlReply reply =
-        answer ? answer(wish, is_local_)
+        answer ? answer(wish, peer_.is_local)
                : wire::ControlReply{.done = false, .message = "this daemon has no scenes", .scenes = {}};
     const bool changes_players = wish.player && wish.player->action != wire::PlayerAction::kReport;
-    if (!wish.scene.empty() || changes_players) spdlog::info("client {} {}: {}", peer_, client_name_, reply.message);
+    if (!wish.scene.empty() || changes_players) {
+      feed_->log->info("client {} {}: {}", endpoint_, client_name_, shortened(reply.message, kShownReplyCharacters));
+    }
+    send_reply(reply);
+    if (is_open()) read_prefix();
+  }
+
+  /// The reply comes later, unless the client has gone by then.
+  void take_reload(const wire::ReloadCommand& command) {
+    feed_->settings.on_reload(command, peer_.is_local, [weak = weak_from_this()](const wire::ControlReply& reply) {
+      if (const auto self = weak.lock()) self->send_reply(reply);
+    });
+    if (is_open()) read_prefix();
+  }
+
+  void send_reply(const wire::ControlReply& reply) {
+    if (!is_open()) return;
     if (!queue_.offer_reply(share(wire::encode(reply)))) return end("it sends requests faster than it reads replies");
     write();
-    read_prefix();
   }
 
   tcp::socket socket_;
   std::shared_ptr<const Feed> feed_;
   ClientQueue queue_;
-  std::string peer_, client_name_;
-  bool is_local_ = false;
+  Peer peer_;
+  std::string endpoint_, client_name_;
+  std::string dismissed_because_;
+  bool takes_new_scenes_ = false;
   bool wants_traces_ = false;
   std::string traced_sensor_;                         // empty: all of them
   std::map<std::string, std::uint64_t> lost_traces_;  // of each sensor, since the last trace that was queued
@@ -234,6 +336,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
     feed_->hello = share(wire::encode(settings.hello));
     feed_->scenes = share(wire::encode(settings.scenes));
     settings.scenes.scenes.clear();  // only the encoded bytes are needed from here on
+    feed_->log = std::make_unique<ClientLog>(settings.log, settings.now);
     feed_->settings = std::move(settings);
     endpoint_ = text_of(acceptor_.local_endpoint());
   }
@@ -244,11 +347,15 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   }
 
   const std::string& endpoint() const { return endpoint_; }
-  std::uint64_t stuck_clients() const { return stuck_clients_; }
+  const ClientCounts& counts() const { return counts_; }
 
   std::size_t client_count() const {
     return static_cast<std::size_t>(
         std::count_if(connections_.begin(), connections_.end(), [](const auto& c) { return c->is_open(); }));
+  }
+
+  bool has_remote_clients() const {
+    return std::ranges::any_of(connections_, [](const auto& c) { return c->is_open() && !c->peer().is_local; });
   }
 
   void publish(SharedBytes frame) {
@@ -261,10 +368,19 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
     for (const auto& connection : connections_) connection->offer_frame(feed_->newest_frame);
   }
 
-  void publish_sensors(SharedBytes sensors) {
-    feed_->newest_sensors = std::move(sensors);
-    for (const auto& connection : connections_) connection->offer_sensors(feed_->newest_sensors);
+  void publish_scenes(SharedBytes scenes) {
+    feed_->scenes = std::move(scenes);
+    feed_->newest_frame.reset();
+    for (const auto& connection : connections_) connection->offer_scenes(feed_->scenes);
   }
+
+  void publish_sensors(SharedBytes here, SharedBytes elsewhere) {
+    feed_->newest_sensors_here = std::move(here);
+    feed_->newest_sensors_elsewhere = std::move(elsewhere);
+    for (const auto& connection : connections_) connection->offer_newest_sensors();
+  }
+
+  void set_admission(const AdmissionLimits& admission) { feed_->settings.admission = admission; }
 
   bool wants_trace(std::string_view sensor) const {
     return std::ranges::any_of(connections_, [&](const auto& connection) { return connection->wants_trace(sensor); });
@@ -301,7 +417,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
 
   /// Usually out of file descriptors or memory: present clients stay, and accepting is tried again later.
   void accept_later(const error_code& error) {
-    if (std::exchange(accept_error_, error) != error) spdlog::warn("cannot accept a client: {}", error.message());
+    if (std::exchange(accept_error_, error) != error) feed_->log->warn("cannot accept a client: {}", error.message());
     accept_timer_.expires_after(kAcceptBackOff);
     accept_timer_.async_wait([self = shared_from_this()](const error_code&) {
       if (!self->closed_) self->accept();
@@ -310,29 +426,39 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
 
   void welcome(tcp::socket socket) {
     forget_closed();
-    if (connections_.size() >= feed_->settings.max_clients) return refuse(std::move(socket));
-    connections_.push_back(std::make_shared<Connection>(std::move(socket), feed_));
+    error_code error;
+    const tcp::endpoint endpoint = socket.remote_endpoint(error);
+    if (error) return;  // it has gone already
+    const std::string address = unmapped(endpoint.address()).to_string();
+    Peer peer{address, feed_->settings.is_of_this_machine(address)};
+    std::vector<Peer> connected;
+    connected.reserve(connections_.size());
+    for (const auto& connection : connections_) connected.push_back(connection->peer());
+    if (auto why = admission_refusal(feed_->settings.admission, connected, peer)) {
+      ++counts_.refused;
+      feed_->log->warn("client {} refused: {}", text_of(endpoint), *why);
+      return refuse(std::move(socket), std::move(*why));
+    }
+    connections_.push_back(std::make_shared<Connection>(std::move(socket), std::move(peer), feed_));
     connections_.back()->start();
   }
 
   /// Sends a Hello that says why, in one write that fits into an empty socket buffer, and closes.
-  void refuse(tcp::socket socket) const {
+  void refuse(tcp::socket socket, std::string why) const {
     error_code ignored;
-    const auto peer = socket.remote_endpoint(ignored);
-    spdlog::warn("client {} refused: {} clients are connected already", text_of(peer), connections_.size());
-    wire::Hello hello = feed_->settings.hello;
-    hello.refused = "the maximum number of clients is connected: " + std::to_string(connections_.size());
     socket.non_blocking(true, ignored);
-    socket.write_some(asio::buffer(wire::encode(hello)), ignored);
+    socket.write_some(asio::buffer(feed_->goodbye(std::move(why))), ignored);
     socket.shutdown(tcp::socket::shutdown_send, ignored);
   }
 
   void check_clients() {
     const MonoTime now = feed_->settings.now();
     for (const auto& connection : connections_) {
-      if (connection->check(now) == Overdue::kStuck) ++stuck_clients_;
+      const auto overdue = connection->check(now);
+      if (overdue) ++(*overdue == Overdue::kStuck ? counts_.stuck : counts_.idle);
     }
     forget_closed();
+    feed_->log->tell_left_out();
     check_timer_.expires_after(feed_->settings.check_every);
     check_timer_.async_wait([self = shared_from_this()](const error_code&) {
       if (!self->closed_) self->check_clients();
@@ -349,9 +475,15 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   std::shared_ptr<Feed> feed_ = std::make_shared<Feed>();
   std::vector<std::shared_ptr<Connection>> connections_;
   error_code accept_error_;
-  std::uint64_t stuck_clients_ = 0;
+  ClientCounts counts_;
   bool closed_ = false;
 };
+
+bool TcpStreamSettings::is_loopback(const std::string& address) {
+  error_code error;
+  const auto parsed = asio::ip::make_address(address, error);
+  return !error && unmapped(parsed).is_loopback();
+}
 
 TcpStream::TcpStream(asio::io_context& io, std::string_view listen, TcpStreamSettings settings)
     : server_(std::make_shared<Server>(io, listen, std::move(settings))) {
@@ -372,8 +504,14 @@ std::string TcpStream::local_endpoint() const {
 void TcpStream::publish(SharedBytes frame) {
   server_->publish(std::move(frame));
 }
-void TcpStream::publish_sensors(SharedBytes sensors) {
-  server_->publish_sensors(std::move(sensors));
+void TcpStream::publish_scenes(SharedBytes scenes) {
+  server_->publish_scenes(std::move(scenes));
+}
+void TcpStream::publish_sensors(SharedBytes here, SharedBytes elsewhere) {
+  server_->publish_sensors(std::move(here), std::move(elsewhere));
+}
+bool TcpStream::has_remote_clients() const {
+  return server_->has_remote_clients();
 }
 std::size_t TcpStream::client_count() const {
   return server_->client_count();
@@ -387,8 +525,11 @@ void TcpStream::publish_trace(const wire::RawTrace& trace) {
 void TcpStream::close() {
   server_->close();
 }
-std::uint64_t TcpStream::stuck_clients() const {
-  return server_->stuck_clients();
+void TcpStream::set_admission(const AdmissionLimits& admission) {
+  server_->set_admission(admission);
+}
+const ClientCounts& TcpStream::counts() const {
+  return server_->counts();
 }
 
 }  // namespace yuragi::daemon::stream

@@ -1,9 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
 #include <string_view>
 
+#include "daemon/stream/client_admission.hpp"
 #include "daemon/stream/client_queue.hpp"
+#include "daemon/stream/log_allowance.hpp"
 #include "daemon/stream/transport.hpp"
 
 namespace boost::asio {
@@ -13,25 +18,48 @@ class io_context;
 namespace yuragi::daemon::stream {
 
 struct TcpStreamSettings {
-  wire::Hello hello;             ///< the first message to every client
-  wire::Scenes scenes;           ///< the second message to clients that subscribe to poses
-  std::size_t max_clients = 32;  ///< further ones are refused with a Hello that says so
+  wire::Hello hello;    ///< the first message to every client
+  wire::Scenes scenes;  ///< the second message to clients that subscribe to poses, until others are published
+  AdmissionLimits admission = {};  ///< further clients are refused with a Hello that says why
   /// Carries out a client's request about scenes or recordings and returns the reply; `is_local`: the client is on this
   /// machine. Empty: every request is refused.
   std::function<wire::ControlReply(const wire::Control& control, bool is_local)> on_control = {};
+  /// Has the configuration read again for a client, and calls `reply` once on this thread, at once or later. Empty:
+  /// such a request goes to on_control.
+  std::function<void(const wire::ReloadCommand& command, bool is_local,
+                     std::function<void(const wire::ControlReply&)> reply)>
+      on_reload = {};
+  /// Why a client may not have raw messages, if so; then the connection ends with that reason. Empty: everybody may.
+  std::function<std::optional<std::string>(bool is_local)> raw_refusal = {};
   ClientLimits limits = {};
+  LogAllowance::Settings log = {};                           ///< how many lines clients may cause in the log
   Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are checked
   std::function<MonoTime()> now = steady_now;                ///< the clock of the limits
 
+  /// Is a client at this numeric address, without the port, on this machine?
+  std::function<bool(const std::string& address)> is_of_this_machine = is_loopback;
+
+  /// Loopback, also of an IPv4 client on an IPv6 socket.
+  static bool is_loopback(const std::string& address);
   static MonoTime steady_now() { return std::chrono::time_point_cast<Nanoseconds>(std::chrono::steady_clock::now()); }
+};
+
+/// How many clients have been turned away since the start.
+struct ClientCounts {
+  std::uint64_t refused = 0;  ///< at once: there was no place for them
+  std::uint64_t stuck = 0;    ///< disconnected because they stopped reading
+  std::uint64_t idle = 0;     ///< disconnected because they subscribed to nothing, or not at all
 };
 
 /// The stream of engine/wire/pose.fbs over TCP: size-prefixed messages to any number of clients.
 ///
-/// Each client gets a Hello, subscribes once, and is then sent the newest messages of that kind (ClientQueue). After
-/// that it may send Controls, each of which gets a reply. A client that sends anything else, does not subscribe, or
-/// stops reading is disconnected, and that is logged. Send buffers are kept small, so that a slow client gets new
-/// frames.
+/// Each client gets a Hello, subscribes once, and is then sent the newest messages of that kind (ClientQueue). Where
+/// the scenes change, a client that takes new ones gets them before the first frame of them; another one is let go.
+/// After that it may send Controls, each of which gets a reply. A client that sends anything else, does not subscribe,
+/// asks for nothing, or stops reading is disconnected, and that is logged (ClientLog); where it can still read, it is
+/// told why by a second Hello. Who gets a place is decided by admission_refusal(). The kernel asks every 10 s whether a
+/// silent client is still there, so that one that vanished without a word is forgotten within a minute. Send buffers
+/// are kept small, so that a slow client gets new frames.
 ///
 /// All work is done in callbacks on the thread that runs `io`, which must outlive this object. Thread-safe: no.
 class TcpStream final : public Transport {
@@ -46,8 +74,10 @@ class TcpStream final : public Transport {
 
   std::string name() const override { return "tcp " + local_endpoint(); }
   void publish(SharedBytes frame) override;
-  void publish_sensors(SharedBytes sensors) override;
+  void publish_scenes(SharedBytes scenes) override;
+  void publish_sensors(SharedBytes here, SharedBytes elsewhere) override;
   std::size_t client_count() const override;
+  bool has_remote_clients() const override;
 
   /// Has any client subscribed to the raw messages of this sensor's device?
   bool wants_trace(std::string_view sensor) const;
@@ -56,8 +86,10 @@ class TcpStream final : public Transport {
 
   void close() override;
 
-  /// How many clients were disconnected because they stopped reading.
-  std::uint64_t stuck_clients() const;
+  /// Admits clients by other limits from now on. Those that are there stay.
+  void set_admission(const AdmissionLimits& admission);
+
+  const ClientCounts& counts() const;
 
  private:
   class Server;  // keeps Asio, which is slow to compile, in one file

@@ -27,11 +27,18 @@ class Transport {
   /// The newest frame (an encoded wire::Frame). Slow clients miss some, but never the last one.
   virtual void publish(SharedBytes frame) = 0;
 
-  /// The newest state of the sensors (an encoded wire::Sensors).
-  virtual void publish_sensors(SharedBytes sensors) = 0;
+  /// The scenes have changed (an encoded wire::Scenes): all frames published from now on are of these. A client that
+  /// has not said that it takes new scenes is let go with that reason.
+  virtual void publish_scenes(SharedBytes scenes) = 0;
 
-  /// Clients connected now.
+  /// The newest state of the sensors (an encoded wire::Sensors): one message for clients of this machine, and one for
+  /// those of others, which are told less. `elsewhere` may be null while has_remote_clients() is false; a client that
+  /// would need it waits for the next one.
+  virtual void publish_sensors(SharedBytes here, SharedBytes elsewhere) = 0;
+
+  /// Clients connected now; and is any of them on another machine?
   virtual std::size_t client_count() const = 0;
+  virtual bool has_remote_clients() const = 0;
 
   /// Closes all connections and accepts no more. A second call does nothing.
   virtual void close() = 0;

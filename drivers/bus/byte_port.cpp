@@ -1,6 +1,9 @@
 #include "drivers/bus/byte_port.hpp"
 
+#include <boost/asio/ip/address.hpp>
 #include <fmt/format.h>
+
+#include "drivers/bus/serial_ports.hpp"
 
 namespace yuragi::drivers::bus {
 namespace {
@@ -26,6 +29,15 @@ std::string describe(const BytePortAddress& address) {
       return address.path;
   }
   return "?";
+}
+
+std::string sole_device_of(const BytePortAddress& address) {
+  if (address.kind == BytePortKind::kSerial) return serial_device_of(address.path);
+  if (address.kind != BytePortKind::kUdp) return {};
+  boost::system::error_code error;
+  const auto local = boost::asio::ip::make_address(address.host, error);
+  if (!error && local.is_multicast()) return {};
+  return fmt::format("UDP port {}", address.port);
 }
 
 }  // namespace yuragi::drivers::bus

@@ -35,7 +35,7 @@ struct BytePortAddress {
   /// TCP: name or address to connect to. UDP: the local or multicast address to listen at; empty: any.
   std::string host = {};
   std::uint16_t port = 10110;
-  std::string sender = {};  ///< UDP: take datagrams from this address only; empty: from any
+  std::string senders = {};  ///< UDP: take datagrams of these addresses and nets only (SenderFilter); empty: of any
 
   /// File: from its beginning to its end, once. Otherwise from the first line that is appended to it, without end,
   /// also when it is truncated or replaced. A named pipe is always read without end, by any number of writers.
@@ -46,6 +46,10 @@ struct BytePortAddress {
 
 /// "/dev/ttyUSB0 at 9600 8N1", "host:port", "UDP port 10110", a path: for people.
 std::string describe(const BytePortAddress& address);
+
+/// The identity of a port that cannot be open twice: a serial port's device file behind its links, a UDP port that is
+/// not a multicast group's. Empty: others may open it, too.
+std::string sole_device_of(const BytePortAddress& address);
 
 enum class ByteStatus : std::uint8_t {
   kBytes,        ///< some have come
@@ -60,6 +64,8 @@ struct ByteArrival {
   ByteStatus status = ByteStatus::kSilence;
   std::size_t size = 0;            ///< for kBytes
   bool is_whole_datagram = false;  ///< UDP: these bytes end a datagram
+  std::string sender = {};         ///< UDP, for kForeign: its address
+  std::uint32_t overrun = 0;       ///< UDP: how many datagrams before this one the kernel dropped for want of room
 };
 
 /// A datagram that is longer than what it is read into loses its end; this is enough for each.

@@ -1,17 +1,20 @@
 // libmosquitto 2.0.11, driven by this thread: its own loops can neither be woken nor given a time-out for a connection
 // (mosquitto issues 949 and 3051: minutes, where a firewall drops what is sent). Nor can its look-up of a name be
-// ended, so the name is looked up before.
+// ended, so the name is looked up before. It takes each packet whole, and nothing limits that for MQTT 3.1.1: one of
+// 256 MiB, the longest of the protocol, takes twice as much for the moment until on_message() has dropped it.
 #include "drivers/bus/mqtt_client.hpp"
 
 #include <algorithm>
 #include <cerrno>
 #include <deque>
+#include <span>
 #include <stdexcept>
 #include <system_error>
 
 #include <fmt/format.h>
 #include <mosquitto.h>
 
+#include "drivers/bus/callback_exception.hpp"
 #include "drivers/bus/host_lookup.hpp"
 #include "drivers/bus/interruption.hpp"
 
@@ -122,7 +125,7 @@ class MosquittoClient final : public MqttClient {
     mosquitto_message_callback_set(client_.get(), &on_message);
     if (!wanted_.user.empty()) {
       mosquitto_username_pw_set(client_.get(), wanted_.user.c_str(),
-                                wanted_.password.empty() ? nullptr : wanted_.password.c_str());
+                                wanted_.password.is_empty() ? nullptr : wanted_.password.reveal().c_str());
     }
     if (wanted_.uses_tls) {
       const char* const file = wanted_.ca_file.empty() ? nullptr : wanted_.ca_file.c_str();
@@ -145,42 +148,50 @@ class MosquittoClient final : public MqttClient {
     if (end == WaitEnd::kReady && wants_to_write) error = mosquitto_loop_write(client_.get(), 1);
     if (end == WaitEnd::kReady && error == MOSQ_ERR_SUCCESS) error = mosquitto_loop_read(client_.get(), 1);
     if (error == MOSQ_ERR_SUCCESS) error = mosquitto_loop_misc(client_.get());
+    thrown_.rethrow();
     return error;
   }
 
   static MosquittoClient& self_of(void* self) { return *static_cast<MosquittoClient*>(self); }
 
-  static void on_connect(mosquitto* client, void* self, int reply) {
-    MosquittoClient& me = self_of(self);
+  static void on_connect(mosquitto* /*client*/, void* self, int reply) noexcept {
+    self_of(self).thrown_.keep_from([&] { self_of(self).take_connection(reply); });
+  }
+  static void on_subscribe(mosquitto* /*client*/, void* self, int /*id*/, int count, const int* granted) noexcept {
+    self_of(self).thrown_.keep_from(
+        [&] { self_of(self).take_subscription(std::span(granted, static_cast<std::size_t>(std::max(count, 0)))); });
+  }
+  static void on_message(mosquitto* /*client*/, void* self, const mosquitto_message* message) noexcept {
+    self_of(self).thrown_.keep_from([&] { self_of(self).take_message(*message); });
+  }
+
+  void take_connection(int reply) {
     if (reply != 0) {
-      me.refusal_ = fmt::format("{} refuses the connection ({}): check `user` and `password`", describe(me.wanted_),
-                                mosquitto_connack_string(reply));
+      refusal_ = fmt::format("{} refuses the connection ({}): check `user` and `password`", describe(wanted_),
+                             mosquitto_connack_string(reply));
       return;
     }
-    for (const std::string& topic : me.wanted_.topics) {
-      mosquitto_subscribe(client, nullptr, topic.c_str(), kAtMostOnce);
+    for (const std::string& topic : wanted_.topics) {
+      mosquitto_subscribe(client_.get(), nullptr, topic.c_str(), kAtMostOnce);
     }
   }
 
-  static void on_subscribe(mosquitto* /*client*/, void* self, int /*id*/, int count, const int* granted) {
+  void take_subscription(std::span<const int> granted) {
     constexpr int kRefused = 0x80;
-    MosquittoClient& me = self_of(self);
-    for (int i = 0; i < count; ++i) {
-      if (granted[i] >= kRefused) {
-        me.refusal_ =
-            fmt::format("{} does not allow reading the topic: grant it to this user in the access list of the broker",
-                        describe(me.wanted_));
-      }
+    if (std::ranges::any_of(granted, [](int quality) { return quality >= kRefused; })) {
+      refusal_ =
+          fmt::format("{} does not allow reading the topic: grant it to this user in the access list of the broker",
+                      describe(wanted_));
     }
-    ++me.agreed_topics_;
+    ++agreed_topics_;
   }
 
-  static void on_message(mosquitto* /*client*/, void* self, const mosquitto_message* message) {
-    MqttMessage taken{.topic = message->topic, .payload = {}, .is_retained = message->retain};
-    taken.is_too_long = message->payloadlen > kLongestPayload;
-    const auto* const bytes = static_cast<const std::uint8_t*>(message->payload);
-    if (!taken.is_too_long && message->payloadlen > 0) taken.payload.assign(bytes, bytes + message->payloadlen);
-    self_of(self).messages_.push_back(std::move(taken));
+  void take_message(const mosquitto_message& message) {
+    MqttMessage taken{.topic = message.topic, .payload = {}, .is_retained = message.retain};
+    taken.is_too_long = message.payloadlen > kLongestPayload;
+    const auto* const bytes = static_cast<const std::uint8_t*>(message.payload);
+    if (!taken.is_too_long && message.payloadlen > 0) taken.payload.assign(bytes, bytes + message.payloadlen);
+    messages_.push_back(std::move(taken));
   }
 
   std::string explain(int error) const {
@@ -213,6 +224,7 @@ class MosquittoClient final : public MqttClient {
   Interruption interruption_;
   std::unique_ptr<mosquitto, FreeMosquitto> client_;
   std::deque<MqttMessage> messages_;
+  CallbackException thrown_;
   std::size_t agreed_topics_ = 0;
   std::string refusal_;  ///< by the broker
   std::string trouble_;

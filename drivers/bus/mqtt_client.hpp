@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/result.hpp"
+#include "engine/base/secret.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi::drivers::bus {
@@ -15,7 +16,7 @@ struct MqttSubscription {
   std::string host;  ///< a name, an IPv4 or an IPv6 address
   std::uint16_t port = 1883;
   std::string user;  ///< empty: none
-  std::string password;
+  Secret password;
   bool uses_tls = false;
   std::string ca_file;              ///< certificates that the broker is checked with; empty: the system's
   std::vector<std::string> topics;  ///< + matches one level, # all that follow
@@ -39,6 +40,9 @@ enum class MqttStatus : std::uint8_t {
 
 /// A connection to an MQTT broker, which can be closed and opened again for as long as this lives. A test may put
 /// another in its place.
+///
+/// Memory: no payload above 64 KiB is kept. But the library takes each message whole, and twice for a moment: a broker
+/// can make it use up to 512 MiB (twice the longest message of the protocol), which it gives back at once.
 ///
 /// Thread-safe: interrupt() alone; everything else belongs to one thread.
 class MqttClient {

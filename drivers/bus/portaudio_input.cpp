@@ -128,9 +128,9 @@ class PortaudioInput final : public AudioInput {
                                there.empty() ? "there is no input at all" : there)};
   }
 
-  /// On the sound system's own thread: copies, and no more.
+  /// On the sound system's own thread: copies, and no more. An exception, of which there is none, would end the worker.
   static int call_back(const void* input, void* /*output*/, unsigned long frames, const PaStreamCallbackTimeInfo* time,
-                       PaStreamCallbackFlags flags, void* self) {
+                       PaStreamCallbackFlags flags, void* self) noexcept {
     static_cast<PortaudioInput*>(self)->hand_over(static_cast<const float*>(input), frames, *time,
                                                   (flags & paInputOverflow) != 0);
     return paContinue;

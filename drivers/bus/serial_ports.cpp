@@ -81,6 +81,12 @@ AccessTrouble access_trouble(const fs::path& node) {
       fmt::format("sudo usermod -a -G {} $USER, then log in again (a service: SupplementaryGroups={})", group, group)};
 }
 
+std::string serial_device_of(const fs::path& name) {
+  std::error_code error;
+  const fs::path node = fs::canonical(name, error);
+  return "serial port " + (error ? name : node).string();
+}
+
 std::vector<SerialPortInfo> find_serial_ports(const SerialPortPlaces& places) {
   const auto by_id = links_in(places.devices / "serial/by-id");
   const auto by_path = links_in(places.devices / "serial/by-path");

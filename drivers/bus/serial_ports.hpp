@@ -25,6 +25,10 @@ struct SerialPortPlaces {
 /// Thread-safe: yes.
 std::vector<SerialPortInfo> find_serial_ports(const SerialPortPlaces& places = {});
 
+/// The identity of a serial port for comparison with others: "serial port " and the device file that its name, which
+/// may be a link, leads to; the name itself while it leads nowhere.
+std::string serial_device_of(const std::filesystem::path& name);
+
 /// Why this process cannot open `node` for reading and writing, and what to do about it; both empty: it can. `node` is
 /// any device file.
 struct AccessTrouble {

@@ -1,11 +1,17 @@
 // Datagrams that come to a local port, on a socket of Boost.Asio's. A multicast address is joined.
+#include <array>
 #include <cerrno>
+#include <cstring>
+#include <span>
+#include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/multicast.hpp>
 #include <boost/asio/ip/udp.hpp>
+#include <sys/socket.h>
 
 #include "drivers/bus/descriptor_port.hpp"
+#include "drivers/bus/sender_filter.hpp"
 
 namespace yuragi::drivers::bus {
 namespace {
@@ -13,10 +19,33 @@ namespace {
 using boost::asio::ip::udp;
 namespace ip = boost::asio::ip;
 
-/// IPv4 addresses that came through an IPv6 socket look like it; people write them as they are.
-ip::address plain(const ip::address& address) {
-  if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
-  return ip::make_address_v4(ip::v4_mapped, address.to_v6());
+/// One datagram as it was received.
+struct Datagram {
+  ssize_t size = -1;  ///< negative: errno says why there is none
+  udp::endpoint from;
+  std::uint32_t dropped = 0;  ///< datagrams that the kernel has dropped since the socket was opened; 0: it does not say
+};
+
+/// With SO_RXQ_OVFL the kernel adds its count of dropped datagrams to each one that follows them (socket(7)).
+Datagram receive(int socket, std::span<std::uint8_t> buffer) {
+  Datagram datagram;
+  iovec where{.iov_base = buffer.data(), .iov_len = buffer.size()};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof datagram.dropped)> more{};
+  msghdr message{};
+  message.msg_name = datagram.from.data();
+  message.msg_namelen = static_cast<socklen_t>(datagram.from.capacity());
+  message.msg_iov = &where;
+  message.msg_iovlen = 1;
+  message.msg_control = more.data();
+  message.msg_controllen = more.size();
+  datagram.size = recvmsg(socket, &message, 0);
+  if (datagram.size < 0) return datagram;
+  datagram.from.resize(message.msg_namelen);
+  const cmsghdr* const header = CMSG_FIRSTHDR(&message);
+  if (header != nullptr && header->cmsg_level == SOL_SOCKET && header->cmsg_type == SO_RXQ_OVFL) {
+    std::memcpy(&datagram.dropped, CMSG_DATA(header), sizeof datagram.dropped);
+  }
+  return datagram;
 }
 
 std::string udp_remedy_of(int error) {
@@ -39,8 +68,9 @@ class UdpBytePort final : public DescriptorPort {
         address().host.empty() ? ip::address(ip::address_v4::any()) : ip::make_address(address().host, error);
     if (error)
       return Failure{"host: \"" + address().host + "\" is not an address of this machine; leave it empty for all"};
-    sender_ = address().sender.empty() ? ip::address() : plain(ip::make_address(address().sender, error));
-    if (error) return Failure{"sender: \"" + address().sender + "\" is no address"};
+    auto filter = SenderFilter::parse(address().senders);
+    if (!filter) return Failure{"sender: " + filter.error().message};
+    filter_ = std::move(*filter);
 
     error = listen(local);
     if (!error) return {};
@@ -64,15 +94,20 @@ class UdpBytePort final : public DescriptorPort {
       case WaitEnd::kReady:
         break;
     }
-    udp::endpoint from;
-    boost::system::error_code error;
-    const std::size_t size = socket_.receive_from(boost::asio::buffer(buffer.data(), buffer.size()), from, 0, error);
-    if (error == boost::asio::error::would_block || error == boost::asio::error::interrupted) {
-      return {ByteStatus::kSilence};
+    const Datagram datagram = receive(socket_.native_handle(), buffer);
+    if (datagram.size < 0) return {errno == EAGAIN || errno == EINTR ? ByteStatus::kSilence : ByteStatus::kLost};
+
+    ByteArrival arrival;
+    if (datagram.dropped != 0) arrival.overrun = datagram.dropped - std::exchange(dropped_, datagram.dropped);
+    if (!filter_.takes(datagram.from.address())) {
+      arrival.status = ByteStatus::kForeign;
+      arrival.sender = plain_address(datagram.from.address()).to_string();
+    } else if (datagram.size > 0) {
+      arrival.status = ByteStatus::kBytes;
+      arrival.size = static_cast<std::size_t>(datagram.size);
+      arrival.is_whole_datagram = true;
     }
-    if (error) return {ByteStatus::kLost};
-    if (!address().sender.empty() && plain(from.address()) != sender_) return {ByteStatus::kForeign};
-    return size > 0 ? ByteArrival{ByteStatus::kBytes, size, true} : ByteArrival{};
+    return arrival;
   }
 
   /// There is no address to send to: the senders are not known.
@@ -86,6 +121,9 @@ class UdpBytePort final : public DescriptorPort {
     boost::system::error_code error;
     const udp::endpoint endpoint(local, address().port);
     if (socket_.open(endpoint.protocol(), error) || socket_.non_blocking(true, error)) return error;
+    const int yes = 1;
+    setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RXQ_OVFL, &yes, sizeof yes);  // without it nothing is counted
+    dropped_ = 0;
     if (!local.is_multicast()) {
       // Not shared: the last one to bind would get everything, and the others nothing, without an error.
       socket_.bind(endpoint, error);
@@ -98,7 +136,8 @@ class UdpBytePort final : public DescriptorPort {
 
   boost::asio::io_context context_;
   udp::socket socket_{context_};
-  ip::address sender_;
+  SenderFilter filter_;
+  std::uint32_t dropped_ = 0;  ///< the kernel's count, as it was told last
 };
 
 }  // namespace

@@ -36,7 +36,7 @@ struct PendingTransfer {
   PendingTransfer(const PendingTransfer&) = delete;
   PendingTransfer& operator=(const PendingTransfer&) = delete;
 
-  static void LIBUSB_CALL finish(libusb_transfer* transfer) {
+  static void LIBUSB_CALL finish(libusb_transfer* transfer) noexcept {
     static_cast<PendingTransfer*>(transfer->user_data)->is_finished = 1;
   }
 
@@ -182,7 +182,7 @@ class LibusbDevice final : public UsbDevice {
   }
 
   static int LIBUSB_CALL note_arrival(libusb_context* /*context*/, libusb_device* device,
-                                      libusb_hotplug_event /*event*/, void* self) {
+                                      libusb_hotplug_event /*event*/, void* self) noexcept {
     auto* const me = static_cast<LibusbDevice*>(self);
     if (std::ranges::count(me->kinds_, id_of(device)) != 0) me->has_arrived_ = true;
     return 0;

@@ -6,7 +6,8 @@ namespace yuragi::drivers::decode {
 
 std::string_view name_of(Refusal refusal) {
   static constexpr std::array<std::string_view, kRefusalCount> kNames = {
-      "timeout", "too short", "not mine", "bad checksum", "exception", "malformed", "invalid", "implausible"};
+      "timeout",   "too short", "not mine",    "bad checksum", "exception",
+      "malformed", "invalid",   "implausible", "too frequent", "overrun"};
   return kNames.at(static_cast<std::size_t>(refusal));
 }
 

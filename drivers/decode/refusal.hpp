@@ -16,8 +16,10 @@ enum class Refusal : std::uint8_t {
   kMalformed,    ///< not the protocol
   kInvalid,      ///< the device's own mark for "no value"
   kImplausible,  ///< decoded, but no wind blows like that
+  kTooFrequent,  ///< more readings a second than are taken (sensor::ReadingLimit)
+  kOverrun,      ///< came faster than it could be received: dropped by the kernel
 };
-inline constexpr std::size_t kRefusalCount = 8;
+inline constexpr std::size_t kRefusalCount = 10;
 
 std::string_view name_of(Refusal refusal);
 

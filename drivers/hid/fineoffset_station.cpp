@@ -199,6 +199,7 @@ class FineOffsetStation final : public HidStation {
   }
 
   static StationStep publish(const Record& record, HidExchange& exchange, MonoTime next) {
+    exchange.publish(decode::hid::decode_fineoffset_quantities(record));
     const auto wind = decode::hid::decode_fineoffset_record(record);
     if (wind && exchange.publish(*wind)) return StationStep::well(next);
     if (!wind) exchange.refuse(wind.error());

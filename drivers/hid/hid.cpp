@@ -71,6 +71,12 @@ std::unique_ptr<sensor::Sensor> open_hid(const ParameterValues& values) {
                                      sensor::seed_of(station + place.path + place.serial), bus::make_hid_device());
 }
 
+/// Whoever selects alike gets the same station.
+std::vector<sensor::DeviceClaim> hid_claims(const ParameterValues& values) {
+  return sensor::claims_of(fmt::format("USB weather station with station = \"{}\", path = \"{}\", serial = \"{}\"",
+                                       values.text("station"), values.text("path"), values.text("serial")));
+}
+
 std::vector<sensor::FoundDevice> find_hid() {
   std::vector<bus::HidId> ids;
   for (const StationKind& kind : station_kinds()) ids.push_back(kind.id);
@@ -97,6 +103,7 @@ const sensor::DriverDescription kHidDriver{.name = "hid",
                                                "WH1080 and WH3080, AcuRite, Hideki TE923",
                                            .parameters = kHidParameters,
                                            .open = open_hid,
-                                           .find = find_hid};
+                                           .find = find_hid,
+                                           .claims = hid_claims};
 
 }  // namespace yuragi::drivers::hid

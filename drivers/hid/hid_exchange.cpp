@@ -44,6 +44,12 @@ bool HidExchange::discard_waiting() {
   return true;
 }
 
+void HidExchange::publish(std::optional<wind::StationQuantities> quantities) {
+  if (!quantities) return;
+  quantities->time = clock_.now();
+  sink_.quantities(*quantities);
+}
+
 bool HidExchange::publish(const decode::DecodedWind& wind) {
   if (!wind.speed_m_s) {
     refuse(decode::Refusal::kInvalid);

@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "drivers/bus/hid_device.hpp"
 #include "drivers/decode/byte_order.hpp"
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/sensor/sensor.hpp"
+#include "engine/wind/station_quantities.hpp"
 
 namespace yuragi::drivers::hid {
 
@@ -35,6 +37,8 @@ class HidExchange {
   bool discard_waiting();
 
   void refuse(decode::Refusal why) { sink_.refused(why); }
+  /// Passes what the station says besides the wind on, as of now; nothing where there is none.
+  void publish(std::optional<wind::StationQuantities> quantities);
   /// Publishes the wind as of now. Returns false, and counts a refusal, where it has no speed.
   bool publish(const decode::DecodedWind& wind);
 

@@ -177,6 +177,17 @@ std::unique_ptr<sensor::Sensor> open_modbus(const ParameterValues& values) {
   return std::make_unique<ModbusSensor>(std::move(profile), shared_modbus_bus(line), direction_bus, seed);
 }
 
+/// Sensors on one line share it (ModbusBus); devices and gateways in a network have no line.
+std::vector<sensor::DeviceClaim> modbus_claims(const ParameterValues& values) {
+  std::vector<sensor::DeviceClaim> claims;
+  if (values.text("transport") == "tcp") return claims;
+  for (const std::string_view key : {"device", "direction_device"}) {
+    const std::string& device = values.text(key);
+    if (!device.empty()) claims.push_back({.device = bus::serial_device_of(device), .is_shared = true});
+  }
+  return claims;
+}
+
 /// Any serial port may have a Modbus line behind it: `yuragi sensors probe modbus` finds out.
 std::vector<sensor::FoundDevice> find_modbus() {
   std::vector<sensor::FoundDevice> found;
@@ -197,6 +208,7 @@ const sensor::DriverDescription kModbusDriver{
     .summary = "anemometers and vanes on Modbus TCP or RTU, by device profiles",
     .parameters = kModbusParameters,
     .open = open_modbus,
-    .find = find_modbus};
+    .find = find_modbus,
+    .claims = modbus_claims};
 
 }  // namespace yuragi::drivers::modbus

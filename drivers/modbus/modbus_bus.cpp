@@ -241,7 +241,7 @@ std::shared_ptr<ModbusBus> shared_modbus_bus(const bus::ModbusLine& line) {
   std::weak_ptr<ModbusBus>& known = buses[address_of(line)];
   std::shared_ptr<ModbusBus> bus = known.lock();
   if (bus) {
-    if (const auto suits = bus->suits(line); !suits) throw std::runtime_error(suits.error().message);
+    if (const auto suits = bus->suits(line); !suits) throw sensor::LineInUse(suits.error().message);
     return bus;
   }
   bus = std::make_shared<ModbusBus>(line, bus::make_modbus_connection(line));

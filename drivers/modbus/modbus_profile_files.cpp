@@ -25,7 +25,9 @@ std::vector<fs::path> profile_directories(const std::string& first) {
   std::error_code ignored;
   const fs::path executable = fs::read_symlink("/proc/self/exe", ignored);
   directories.push_back(executable.parent_path() / "../share/yuragi/profiles");
+#ifdef YURAGI_PROFILE_SOURCE_DIR
   directories.emplace_back(YURAGI_PROFILE_SOURCE_DIR);
+#endif
   return directories;
 }
 

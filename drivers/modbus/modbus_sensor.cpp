@@ -26,12 +26,6 @@ std::string without(const ModbusRead& read) {
                      has_gust ? "gust" : "");
 }
 
-/// Did the request take its whole time-out, or a gateway's?
-bool has_cost_time(const ModbusTrouble& trouble) {
-  return trouble.kind == ModbusTrouble::Kind::kSilence || trouble.kind == ModbusTrouble::Kind::kOthersOnly ||
-         trouble.refusal.why == decode::Refusal::kTooShort || is_silence_by_proxy(trouble);
-}
-
 }  // namespace
 
 ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus,
@@ -91,7 +85,7 @@ Result<MonoTime, Failure> ModbusSensor::read_first(const sensor::Clock& clock, s
     if (reply.error().kind == ModbusTrouble::Kind::kInterrupted) return now.mono;
     if (reply.error().kind == ModbusTrouble::Kind::kLost) return Failure{explain(read, reply.error())};
     report_unusable(sink, explain(read, reply.error()));
-    return has_cost_time(reply.error()) ? now.mono + read.backoff.next() : next_round(now.mono);
+    return now.mono + read.backoff.next();
   }
   read.backoff.reset();
 

@@ -16,8 +16,9 @@ namespace yuragi::drivers::modbus {
 /// come along with it (direction, gust).
 ///
 /// Each round publishes one reading at most, timed when the speed arrived. Without a speed there is none; without a
-/// direction or gust it goes without. A slave that does not reply gets fewer requests, so that it does
-/// not slow the others down: after waits that double from 0.25 s up to 10 s.
+/// direction or gust it goes without. A slave that gives no valid reply (silence, damaged bytes, another
+/// protocol, an exception) gets fewer requests, so that it neither slows the others down nor is flooded itself: after
+/// waits that double from 0.25 s up to 10 s, until the next valid reply.
 class ModbusSensor final : public sensor::ReopeningSensor {
  public:
   /// `direction_bus`: the vane's own line; nullptr where it is on the same. `seed` makes the waits of several sensors

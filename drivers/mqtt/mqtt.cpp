@@ -24,7 +24,9 @@
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/mqtt/mqtt_payload.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
+#include "drivers/sensor/secret_source.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 
 namespace yuragi::drivers::mqtt {
@@ -59,7 +61,19 @@ const std::array kMqttParameters = {
               .max = 65535,
               .help = "the broker's port; 0 takes 1883, and 8883 with TLS"},
     Parameter{.name = "user", .unit = "", .default_value = std::string(""), .help = "the user name; empty: none"},
-    Parameter{.name = "password", .unit = "", .default_value = std::string(""), .help = "the user's password"},
+    Parameter{.name = "password",
+              .unit = "",
+              .default_value = Secret(),
+              .help = "the user's password; or one of password_file and password_env, which keep it out of this file"},
+    Parameter{.name = "password_file",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "a file that holds the password, at most 4096 bytes; its mode should be 0640 or stricter",
+              .is_secret_file = true},
+    Parameter{.name = "password_env",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "the environment variable that holds the password"},
     Parameter{.name = "tls", .unit = "", .default_value = false, .help = "use TLS, and verify the broker"},
     Parameter{.name = "ca_file",
               .unit = "",
@@ -70,10 +84,12 @@ const std::array kMqttParameters = {
               .default_value = std::string("number"),
               .help = "settings for a common publisher; topics, paths and unit that are set override them",
               .choices = kMqttPresetNames},
-    Parameter{.name = "topic",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "the topic of the speed, and of quantities without a topic of their own; + matches any level"},
+    Parameter{
+        .name = "topic",
+        .unit = "",
+        .default_value = std::string(""),
+        .help = "the topic of the speed, and of quantities without a topic of their own; + matches any level; at most "
+                "100 readings a second are taken, of messages of at most 64 KiB"},
     Parameter{.name = "speed_path",
               .unit = "",
               .default_value = std::string(""),
@@ -206,6 +222,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     }
     const auto plausible = decode::checked(wind);
     if (!plausible) return sink.refused(plausible.error());
+    if (!limit_.admits(now.mono)) return sink.refused(decode::Refusal::kTooFrequent);
 
     has_received_ = true;
     received_at_ = now.mono;
@@ -226,6 +243,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
   std::unique_ptr<bus::MqttClient> client_;
   HeldValue direction_;
   HeldValue gust_;
+  sensor::ReadingLimit limit_;
   bool has_received_ = false;  // of the wind, since it connected
   MonoTime received_at_{};     // or since when it could have
 };
@@ -242,6 +260,24 @@ void check_source(std::string_view name, const MqttSource& source) {
         fmt::format("{}path: \"{}\" is not a JSON pointer, which begins with a slash, as in /TX23/Speed/Act",
                     name.empty() ? "speed_" : name, source.place.pointer));
   }
+}
+
+/// The password from the one place that is given; empty: none. Throws, naming the setting.
+Secret password_of(const ParameterValues& values) {
+  const Secret& password = values.secret("password");
+  const std::string& file = values.text("password_file");
+  const std::string& variable = values.text("password_env");
+  if (static_cast<int>(!password.is_empty()) + static_cast<int>(!file.empty()) + static_cast<int>(!variable.empty()) >
+      1)
+    throw std::runtime_error(
+        "password: is given more than once; allowed: one of password, password_file, password_env");
+  const auto found = [](std::string_view name, const Result<Secret, Failure>& secret) {
+    if (!secret) throw std::runtime_error(fmt::format("{}: {}", name, secret.error().message));
+    return *secret;
+  };
+  if (!file.empty()) return found("password_file", sensor::secret_in_file(file));
+  if (!variable.empty()) return found("password_env", sensor::secret_in_environment(variable));
+  return password;
 }
 
 MqttSettings mqtt_settings_of(const ParameterValues& values) {
@@ -273,7 +309,7 @@ MqttSettings mqtt_settings_of(const ParameterValues& values) {
   const std::int64_t port = values.integer("port");
   subscription.port = static_cast<std::uint16_t>(port != 0 ? port : subscription.uses_tls ? 8883 : 1883);
   subscription.user = values.text("user");
-  subscription.password = values.text("password");
+  subscription.password = password_of(values);
   subscription.ca_file = values.text("ca_file");
   subscription.keep_alive = std::chrono::seconds(values.integer("keep_alive"));
   for (const MqttSource* const source : {&settings.speed, &settings.direction, &settings.gust}) {

@@ -1,7 +1,10 @@
 // Wind that another program sends as Open Sound Control messages over UDP (M. Wright, "The Open Sound Control 1.0
 // specification", 2002): a patch in Max, Pure Data or TouchDesigner, a script with oscsend.
 //
-//   oscsend HOST 9000 /wind ff 4.2 270        speed in m/s, and where it comes from in degrees
+//   oscsend 127.0.0.1 9000 /wind ff 4.2 270   speed in m/s, and where it comes from in degrees
+//
+// A message proves nothing about its sender. By default only programs of this machine are heard; whoever listens to
+// others names them (`host` and `from`). No more readings are taken than sensor::ReadingLimit allows.
 //
 // Address and order of the arguments are configurable; they are numbers of any of OSC's types. An argument that is no
 // number, or missing, is an unknown value.
@@ -12,8 +15,10 @@
 
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/bus/osc_message.hpp"
+#include "drivers/bus/sender_filter.hpp"
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 
@@ -32,16 +37,20 @@ const std::array kOscParameters = {
               .help = "the UDP port that messages are received on"},
     Parameter{.name = "host",
               .unit = "",
-              .default_value = std::string(""),
-              .help = "local address to listen on, or a multicast address; empty: all"},
-    Parameter{.name = "sender",
+              .default_value = std::string("127.0.0.1"),
+              .help = "the local address to listen on: 127.0.0.1 hears this machine only, 0.0.0.0 listens on all; or a "
+                      "multicast address"},
+    Parameter{.name = "from",
               .unit = "",
               .default_value = std::string(""),
-              .help = "accept messages from this address only; empty: from any"},
-    Parameter{.name = "address",
-              .unit = "",
-              .default_value = std::string("/wind"),
-              .help = "the messages' OSC address, or a pattern: /station/*/wind"},
+              .help =
+                  "who may send: addresses and nets separated by commas (192.168.1.20, 10.0.0.0/8); 0.0.0.0/0: any; "
+                  "may be empty only where host hears this machine alone"},
+    Parameter{
+        .name = "address",
+        .unit = "",
+        .default_value = std::string("/wind"),
+        .help = "the messages' OSC address, or a pattern: /station/*/wind; at most 100 readings a second are taken"},
     Parameter{.name = "speed_argument",
               .unit = "",
               .default_value = std::int64_t{0},
@@ -118,26 +127,28 @@ class OscSensor final : public sensor::ReopeningSensor {
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override {
     if (const auto opened = port_->open(); !opened) return opened.error();
     has_received_ = false;
+    strangers_.clear();
     received_at_ = clock.now().mono;
     return received_at_;
   }
 
   Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
     if (!has_received_)
-      report_unusable(sink, fmt::format("waits for OSC messages {} at {}", settings_.address, where_));
+      report_unusable(sink, fmt::format("waits for OSC messages {} at {}{}", settings_.address, where_, strangers_));
     const bus::ByteArrival arrival = port_->read(buffer_, kOscWait);
+    if (arrival.overrun > 0) sink.refused(decode::Refusal::kOverrun, arrival.overrun);
     const Instant now = clock.now();
     if (arrival.status == bus::ByteStatus::kInterrupted) return Failure{"interrupted"};
     if (arrival.status == bus::ByteStatus::kLost || arrival.status == bus::ByteStatus::kEnd)
       return Failure{"lost " + where_};
-    if (arrival.status == bus::ByteStatus::kForeign) sink.refused(decode::Refusal::kNotMine);
+    if (arrival.status == bus::ByteStatus::kForeign) refuse_sender(arrival.sender, sink);
     if (arrival.status == bus::ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
     if (now.mono - received_at_ >= settings_.silence) {
       has_received_ = true;  // the status now reports more than waiting
       report_unusable(sink, fmt::format("no wind has been received on {} for {:g} s: check that the sender is running, "
                                         "that it sends {} there, and "
-                                        "that no firewall stops it",
-                                        where_, seconds(settings_.silence), settings_.address));
+                                        "that no firewall stops it{}",
+                                        where_, seconds(settings_.silence), settings_.address, strangers_));
     }
     return now.mono;
   }
@@ -145,6 +156,12 @@ class OscSensor final : public sensor::ReopeningSensor {
   void close() noexcept override { port_->close(); }
 
  private:
+  /// The first one is named, so that neither a flood nor forged addresses change the status without end.
+  void refuse_sender(const std::string& sender, sensor::SensorSink& sink) {
+    sink.refused(decode::Refusal::kNotMine);
+    if (strangers_.empty()) strangers_ = "; refuses " + sender + ", which is not in `from`";
+  }
+
   void take_datagram(std::span<const std::uint8_t> datagram, Instant now, sensor::SensorSink& sink) {
     sink.raw(sensor::RawDirection::kReceived, datagram);
     const auto messages = bus::decode_osc(datagram);
@@ -156,9 +173,10 @@ class OscSensor final : public sensor::ReopeningSensor {
     if (!bus::osc_address_matches(message.address, settings_.address)) return sink.refused(decode::Refusal::kNotMine);
     const auto wind = wind_of(message, settings_);
     if (!wind) return sink.refused(wind.error());
+    if (!limit_.admits(now.mono)) return sink.refused(decode::Refusal::kTooFrequent);
     has_received_ = true;
     received_at_ = now.mono;
-    report_connected(sink, fmt::format("OSC messages {} at {}", settings_.address, where_));
+    report_connected(sink, fmt::format("OSC messages {} at {}{}", settings_.address, where_, strangers_));
     sink.reading({.time = now,
                   .speed_m_s = *wind->speed_m_s,
                   .direction_deg = wind->direction_deg,
@@ -170,23 +188,49 @@ class OscSensor final : public sensor::ReopeningSensor {
   std::string where_;
   std::unique_ptr<bus::BytePort> port_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kLargestDatagram);
+  sensor::ReadingLimit limit_;
+  std::string strangers_;      // who was refused first, as the status says it; empty: nobody
   bool has_received_ = false;  // of the wind, since it has the port
   MonoTime received_at_{};     // or since when it could have
 };
 
+/// Throws, naming the setting, where it is not said who may send.
+void check_senders(const std::string& host, const std::string& from) {
+  const auto is_loopback = bus::is_loopback(host);
+  if (!is_loopback) throw std::runtime_error("host: " + is_loopback.error().message);
+  if (const auto filter = bus::SenderFilter::parse(from); !filter)
+    throw std::runtime_error("from: " + filter.error().message);
+  if (from.empty() && !*is_loopback) {
+    throw std::runtime_error(
+        "from: is missing; host " + host +
+        " hears other machines: name those that may send (192.168.1.20, 10.0.0.0/8), or 0.0.0.0/0 for "
+        "any");
+  }
+}
+
+bus::BytePortAddress port_of(const ParameterValues& values) {
+  return {.kind = bus::BytePortKind::kUdp,
+          .host = values.text("host"),
+          .port = static_cast<std::uint16_t>(values.integer("port")),
+          .senders = values.text("from")};
+}
+
 std::unique_ptr<sensor::Sensor> open_osc(const ParameterValues& values) {
   OscSettings settings;
-  settings.port.port = static_cast<std::uint16_t>(values.integer("port"));
-  settings.port.host = values.text("host");
-  settings.port.sender = values.text("sender");
+  settings.port = port_of(values);
   settings.address = values.text("address");
   settings.speed_argument = values.integer("speed_argument");
   settings.direction_argument = values.integer("direction_argument");
   settings.gust_argument = values.integer("gust_argument");
   settings.metres_per_second = sensor::metres_per_second_in(values.text("speed_unit"));
   settings.silence = from_seconds(values.number("silence"));
+  check_senders(settings.port.host, settings.port.senders);
   if (!settings.address.starts_with('/')) throw std::runtime_error("address: must begin with a slash, as in /wind");
   return std::make_unique<OscSensor>(std::move(settings));
+}
+
+std::vector<sensor::DeviceClaim> osc_claims(const ParameterValues& values) {
+  return sensor::claims_of(bus::sole_device_of(port_of(values)));
 }
 
 }  // namespace
@@ -195,6 +239,7 @@ extern const sensor::DriverDescription kOscDriver;
 const sensor::DriverDescription kOscDriver{.name = "osc",
                                            .summary = "wind that another program sends as Open Sound Control messages",
                                            .parameters = kOscParameters,
-                                           .open = open_osc};
+                                           .open = open_osc,
+                                           .claims = osc_claims};
 
 }  // namespace yuragi::drivers::osc

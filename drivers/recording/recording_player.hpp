@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "drivers/sensor/sensor.hpp"
 #include "drivers/windlog/windlog_player.hpp"
 
 namespace yuragi::drivers::recording {
@@ -20,7 +23,8 @@ struct PlayerOrder {
 /// The status of a recording that plays.
 struct PlayerReport {
   std::string file;
-  std::optional<windlog::PlayerPosition> position;  ///< nothing while it cannot be read
+  std::optional<windlog::PlayerPosition> position;  ///< nothing until it has been opened
+  std::string failure = {};                         ///< why it cannot be read at present; empty: it can
   std::uint64_t orders_done = 0;                    ///< carried out or refused
   std::string refusal;                              ///< why the last order was not carried out; empty: it was
 };
@@ -37,5 +41,8 @@ class RecordingPlayer {
   /// As of the last poll().
   virtual PlayerReport report() const = 0;
 };
+
+/// A sensor that plays a recording, and is a RecordingPlayer, too. The file is opened by its first poll().
+std::unique_ptr<sensor::Sensor> play_recording(std::filesystem::path file, windlog::PlayerOptions options);
 
 }  // namespace yuragi::drivers::recording

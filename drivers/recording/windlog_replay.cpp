@@ -6,12 +6,14 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "drivers/recording/recording_player.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "drivers/windlog/recording_parts.hpp"
 #include "drivers/windlog/windlog_player.hpp"
 
 namespace yuragi::drivers::recording {
@@ -70,19 +72,23 @@ class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
   MonoTime poll(const sensor::Clock& clock, sensor::SensorSink& sink) override {
     const Instant now = clock.now();
     auto next = play(now, sink);
+    std::string failure;
     if (next) {
       back_off_ = Nanoseconds{0};
       report(sink);
     } else {
       // The player, if there is one, keeps its place.
-      sink.link(wind::LinkState::kConnecting, next.error().message);
+      failure = next.error().message;
+      sink.link(wind::LinkState::kConnecting, failure);
       reported_.reset();
       back_off_ = back_off_ == Nanoseconds{0} ? kFirstBackOff : std::min(2 * back_off_, kMaxBackOff);
       next = now.mono + back_off_;
     }
-    publish_report(now.mono);
+    publish_report(now.mono, std::move(failure));
     return *next;
   }
+
+  void interrupt() noexcept override { stop_.request_stop(); }
 
   std::optional<std::uint64_t> order(const PlayerOrder& order) override {
     const std::lock_guard lock(mutex_);
@@ -103,7 +109,7 @@ class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
   /// Plays what is due; returns when the next reading is due.
   Result<MonoTime, Failure> play(const Instant& now, sensor::SensorSink& sink) {
     if (!player_) {
-      auto opened = windlog::WindlogPlayer::open(file_, options_, now);
+      auto opened = windlog::WindlogPlayer::open(file_, options_, now, stop_.get_token());
       if (!opened) return opened.error();
       player_.emplace(std::move(*opened));
     }
@@ -161,14 +167,16 @@ class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
     }
   }
 
-  void publish_report(MonoTime now) {
+  void publish_report(MonoTime now, std::string failure) {
     const std::lock_guard lock(mutex_);
+    report_.failure = std::move(failure);
     report_.position.reset();
     if (player_) report_.position = player_->position(now);
   }
 
   std::filesystem::path file_;
   windlog::PlayerOptions options_;
+  std::stop_source stop_;
 
   // Of the sensor's thread.
   std::optional<windlog::WindlogPlayer> player_;
@@ -191,7 +199,7 @@ T value_of(const char* parameter, Result<T, Failure> parsed) {
 std::unique_ptr<sensor::Sensor> open_windlog(const ParameterValues& values) {
   const std::filesystem::path file = values.text("file");
   if (file.empty()) throw std::runtime_error("windlog: file: name the recording to play");
-  if (!std::filesystem::exists(file)) {
+  if (!windlog::recording_exists(file)) {
     throw std::runtime_error("windlog: file: " + file.string() +
                              ": there is no such recording; `yuragi run --record FILE` or `yuragi import` makes one");
   }
@@ -203,10 +211,14 @@ std::unique_ptr<sensor::Sensor> open_windlog(const ParameterValues& values) {
   options.is_paused = values.flag("paused");
   options.at_time_of_day = values.flag("same_time_of_day");
   options.recorded_offset = value_of("utc_offset", windlog::parse_utc_offset(values.text("utc_offset")));
-  return std::make_unique<WindlogReplay>(file, std::move(options));
+  return play_recording(file, std::move(options));
 }
 
 }  // namespace
+
+std::unique_ptr<sensor::Sensor> play_recording(std::filesystem::path file, windlog::PlayerOptions options) {
+  return std::make_unique<WindlogReplay>(std::move(file), std::move(options));
+}
 
 extern const sensor::DriverDescription kWindlogDriver;
 const sensor::DriverDescription kWindlogDriver{.name = "windlog",

@@ -2,14 +2,22 @@
 
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
+#include "drivers/sensor/device_claim.hpp"
 #include "drivers/sensor/found_device.hpp"
 #include "drivers/sensor/sensor.hpp"
 #include "engine/base/parameter.hpp"
 
 namespace yuragi::drivers::sensor {
+
+/// The line that a sensor shares with others is in use with other settings, at least until they have ended.
+class LineInUse : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// A family of sensors: one constant `kXDriver` in its own file, listed in drivers/CMakeLists.txt.
 struct DriverDescription {
@@ -22,6 +30,9 @@ struct DriverDescription {
   /// Finds plugged-in devices that this driver can read; nullptr where nothing can be plugged in. Opens devices only
   /// briefly.
   std::vector<FoundDevice> (*find)() = nullptr;
+  /// The devices that a sensor of these values has to itself, without touching them, of values that open() takes;
+  /// nullptr: none. Two sensors that claim the same device are refused.
+  std::vector<DeviceClaim> (*claims)(const ParameterValues& values) = nullptr;
   /// It plays a recording: never to be taken for the live wind.
   bool plays_recordings = false;
   /// A relative sensor: only the fluctuations of its readings are valid, not their scale, which depends on where it

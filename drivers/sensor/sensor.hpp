@@ -7,6 +7,7 @@
 #include "drivers/decode/refusal.hpp"
 #include "drivers/sensor/clock.hpp"
 #include "engine/wind/link_state.hpp"
+#include "engine/wind/station_quantities.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi::drivers::sensor {
@@ -20,7 +21,9 @@ class SensorSink {
  public:
   virtual ~SensorSink() = default;
   virtual void reading(const wind::WindReading& reading) = 0;
-  virtual void refused(decode::Refusal why) = 0;
+  /// What the station says besides the wind, for the recording. Values outside their physical range are left out.
+  virtual void quantities(const wind::StationQuantities& /*quantities*/) {}
+  virtual void refused(decode::Refusal why, std::uint64_t times = 1) = 0;
   /// Called at each change, and for each failed attempt: what happened, and what to do about it.
   virtual void link(wind::LinkState state, std::string_view detail) = 0;
   /// Each message from or to the device, before it is decoded: a line, a report, a request. Received ones count as

@@ -63,7 +63,8 @@ const std::vector<Parameter>& parameters_of_every_port() {
       {.name = "sender",
        .unit = "",
        .default_value = std::string(""),
-       .help = "udp: accept datagrams from this address only; empty: from any"},
+       .help = "udp: accept datagrams from these only: addresses and nets (192.168.1.0/24) separated by commas; empty: "
+               "from any; at most 100 readings a second are taken"},
       {.name = "file", .unit = "", .default_value = std::string(""), .help = "file: path of a file or named pipe"},
       {.name = "play_rate",
        .unit = "Hz",
@@ -124,7 +125,7 @@ bus::BytePortAddress byte_port_address_of(const ParameterValues& values) {
   address.stop_bits = static_cast<int>(values.integer("stop_bits"));
   address.host = values.text("host");
   address.port = static_cast<std::uint16_t>(values.integer("port"));
-  address.sender = values.text("sender");
+  address.senders = values.text("sender");
   address.is_played = values.number("play_rate") > 0.0;
 
   if (transport == "serial") {
@@ -154,6 +155,10 @@ bus::BytePortAddress byte_port_address_of(const ParameterValues& values) {
     throw std::runtime_error("poll_interval: transport " + transport + " cannot send; a request needs serial or tcp");
   }
   return address;
+}
+
+std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values) {
+  return sensor::claims_of(bus::sole_device_of(byte_port_address_of(values)));
 }
 
 std::vector<sensor::FoundDevice> find_behind_serial_ports(const std::string& settings) {

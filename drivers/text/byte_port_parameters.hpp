@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "drivers/bus/byte_port.hpp"
+#include "drivers/sensor/device_claim.hpp"
 #include "drivers/sensor/found_device.hpp"
 #include "engine/base/parameter.hpp"
 
@@ -14,6 +15,9 @@ std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, dou
 
 /// The address in such values. Throws std::runtime_error, saying what to do, where they cannot work together.
 bus::BytePortAddress byte_port_address_of(const ParameterValues& values);
+
+/// What a sensor of such values has to itself: its serial port, or its UDP port.
+std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values);
 
 /// The serial ports that are plugged in. Whether an anemometer is behind one, and which, is not known before it is
 /// opened; `settings` are what else stands in its [[sensor]] table.

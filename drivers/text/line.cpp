@@ -160,6 +160,7 @@ const sensor::DriverDescription kLineDriver{
       const LineSensorSettings settings = line_sensor_settings_of(values);
       return std::make_unique<LineSensor>(settings, bus::make_byte_port(settings.text.address));
     },
-    .find = [] { return find_behind_serial_ports("baud = 9600  # as Serial.begin() of the sketch says"); }};
+    .find = [] { return find_behind_serial_ports("baud = 9600  # as Serial.begin() of the sketch says"); },
+    .claims = byte_port_claims};
 
 }  // namespace yuragi::drivers::text

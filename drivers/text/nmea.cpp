@@ -174,6 +174,7 @@ const sensor::DriverDescription kNmeaDriver{
       const NmeaSensorSettings settings = nmea_sensor_settings_of(values);
       return std::make_unique<NmeaSensor>(settings, bus::make_byte_port(settings.text.address));
     },
-    .find = [] { return find_behind_serial_ports("baud = 4800  # or 9600, 19200: as the anemometer is set"); }};
+    .find = [] { return find_behind_serial_ports("baud = 4800  # or 9600, 19200: as the anemometer is set"); },
+    .claims = byte_port_claims};
 
 }  // namespace yuragi::drivers::text

@@ -137,6 +137,15 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
   return std::optional(reading);
 }
 
+/// Of any sentence of the talker: `sentences` says where the wind is taken from.
+std::optional<wind::StationQuantities> NmeaSensor::quantities_of(std::string_view line) const {
+  const NmeaFormat format = settings_.format == NmeaFormat::kAuto ? format_by_look(line) : settings_.format;
+  if (format != NmeaFormat::kNmea) return {};
+  if (!settings_.talker.empty() && name_of_message(format, line).talker != settings_.talker) return {};
+  return decode::text::decode_nmea_quantities(
+      {.checksum = settings_.checksum, .status = settings_.status, .xdr_first_id = settings_.xdr_first_id}, line);
+}
+
 std::optional<wind::WindReading> NmeaSensor::take_held() {
   if (held_) choice_.settle();
   return std::exchange(held_, std::nullopt);

@@ -50,6 +50,7 @@ class NmeaSensor final : public TextSensor {
 
  private:
   Judgement judge(std::string_view line, const Instant& now) override;
+  std::optional<wind::StationQuantities> quantities_of(std::string_view line) const override;
   std::optional<wind::WindReading> take_held() override;
   void begin() override;
   std::string name() const override;

@@ -114,6 +114,7 @@ Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::S
   bus::ByteArrival arrival{bus::ByteStatus::kBytes};
   if (rest_.empty()) {
     arrival = port_->read(buffer_, longest_read(clock.now().mono));
+    if (arrival.overrun > 0) sink.refused(decode::Refusal::kOverrun, arrival.overrun);
     if (arrival.status == bus::ByteStatus::kBytes) {
       rest_ = std::span(buffer_).first(arrival.size);
       ends_with_rest_ = arrival.is_whole_datagram;
@@ -229,6 +230,10 @@ bool TextSensor::take_line(std::string_view line, const Instant& now, sensor::Se
     return false;
   }
 
+  if (auto quantities = quantities_of(line)) {
+    quantities->time = now;
+    sink.quantities(*quantities);
+  }
   const Judgement judgement = judge(line, now);
   if (!judgement) {
     const bool is_readable = is_text(line);
@@ -253,6 +258,8 @@ void TextSensor::drop_cut_line(sensor::SensorSink& sink) {
 }
 
 void TextSensor::publish(const wind::WindReading& reading, sensor::SensorSink& sink) {
+  const bool can_flood = settings_.address.kind == bus::BytePortKind::kUdp;
+  if (can_flood && !limit_.admits(reading.time.mono)) return sink.refused(decode::Refusal::kTooFrequent);
   readings_.arrive(reading.time.mono);
   vain_openings_ = 0;
   bytes_ = readable_lines_ = garbled_lines_ = foreign_datagrams_ = late_lines_ = 0;
@@ -322,7 +329,7 @@ std::string TextSensor::trouble_without_lines() const {
                        seconds(settings_.response_timeout));
   }
   if (foreign_datagrams_ > 0 && bytes_ == 0) {
-    return fmt::format("datagrams arrive at {}, but none from {}: check sender", where_, settings_.address.sender);
+    return fmt::format("datagrams arrive at {}, but none from {}: check sender", where_, settings_.address.senders);
   }
   const bool is_serial = settings_.address.kind == bus::BytePortKind::kSerial;
   return fmt::format("bytes arrive from {}, but no lines: check {}", where_,

@@ -11,9 +11,11 @@
 
 #include "drivers/bus/byte_port.hpp"
 #include "drivers/decode/text/line_assembler.hpp"
+#include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/text/arrival_watch.hpp"
 #include "engine/base/parameter.hpp"
+#include "engine/wind/station_quantities.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi::drivers::text {
@@ -47,6 +49,8 @@ class TextSensor : public sensor::ReopeningSensor {
   TextSensor(const TextSensorSettings& settings, std::unique_ptr<bus::BytePort> port);
 
   virtual Judgement judge(std::string_view line, const Instant& now) = 0;
+  /// What a line says besides the wind, whether it has a wind or not; its time is set by the caller.
+  virtual std::optional<wind::StationQuantities> quantities_of(std::string_view /*line*/) const { return {}; }
   /// After a pause that ends a burst of messages: a reading that was held until then.
   virtual std::optional<wind::WindReading> take_held() { return {}; }
   /// The device was opened again: forget the messages before.
@@ -103,6 +107,7 @@ class TextSensor : public sensor::ReopeningSensor {
 
   MonoTime last_bytes_{};
   ArrivalWatch readings_;
+  sensor::ReadingLimit limit_;  ///< UDP: others can send whatever they like
   int vain_openings_ = 0;
 
   // Received since the last reading: to report the cause where none follows.

@@ -186,6 +186,12 @@ std::unique_ptr<sensor::Sensor> open_usb(const ParameterValues& values) {
   return std::make_unique<UsbSensor>(std::move(settings), seed, std::move(device));
 }
 
+/// Whoever selects alike gets the same device.
+std::vector<sensor::DeviceClaim> usb_claims(const ParameterValues& values) {
+  return sensor::claims_of(fmt::format("USB device with device = \"{}\", serial = \"{}\", port = \"{}\"",
+                                       values.text("device"), values.text("serial"), values.text("port")));
+}
+
 std::vector<sensor::FoundDevice> find_usb() {
   std::vector<sensor::FoundDevice> found;
   const auto plugged = bus::make_usb_device(ids_of(usb_daq_models()))->plugged();
@@ -212,6 +218,7 @@ const sensor::DriverDescription kUsbDriver{
     .summary = "a cup and a vane on a counter and ADC device: MCC USB-1208FS-Plus, LabJack U3",
     .parameters = kUsbParameters,
     .open = open_usb,
-    .find = find_usb};
+    .find = find_usb,
+    .claims = usb_claims};
 
 }  // namespace yuragi::drivers::usb

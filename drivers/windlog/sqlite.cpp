@@ -44,6 +44,8 @@ std::string_view advice_for(int code) {
       return "another program uses it; stop that one, or wait for it";
     case SQLITE_NOTADB:
       return "this is not a Yuragi recording";
+    case SQLITE_INTERRUPT:
+      return "it was ended before it was done";
     case SQLITE_CORRUPT:
       return "the file is damaged; `sqlite3 FILE .recover` may save what is left";
     default:
@@ -121,6 +123,15 @@ Result<Database, Failure> Database::open(const std::filesystem::path& file, Acce
   return database;
 }
 
+void Database::end_on(const std::stop_token& stop) {
+  if (!stop.stop_possible()) return;
+  constexpr int kInstructionsBetweenLooks = 10'000;  // of SQLite's machine: well under a millisecond
+  stop_ = std::make_unique<std::stop_token>(stop);
+  sqlite3_progress_handler(
+      connection_.get(), kInstructionsBetweenLooks,
+      [](void* token) { return static_cast<std::stop_token*>(token)->stop_requested() ? 1 : 0; }, stop_.get());
+}
+
 Result<void, Failure> Database::run(const char* sql) {
   if (sqlite3_exec(connection_.get(), sql, nullptr, nullptr, nullptr) != SQLITE_OK) return failure();
   return {};
@@ -153,7 +164,9 @@ Failure Database::failure() const {
   if (const int error = sqlite3_system_errno(connection_.get()); error != 0) {
     message += " (" + std::system_category().message(error) + ")";
   }
-  return {message.append("; ").append(advice_for(error_code()))};
+  const bool is_damaged = error_code() == SQLITE_CORRUPT || error_code() == SQLITE_NOTADB;
+  return {message.append("; ").append(advice_for(error_code())),
+          is_damaged ? FailureKind::kBadData : FailureKind::kOther};
 }
 
 }  // namespace yuragi::drivers::windlog::sqlite

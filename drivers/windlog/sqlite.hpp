@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -62,6 +63,11 @@ class Database {
   /// The first column of the first row; a failure if there is none.
   Result<std::int64_t, Failure> integer(std::string_view sql);
 
+  /// Makes this connection's statements fail within milliseconds once `stop` is requested.
+  void end_on(const std::stop_token& stop);
+
+  /// How many rows the last INSERT, UPDATE or DELETE changed.
+  std::int64_t changed_rows() const { return sqlite3_changes(connection_.get()); }
   std::int64_t last_id() const { return sqlite3_last_insert_rowid(connection_.get()); }
   bool in_transaction() const { return sqlite3_get_autocommit(connection_.get()) == 0; }
   void set_busy_timeout(int timeout_ms) { sqlite3_busy_timeout(connection_.get(), timeout_ms); }
@@ -83,6 +89,7 @@ class Database {
   struct Close {
     void operator()(sqlite3* connection) const { sqlite3_close_v2(connection); }
   };
+  std::unique_ptr<std::stop_token> stop_;  // the connection refers to it
   std::unique_ptr<sqlite3, Close> connection_;
   std::filesystem::path file_;
 };

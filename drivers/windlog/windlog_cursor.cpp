@@ -18,8 +18,9 @@ Failure of_data(const Failure& failure) {
 
 }  // namespace
 
-Result<WindlogCursor, Failure> WindlogCursor::open(const std::filesystem::path& file, std::string_view sensor) {
-  auto reader = WindlogReader::open(file);
+Result<WindlogCursor, Failure> WindlogCursor::open(const std::filesystem::path& file, std::string_view sensor,
+                                                   const std::stop_token& stop) {
+  auto reader = WindlogReader::open(file, stop);
   if (!reader) return reader.error();
   WindlogCursor cursor(std::move(*reader));
   if (const auto chosen = cursor.choose(sensor); !chosen) return chosen.error();
@@ -38,21 +39,23 @@ Result<void, Failure> WindlogCursor::choose(std::string_view sensor) {
     if (!*first) return Failure{file + ": there is no reading in this recording", FailureKind::kBadData};
     wanted = sensor_of(**first).name;
   }
+  std::vector<bool> is_chosen;
   std::string known;
   for (const LoggedSensor& candidate : reader_.sensors()) {
-    is_chosen_.push_back(wanted == "*" || candidate.name == wanted);
+    is_chosen.push_back(wanted == "*" || candidate.name == wanted);
     const std::string quoted = "\"" + candidate.name + "\"";
     if (known.find(quoted) == std::string::npos) known += (known.empty() ? " " : ", ") + quoted;
   }
-  if (std::ranges::find(is_chosen_, true) == is_chosen_.end()) {
+  if (std::ranges::find(is_chosen, true) == is_chosen.end()) {
     return Failure{file + ": has no sensor \"" + wanted + "\"; it has" + known, FailureKind::kBadData};
   }
-  const auto last = reader_.last_log_time(is_chosen_);
+  const auto last = reader_.last_log_time(is_chosen);
   if (!last) return of_data(last.error());
   if (!*last) {
     return Failure{file + ": there is no reading of \"" + wanted + "\" in this recording", FailureKind::kBadData};
   }
   last_ = **last;
+  if (const auto chosen = reader_.choose(is_chosen); !chosen) return of_data(chosen.error());
   return {};
 }
 
@@ -75,11 +78,9 @@ Result<Nanoseconds, Failure> WindlogCursor::measure_interval() {
 }
 
 Result<std::optional<LoggedReading>, Failure> WindlogCursor::next() {
-  for (;;) {
-    const auto logged = reader_.next();
-    if (!logged) return of_data(logged.error());
-    if (!*logged || is_chosen_[(*logged)->sensor]) return *logged;
-  }
+  const auto logged = reader_.next();
+  if (!logged) return of_data(logged.error());
+  return *logged;
 }
 
 void WindlogCursor::seek(Nanoseconds log_time) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,8 +21,10 @@ namespace yuragi::drivers::windlog {
 class WindlogCursor {
  public:
   /// `sensor`: its name; empty: the one with the first reading; "*": all of them. Fails also where there is no such
-  /// sensor, or no reading at all.
-  static Result<WindlogCursor, Failure> open(const std::filesystem::path& file, std::string_view sensor);
+  /// sensor, or no reading at all. `stop`: a request of it ends this call, and later ones, within milliseconds with a
+  /// failure.
+  static Result<WindlogCursor, Failure> open(const std::filesystem::path& file, std::string_view sensor,
+                                             const std::stop_token& stop = {});
 
   /// The next reading; nothing at the end, until more has been recorded.
   Result<std::optional<LoggedReading>, Failure> next();
@@ -48,7 +51,6 @@ class WindlogCursor {
   Result<Nanoseconds, Failure> measure_interval();
 
   WindlogReader reader_;
-  std::vector<bool> is_chosen_;  ///< by index of a sensor
   Nanoseconds last_{0};
   Nanoseconds interval_{0};
 };

@@ -28,6 +28,20 @@ Nanoseconds wait_of(double duration_s) {
   return std::chrono::round<Nanoseconds>(wait);
 }
 
+std::chrono::days whole_days(Nanoseconds gap) {
+  return std::chrono::duration_cast<std::chrono::days>(gap);
+}
+
+/// The whole days of each gap between two sessions, or of what is left of it from a log time on, up to another.
+std::chrono::days days_between(std::span<const LoggedSession> sessions, Nanoseconds from, Nanoseconds to) {
+  std::chrono::days days{0};
+  for (std::size_t next = 1; next < sessions.size() && sessions[next].log_begin <= to; ++next) {
+    const Nanoseconds gap_begin = std::max(sessions[next - 1].log_end(), from);
+    if (sessions[next].log_begin > gap_begin) days += whole_days(sessions[next].log_begin - gap_begin);
+  }
+  return days;
+}
+
 bool is_same_wind(const wind::WindReading& a, const wind::WindReading& b) {
   return a.speed_m_s == b.speed_m_s && a.direction_deg == b.direction_deg;
 }
@@ -71,21 +85,30 @@ Nanoseconds WindlogPlayer::Playhead::place(MonoTime now, double rate) const {
 void WindlogPlayer::Playhead::go_to(MonoTime at, Nanoseconds log_time) {
   anchor = at;
   anchor_log = log_time;
+  last_log = log_time;
   is_frozen = false;
 }
 
 void WindlogPlayer::Playhead::take() {
   current = upcoming->reading;
+  last_log = upcoming->log_time;
   upcoming.reset();
+}
+
+/// Leaves the whole days out of the gap before the upcoming reading, or of the gaps between sessions in it.
+void WindlogPlayer::Playhead::leave_out_days(bool only_between_sessions) {
+  const auto days = whole_days(upcoming->log_time - last_log);
+  if (days.count() <= 0) return;
+  anchor_log += only_between_sessions ? days_between(cursor.reader().sessions(), last_log, upcoming->log_time) : days;
 }
 
 // ---- playing ----
 
 Result<WindlogPlayer, Failure> WindlogPlayer::open(const std::filesystem::path& file, PlayerOptions options,
-                                                   const Instant& now) {
-  auto playing = WindlogCursor::open(file, options.playback.sensor);
+                                                   const Instant& now, const std::stop_token& stop) {
+  auto playing = WindlogCursor::open(file, options.playback.sensor, stop);
   if (!playing) return playing.error();
-  auto leaving = WindlogCursor::open(file, options.playback.sensor);
+  auto leaving = WindlogCursor::open(file, options.playback.sensor, stop);
   if (!leaving) return leaving.error();
   const auto begin = begin_of_playback(*playing, options.playback.start);
   if (!begin) return begin.error();
@@ -133,6 +156,7 @@ Result<void, Failure> WindlogPlayer::fetch() {
   const auto read = playing_.cursor.next();
   if (!read) return read.error();
   playing_.upcoming = *read;
+  if (playing_.upcoming) playing_.leave_out_days(options_.stays_with_others);
   return {};
 }
 
@@ -176,6 +200,7 @@ Result<void, Failure> WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
 
   std::swap(playing_, leaving_);
   playing_.go_to(at, target);
+  playing_.leave_out_days(options_.stays_with_others);
   playing_.current.reset();
   if (was_fading) {
     leaving_.is_frozen = true;
@@ -287,6 +312,10 @@ void WindlogPlayer::set_rate(const Instant& now, double rate) {
 
 Result<void, Failure> WindlogPlayer::step(const Instant& now, std::uint64_t count) {
   if (is_finished_) return Failure{"is at its end; seek to another place first", FailureKind::kUsage};
+  if (count > kMaxSteps) {
+    return Failure{"moves " + std::to_string(kMaxSteps) + " readings on at most; seek goes further",
+                   FailureKind::kUsage};
+  }
   pause(now);
   for (std::uint64_t moved = 0; moved < count; ++moved) {
     if (auto fetched = fetch(); !fetched) return fetched;
@@ -326,12 +355,15 @@ Result<void, Failure> WindlogPlayer::seek(const Instant& now, std::string_view p
 PlayerPosition WindlogPlayer::position(MonoTime now) const {
   const Nanoseconds last = playing_.cursor.last();
   Nanoseconds place = is_paused_ ? playing_.anchor_log : playing_.place(now, rate_);
+  const Nanoseconds held_for =
+      place - (playing_.current || !playing_.upcoming ? playing_.last_log : playing_.upcoming->log_time);
   if (is_finished_) place = last;
   return {.log_time = std::clamp(place, Nanoseconds{0}, last),
           .length = last,
           .recorded = playing_.current    ? playing_.current->time.utc
                       : playing_.upcoming ? playing_.upcoming->reading.time.utc
                                           : UtcTime{},
+          .held_for = held_for,
           .rate = rate_,
           .is_paused = is_paused_,
           .is_finished = is_finished_,

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -20,6 +21,9 @@ struct PlayerOptions {
   double seam_s = 5.0;          ///< how long a jump (a loop's seam, a seek) takes; 0: no cross-fade
   bool is_paused = false;       ///< stand at the first reading until resume() or step()
   bool at_time_of_day = false;  ///< begin, and begin again, at the place whose recorded local time is the time now
+  /// Leave days out of gaps between sessions alone, where all sensors are silent, so that several players of one
+  /// recording, each of one sensor, stay together.
+  bool stays_with_others = false;
   UtcOffset recorded_offset = machine_utc_offset;  ///< of the place where it was recorded
   UtcOffset offset_here = machine_utc_offset;
 };
@@ -29,6 +33,7 @@ struct PlayerPosition {
   Nanoseconds log_time{0};  ///< since the recording's first reading
   Nanoseconds length{0};    ///< the log time of the last reading that it plays
   UtcTime recorded{};       ///< when the reading that holds was recorded
+  Nanoseconds held_for{0};  ///< from then to this place; below 0 before the first reading
   double rate = 1.0;
   bool is_paused = false;
   bool is_finished = false;  ///< at the end, and it does not loop
@@ -42,7 +47,8 @@ struct PlayerPosition {
 /// with any order. A jump (a seek, or the seam of a loop) is a cross-fade of `seam_s`: the readings of the old place
 /// and of the new one are blended as vectors, so that there is no step; for that a loop begins again `seam_s` before
 /// its end. While it is paused it repeats its reading, marked as held, at its usual interval: the wind holds, and the
-/// sensor does not become stale. Where the recording has a gap, so has the replay.
+/// sensor does not become stale. Where the recording has a gap, so has the replay; of a gap of days the whole days are
+/// left out, so that the time of day goes on as it was.
 ///
 /// A Failure says why the file cannot be read, or that it does not contain what is requested; an order that fails
 /// changes nothing, and play() tries the same place again. Thread-safe: no. Realtime-safe: no; it reads a file.
@@ -52,10 +58,12 @@ class WindlogPlayer {
 
   /// Readings that one play() gives at most, whatever the rate.
   static constexpr int kMaxReadingsPerPlay = 4096;
+  static constexpr std::uint64_t kMaxSteps = 1'000'000;
 
-  /// Opens the recording; `now` is when its first moment is due.
+  /// Opens the recording; `now` is when its first moment is due. `stop`: a request of it ends any call, however large
+  /// the recording is, within milliseconds with a failure.
   static Result<WindlogPlayer, Failure> open(const std::filesystem::path& file, PlayerOptions options,
-                                             const Instant& now);
+                                             const Instant& now, const std::stop_token& stop = {});
 
   /// Passes on the readings that are due by now, oldest first; returns when the next one is due. `now` must not go
   /// back. After a halt of more than a second it continues from where it was, and does not play what it missed.
@@ -63,8 +71,8 @@ class WindlogPlayer {
 
   void pause(const Instant& now);
   void resume(const Instant& now);
-  /// Pauses, and moves `count` readings on, of which the last is handed on by the next play(). At the end of a
-  /// recording that does not loop it stays at the last reading.
+  /// Pauses, and moves `count` readings on (at most kMaxSteps), of which the last is handed on by the next play(). At
+  /// the end of a recording that does not loop it stays at the last reading.
   Result<void, Failure> step(const Instant& now, std::uint64_t count);
   /// Goes on from a place: seconds from the beginning ("90"), so much further or back ("+30", "-30"), or a moment
   /// (ISO 8601).
@@ -83,12 +91,14 @@ class WindlogPlayer {
     std::optional<wind::WindReading> current = {};
     MonoTime anchor{};  ///< when `anchor_log` is, or was, due
     Nanoseconds anchor_log{0};
-    bool is_frozen = false;  ///< repeats its last reading
+    Nanoseconds last_log{0};  ///< of `current`, or where it began
+    bool is_frozen = false;   ///< repeats its last reading
 
     MonoTime due(double rate) const;
     Nanoseconds place(MonoTime now, double rate) const;
     void go_to(MonoTime at, Nanoseconds log_time);
     void take();
+    void leave_out_days(bool only_between_sessions);
   };
 
   WindlogPlayer(PlayerOptions options, Playhead playing, Playhead leaving, Nanoseconds begin);

@@ -1,15 +1,18 @@
 #include "drivers/windlog/windlog_writer.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
-#include "drivers/windlog/format.hpp"
+#include "drivers/windlog/file_format.hpp"
 
 namespace yuragi::drivers::windlog {
 namespace {
 
 // At the end a reader can make a writer wait, not for long.
 constexpr int kCloseTimeout_ms = 200;
+// So many nanoseconds are looked at for one that no other reading of the sensor has; then it is put after the last.
+constexpr int kMostTries = 16;
 
 std::int64_t nanoseconds(MonoTime time) {
   return time.time_since_epoch().count();
@@ -18,23 +21,39 @@ std::int64_t nanoseconds(UtcTime time) {
   return time.time_since_epoch().count();
 }
 
+/// The readings of all series as one table, for whoever looks into the file with another program.
+std::string view_of(std::int64_t series) {
+  std::string view = "DROP VIEW IF EXISTS reading; CREATE VIEW reading AS";
+  for (std::int64_t each = 1; each <= series; ++each) {
+    const std::string number = std::to_string(each);
+    view += each == 1 ? "\n" : "\nUNION ALL ";
+    view.append("SELECT session.id AS session, (SELECT name FROM series WHERE id = ").append(number);
+    view +=
+        ") AS sensor, started_utc_ns + (time_ns - begin_ns) + clock_ns AS utc_ns, "
+        "started_mono_ns + (time_ns - begin_ns) AS mono_ns, speed_m_s, direction_deg, gust_m_s, quality FROM reading_";
+    view.append(number).append(
+        " JOIN session ON begin_ns = (SELECT max(begin_ns) FROM session WHERE begin_ns <= time_ns)");
+  }
+  return view;
+}
+
 /// Is it an empty database, or a recording that this version writes?
 Result<bool, Failure> is_new(sqlite::Database& database) {
   const std::string name = database.file().string();
-  const auto application = database.integer("PRAGMA application_id");
-  if (!application) return application.error();
-  const auto version = database.integer("PRAGMA user_version");
-  if (!version) return version.error();
-  const auto objects = database.integer("SELECT count(*) FROM sqlite_schema");
-  if (!objects) return objects.error();
-
-  if (*application == 0 && *objects == 0) return true;
-  if (*application != kApplicationId) {
+  const auto format = format_of(database);
+  if (!format) return format.error();
+  if (format->is_blank()) return true;
+  if (!format->is_recording()) {
     return Failure{name + ": is a database, but not a Yuragi recording; it was left unchanged; choose another file"};
   }
-  if (*version > kFormatVersion) {
-    return Failure{name + ": was written by a newer Yuragi (format " + std::to_string(*version) + ", this one writes " +
-                   std::to_string(kFormatVersion) + "); update Yuragi, or choose another file"};
+  if (format->version > kFormatVersion) {
+    return Failure{name + ": was written by a newer Yuragi (format " + std::to_string(format->version) +
+                   ", this one writes " + std::to_string(kFormatVersion) + "); update Yuragi, or choose another file"};
+  }
+  if (format->version < kFormatVersion) {
+    return Failure{name + ": was written by an older Yuragi (format " + std::to_string(format->version) +
+                   ", this one writes " + std::to_string(kFormatVersion) +
+                   "); it can be read, but not continued; choose another file"};
   }
   return false;
 }
@@ -81,19 +100,17 @@ Result<void, Failure> WindlogWriter::prepare_file() {
     return {};
   };
   if (auto done = prepare(insert_session_,
-                          "INSERT INTO session (started_utc_ns, started_mono_ns, software, configuration) "
-                          "VALUES (?1, ?2, ?3, ?4)");
+                          "INSERT INTO session (begin_ns, started_utc_ns, started_mono_ns, software, configuration) "
+                          "VALUES (?1, ?2, ?3, ?4, ?5)");
       !done) {
     return done;
   }
   if (auto done =
-          prepare(insert_sensor_, "INSERT INTO sensor (session, name, driver, options) VALUES (?1, ?2, ?3, ?4)");
+          prepare(insert_sensor_, "INSERT INTO sensor (session, series, driver, options) VALUES (?1, ?2, ?3, ?4)");
       !done) {
     return done;
   }
-  return prepare(insert_reading_,
-                 "INSERT INTO reading (session, sensor, utc_ns, mono_ns, speed_m_s, direction_deg, gust_m_s, quality) "
-                 "VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)");
+  return {};
 }
 
 WindlogWriter::~WindlogWriter() {
@@ -101,42 +118,233 @@ WindlogWriter::~WindlogWriter() {
 }
 
 Result<void, Failure> WindlogWriter::begin_session(const WindlogSession& session) {
-  insert_session_.bind(1, nanoseconds(session.started.utc));
-  insert_session_.bind(2, nanoseconds(session.started.mono));
-  insert_session_.bind(3, session.software);
-  insert_session_.bind(4, session.configuration);
+  insert_reading_.clear();
+  const auto begin_ns = begin_of_next_session(session.started.utc);
+  if (!begin_ns) return begin_ns.error();
+  begin_ns_ = *begin_ns;
+  started_ = session.started;
+  insert_session_.bind(1, begin_ns_);
+  insert_session_.bind(2, nanoseconds(session.started.utc));
+  insert_session_.bind(3, nanoseconds(session.started.mono));
+  insert_session_.bind(4, session.software);
+  insert_session_.bind(5, session.configuration);
   if (auto done = write(insert_session_); !done) return done;
   session_ = database_.last_id();
   return {};
 }
 
+/// Where a session begins on the recording's time line: after all that is there, by the UTC gap to the last reading or
+/// the last beginning.
+Result<std::int64_t, Failure> WindlogWriter::begin_of_next_session(UtcTime started) {
+  const auto sessions = database_.integer("SELECT count(*) FROM session");
+  if (!sessions) return sessions.error();
+  if (*sessions == 0) return 0;
+  const auto count = database_.integer("SELECT count(*) FROM series");
+  if (!count) return count.error();
+
+  std::string last =
+      "SELECT time_ns, begin_ns, started_utc_ns, clock_ns FROM (SELECT max(begin_ns) AS time_ns, "
+      "0 AS clock_ns FROM session";
+  for (std::int64_t series = 1; series <= *count; ++series) {
+    const std::string table = "reading_" + std::to_string(series);
+    last += " UNION ALL SELECT * FROM (SELECT time_ns, clock_ns FROM " + table + " ORDER BY time_ns DESC LIMIT 1)";
+  }
+  last +=
+      ") JOIN session ON begin_ns = (SELECT max(begin_ns) FROM session WHERE begin_ns <= time_ns) "
+      "ORDER BY time_ns DESC LIMIT 1";
+  auto row = database_.prepare(last);
+  if (!row) return row.error();
+  if (row->step() != sqlite::Statement::Step::kRow) return undo().error();
+  const std::int64_t time_ns = row->integer(0);
+  std::int64_t utc_ns = 0;
+  std::int64_t gap_ns = 0;
+  std::int64_t begin_ns = 0;
+  if (__builtin_add_overflow(row->integer(2) + (time_ns - row->integer(1)), row->integer(3), &utc_ns) ||
+      __builtin_sub_overflow(nanoseconds(started), utc_ns, &gap_ns) ||
+      __builtin_add_overflow(time_ns, std::max<std::int64_t>(gap_ns, 1), &begin_ns) || begin_ns >= kMaxTime_ns) {
+    return Failure{database_.file().string() + ": its times leave no room for another session; choose another file"};
+  }
+  return begin_ns;
+}
+
 Result<std::int64_t, Failure> WindlogWriter::add_sensor(std::string_view name, std::string_view driver,
                                                         std::string_view options) {
+  const auto series = series_named(name);
+  if (!series) return series.error();
   insert_sensor_.bind(1, session_);
-  insert_sensor_.bind(2, name);
+  insert_sensor_.bind(2, *series);
   insert_sensor_.bind(3, driver);
   insert_sensor_.bind(4, options);
   if (const auto done = write(insert_sensor_); !done) return done.error();
-  return database_.last_id();
+  const std::int64_t sensor = database_.last_id();
+  if (const auto done = prepare_insert(sensor, *series); !done) return done.error();
+  return sensor;
+}
+
+/// The series of that name, which is made if there is none.
+Result<std::int64_t, Failure> WindlogWriter::series_named(std::string_view name) {
+  auto find = database_.prepare("SELECT id FROM series WHERE name = ?1");
+  if (!find) return undo().error();
+  find->bind(1, name);
+  const auto found = find->step();
+  if (found == sqlite::Statement::Step::kFailed) return undo().error();
+  if (found == sqlite::Statement::Step::kRow) return find->integer(0);
+
+  const auto count = database_.integer("SELECT count(*) FROM series");
+  if (!count) return undo().error();
+  const std::int64_t series = *count + 1;
+  if (series > static_cast<std::int64_t>(kMostSeries)) {
+    return Failure{database_.file().string() + ": has readings of " + std::to_string(kMostSeries) +
+                   " sensors, which is the most that one recording can hold; choose another file"};
+  }
+  auto insert = database_.prepare("INSERT INTO series (id, name) VALUES (?1, ?2)");
+  if (!insert) return undo().error();
+  insert->bind(1, series);
+  insert->bind(2, name);
+  if (const auto done = write(*insert); !done) return done.error();
+  if (const auto done = make_series(series); !done) return done.error();
+  return series;
+}
+
+Result<void, Failure> WindlogWriter::make_series(std::int64_t series) {
+  const std::string create = "CREATE TABLE reading_" + std::to_string(series) + " " + std::string(kSeriesColumns);
+  if (!database_.run(create.c_str())) return undo();
+  if (!database_.run(view_of(series).c_str())) return undo();
+  return {};
+}
+
+Result<void, Failure> WindlogWriter::prepare_insert(std::int64_t sensor, std::int64_t series) {
+  // Of two at one nanosecond the later one is moved to the next that is free.
+  const std::string table = "reading_" + std::to_string(series);
+  auto insert = database_.prepare("INSERT INTO " + table +
+                                  " (time_ns, clock_ns, speed_m_s, direction_deg, gust_m_s, quality) "
+                                  "VALUES (?1, ?2, ?3, ?4, ?5, ?6) ON CONFLICT DO NOTHING");
+  if (!insert) return undo();
+  insert_reading_[sensor] = {.statement = std::move(*insert), .series = series};
+  return {};
 }
 
 Result<void, Failure> WindlogWriter::append(std::int64_t sensor, const wind::WindReading& reading) {
-  if (!is_recordable(reading)) return Failure{database_.file().string() + ": not a reading that can be recorded"};
-  insert_reading_.bind(1, session_);
-  insert_reading_.bind(2, sensor);
-  insert_reading_.bind(3, nanoseconds(reading.time.utc));
-  insert_reading_.bind(4, nanoseconds(reading.time.mono));
-  insert_reading_.bind(5, reading.speed_m_s);
-  insert_reading_.bind(6, reading.direction_deg);
-  insert_reading_.bind(7, reading.gust_m_s);
-  insert_reading_.bind(8, static_cast<std::int64_t>(reading.quality));
-  return write(insert_reading_);
+  const auto insert = insert_reading_.find(sensor);
+  if (insert == insert_reading_.end() || !is_recordable(reading)) {
+    return Failure{database_.file().string() + ": not a reading that can be recorded"};
+  }
+  const Nanoseconds into_session = std::max(reading.time.mono - started_.mono, Nanoseconds{0});
+  Insert& into = insert->second;
+  into.statement.bind(3, reading.speed_m_s);
+  into.statement.bind(4, reading.direction_deg);
+  into.statement.bind(5, reading.gust_m_s);
+  into.statement.bind(6, static_cast<std::int64_t>(reading.quality));
+  std::int64_t since_ns = into_session.count();
+  for (int tries = 0;; ++tries) {
+    if (since_ns == into.last_since_ns || tries == kMostTries) since_ns = std::max(since_ns, into.last_since_ns) + 1;
+    std::int64_t clock_ns = 0;
+    if (since_ns >= kMaxTime_ns - begin_ns_ ||
+        __builtin_sub_overflow(nanoseconds(reading.time.utc), nanoseconds(started_.utc), &clock_ns) ||
+        __builtin_sub_overflow(clock_ns, since_ns, &clock_ns) || clock_ns < -kMaxTime_ns || clock_ns > kMaxTime_ns) {
+      return Failure{database_.file().string() + ": not a reading that can be recorded"};
+    }
+    into.statement.bind(1, begin_ns_ + since_ns);
+    into.statement.bind(2, clock_ns);
+    if (auto done = write(into.statement); !done) return done;
+    if (database_.changed_rows() > 0) break;
+    ++since_ns;
+  }
+  into.last_since_ns = std::max(into.last_since_ns, since_ns);
+  return {};
+}
+
+Result<bool, Failure> WindlogWriter::append(std::int64_t sensor, const wind::StationQuantities& quantities) {
+  const auto reading = insert_reading_.find(sensor);
+  const auto plausible = wind::plausible_part(quantities);
+  wind::WindReading at_that_time;
+  at_that_time.time = quantities.time;
+  if (reading == insert_reading_.end() || !plausible || !is_recordable(at_that_time)) return false;
+
+  const Nanoseconds into_session = std::max(quantities.time.mono - started_.mono, Nanoseconds{0});
+  const Nanoseconds second = std::chrono::floor<std::chrono::seconds>(into_session);
+  std::int64_t clock_ns = 0;
+  if (second.count() >= kMaxTime_ns - begin_ns_ ||
+      __builtin_sub_overflow(nanoseconds(quantities.time.utc), nanoseconds(started_.utc), &clock_ns) ||
+      __builtin_sub_overflow(clock_ns, into_session.count(), &clock_ns) || clock_ns < -kMaxTime_ns ||
+      clock_ns > kMaxTime_ns) {
+    return false;
+  }
+
+  if (auto begun = begin_transaction(); !begun) return begun.error();
+  bool is_added = prepare_quantities();
+  if (is_added) {
+    sqlite::Statement& insert = *insert_quantities_;
+    insert.bind(1, begin_ns_ + second.count());
+    insert.bind(2, reading->second.series);
+    insert.bind(3, clock_ns);
+    int position = 4;
+    for (const wind::StationQuantity& each : wind::kStationQuantities)
+      insert.bind(position++, (*plausible).*each.value);
+    is_added = insert.step() == sqlite::Statement::Step::kDone;
+  }
+  if (is_added) {
+    insert_quantities_->reset();
+    return true;
+  }
+  // Readings must not suffer from a table that is damaged. Where it is the disk, SQLite says so, or takes all back.
+  const int code = database_.error_code();
+  const Failure failure = database_.failure();
+  insert_quantities_.reset();
+  if (database_.in_transaction() && code != SQLITE_FULL && code != SQLITE_IOERR) return false;
+  if (database_.in_transaction()) static_cast<void>(database_.run("ROLLBACK"));
+  return failure;
+}
+
+/// False where the file has something else of that name.
+bool WindlogWriter::prepare_quantities() {
+  if (insert_quantities_) return true;
+  std::string create = "CREATE TABLE IF NOT EXISTS " + std::string(kQuantityTable) + " " + std::string(kQuantityKeys);
+  std::string columns;
+  std::string values;
+  std::string merged;
+  int position = 4;
+  for (const wind::StationQuantity& each : wind::kStationQuantities) {
+    const std::string name(each.name);
+    create.append("\n  ").append(name).append(" REAL,");
+    columns.append(", ").append(name);
+    values.append(", ?").append(std::to_string(position++));
+    merged.append(merged.empty() ? "" : ", ").append(name);
+    merged.append(" = coalesce(excluded.").append(name).append(", ").append(name).append(")");
+  }
+  create.append(kQuantityPrimaryKey);
+  if (!database_.run(create.c_str())) return false;
+  auto insert =
+      database_.prepare("INSERT INTO " + std::string(kQuantityTable) + " (time_ns, series, clock_ns" + columns +
+                        ") VALUES (?1, ?2, ?3" + values + ") ON CONFLICT (time_ns, series) DO UPDATE SET " + merged);
+  if (!insert) return false;
+  insert_quantities_ = std::move(*insert);
+  return true;
+}
+
+Result<std::optional<UtcTime>, Failure> WindlogWriter::began() {
+  const auto series = database_.integer("SELECT count(*) FROM series");
+  if (!series) return series.error();
+  std::int64_t has_readings = 0;
+  for (std::int64_t each = 1; each <= *series && has_readings == 0; ++each) {
+    const auto found = database_.integer("SELECT EXISTS (SELECT 1 FROM reading_" + std::to_string(each) + ")");
+    if (!found) return found.error();
+    has_readings = *found;
+  }
+  if (has_readings == 0) return std::optional<UtcTime>{};
+  const auto utc_ns = database_.integer("SELECT started_utc_ns FROM session ORDER BY begin_ns LIMIT 1");
+  if (!utc_ns) return utc_ns.error();
+  return std::optional(UtcTime(Nanoseconds(*utc_ns)));
 }
 
 Result<void, Failure> WindlogWriter::commit() {
   if (!database_.in_transaction()) return {};
   if (!database_.run("COMMIT")) return undo();
   return {};
+}
+
+Result<void, Failure> WindlogWriter::checkpoint() {
+  return database_.run("PRAGMA wal_checkpoint(PASSIVE)");
 }
 
 Result<void, Failure> WindlogWriter::close() {
@@ -154,17 +362,20 @@ Result<void, Failure> WindlogWriter::close() {
 void WindlogWriter::release() {
   insert_session_ = {};
   insert_sensor_ = {};
-  insert_reading_ = {};
+  insert_reading_.clear();
+  insert_quantities_.reset();
   database_.close();
+}
+
+Result<void, Failure> WindlogWriter::begin_transaction() {
+  if (database_.in_transaction()) return {};
+  return database_.run("BEGIN IMMEDIATE");
 }
 
 /// Runs an INSERT, in a transaction.
 Result<void, Failure> WindlogWriter::write(sqlite::Statement& statement) {
-  if (!database_.in_transaction()) {
-    if (auto begun = database_.run("BEGIN IMMEDIATE"); !begun) return begun;
-  }
-  const bool written = statement.step() == sqlite::Statement::Step::kDone;
-  if (!written) {
+  if (auto begun = begin_transaction(); !begun) return begun;
+  if (statement.step() != sqlite::Statement::Step::kDone) {
     auto undone = undo();
     statement.reset();
     return undone;
@@ -176,6 +387,7 @@ Result<void, Failure> WindlogWriter::write(sqlite::Statement& statement) {
 /// Rolls back to the last commit; returns the failure that led to it.
 Result<void, Failure> WindlogWriter::undo() {
   Failure failure = database_.failure();
+  insert_quantities_.reset();  // their table may be taken back, too
   // SQLite rolls back by itself after some errors.
   if (database_.in_transaction()) static_cast<void>(database_.run("ROLLBACK"));
   return failure;

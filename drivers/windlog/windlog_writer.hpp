@@ -2,11 +2,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string_view>
 
 #include "drivers/windlog/sqlite.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
+#include "engine/wind/station_quantities.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi::drivers::windlog {
@@ -19,15 +22,15 @@ struct WindlogSession {
 };
 
 /// Writes a recording (.windlog, format.hpp). What is committed survives the death of the process and a power cut; what
-/// was written since is lost with either, so commit at least every half second.
+/// was written since is lost with either, so commit often.
 ///
 /// A call that fails undoes everything since the last commit; its text names the file and what to do; the writer can be
 /// used on (a full disk that has room again), or destroyed and opened again. Owns the open file. Thread-safe: no; one
 /// thread. Realtime-safe: no; commit() waits for the disk.
 class WindlogWriter {
  public:
-  /// Opens a recording to append to, or creates it. Refuses a file that is something else, and one of a newer format,
-  /// without changing it.
+  /// Opens a recording to append to, or creates it. Refuses a file that is something else, and one of another version
+  /// of the format (format.hpp), without changing it.
   static Result<WindlogWriter, Failure> open(const std::filesystem::path& file);
 
   WindlogWriter(WindlogWriter&&) noexcept = default;
@@ -35,27 +38,55 @@ class WindlogWriter {
   /// Closes, if close() was not called, without reporting errors.
   ~WindlogWriter();
 
-  /// Begins a session, to which the sensors and readings that follow belong.
+  /// Begins a session, to which the sensors and readings that follow belong; `started` must not be later than any of
+  /// them.
   Result<void, Failure> begin_session(const WindlogSession& session);
 
-  /// Adds a sensor to the session; returns the id that append() takes.
+  /// Adds a sensor to the session; returns the id that append() takes. Fails where the recording would have readings of
+  /// more than kMostSeries names.
   Result<std::int64_t, Failure> add_sensor(std::string_view name, std::string_view driver, std::string_view options);
 
   /// Adds a reading. One that is not plausible, or whose time cannot be, is a failure of the caller's and undoes
-  /// nothing.
+  /// nothing. One that is earlier than its session is given the session's begin; one that has the time of another of
+  /// its sensor's is moved to a nanosecond that is free.
   Result<void, Failure> append(std::int64_t sensor, const wind::WindReading& reading);
+
+  /// Adds what a sensor's station says besides the wind, as far as it is plausible: one row a second (format.hpp).
+  /// False, with nothing undone, where it cannot be added: nothing is plausible, its time cannot be, there is no such
+  /// sensor, or the file's table for it is damaged. A failure is one of the disk.
+  Result<bool, Failure> append(std::int64_t sensor, const wind::StationQuantities& quantities);
+
+  /// When the first session of a file that has readings was begun; nothing where it has none.
+  Result<std::optional<UtcTime>, Failure> began();
 
   /// Makes everything so far durable.
   Result<void, Failure> commit();
+
+  /// Brings what is committed from FILE-wal into FILE, as far as no reader holds that up: a copy of FILE alone has it
+  /// then.
+  Result<void, Failure> checkpoint();
 
   /// Commits and leaves one file, with nothing beside it (unless another program is reading it: then FILE-wal stays
   /// until the next writer closes it). Nothing may be called after it.
   Result<void, Failure> close();
 
  private:
+  /// Into a sensor's series.
+  struct Insert {
+    sqlite::Statement statement;
+    std::int64_t series = 0;
+    std::int64_t last_since_ns = -1;  ///< of the latest reading, since the session's start
+  };
+
   explicit WindlogWriter(sqlite::Database database) : database_(std::move(database)) {}
 
   Result<void, Failure> prepare_file();
+  Result<std::int64_t, Failure> begin_of_next_session(UtcTime started);
+  Result<std::int64_t, Failure> series_named(std::string_view name);
+  Result<void, Failure> make_series(std::int64_t series);
+  Result<void, Failure> prepare_insert(std::int64_t sensor, std::int64_t series);
+  Result<void, Failure> begin_transaction();
+  bool prepare_quantities();
   Result<void, Failure> write(sqlite::Statement& statement);
   Result<void, Failure> undo();
   void release();
@@ -63,8 +94,11 @@ class WindlogWriter {
   sqlite::Database database_;
   sqlite::Statement insert_session_;
   sqlite::Statement insert_sensor_;
-  sqlite::Statement insert_reading_;
+  std::map<std::int64_t, Insert> insert_reading_;       ///< by sensor
+  std::optional<sqlite::Statement> insert_quantities_;  ///< from the first ones on
   std::int64_t session_ = 0;
+  std::int64_t begin_ns_ = 0;  ///< of the session, on the recording's time line
+  Instant started_;
 };
 
 /// Can this reading be recorded?

@@ -7,7 +7,8 @@ namespace yuragi {
 namespace {
 
 std::string_view type_name(const ParameterValue& value) {
-  static constexpr std::string_view kNames[] = {"true or false", "whole number", "number", "text"};
+  static constexpr std::string_view kNames[] = {"true or false", "whole number", "number", "text",
+                                                "text that is never printed or recorded"};
   return kNames[value.index()];
 }
 
@@ -24,7 +25,7 @@ std::string to_text(const ParameterValue& value) {
           out << held;
         }
       },
-      value);
+      printable(value));
   return out.str();
 }
 
@@ -38,8 +39,18 @@ Result<ParameterValue, ParameterError> convert(const Parameter& parameter, const
   if (std::holds_alternative<double>(parameter.default_value) && std::holds_alternative<std::int64_t>(given)) {
     value = static_cast<double>(std::get<std::int64_t>(given));
   }
+  const auto* given_text = std::get_if<std::string>(&given);
+  if (std::holds_alternative<Secret>(parameter.default_value) && !std::holds_alternative<Secret>(given)) {
+    if (given_text == nullptr) return refuse("is a " + std::string(type_name(given)));
+    return ParameterValue(Secret(*given_text));
+  }
   if (value.index() != parameter.default_value.index()) {
     return refuse("is a " + std::string(type_name(given)) + " (" + to_text(given) + ")");
+  }
+
+  if (given_text != nullptr && holds_credentials(*given_text)) {
+    return refuse(
+        "has a user's name and password in it, which would be printed and recorded; give them by keys of their own");
   }
 
   const auto check_range = [&](double number) { return number >= parameter.min && number <= parameter.max; };
@@ -65,6 +76,18 @@ const T& held(const ParameterValues::Map& values, std::string_view name) {
 }
 
 }  // namespace
+
+PrintableValue printable(const ParameterValue& value) {
+  return std::visit(
+      [](const auto& held) -> PrintableValue {
+        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Secret>) {
+          return std::string(held.printable());
+        } else {
+          return held;
+        }
+      },
+      value);
+}
 
 std::string describe_allowed(const Parameter& parameter) {
   std::ostringstream out;
@@ -127,6 +150,15 @@ double ParameterValues::number(std::string_view name) const {
 }
 const std::string& ParameterValues::text(std::string_view name) const {
   return held<std::string>(values_, name);
+}
+
+const Secret& ParameterValues::secret(std::string_view name) const {
+  const auto& secret = held<Secret>(values_, name);
+  if (secret.is_withheld()) {
+    throw std::runtime_error(std::string(name) + ": is \"" + std::string(Secret::kWithheld) +
+                             "\", which stands for it in what was printed or recorded; give the secret itself");
+  }
+  return secret;
 }
 
 void ParameterValues::set(std::string_view name, const ParameterValue& value) {

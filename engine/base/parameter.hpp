@@ -10,11 +10,16 @@
 #include <variant>
 
 #include "engine/base/result.hpp"
+#include "engine/base/secret.hpp"
 
 namespace yuragi {
 
 /// What a parameter can be. Text that must be one of a few words has `choices`.
-using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
+using ParameterValue = std::variant<bool, std::int64_t, double, std::string, Secret>;
+
+/// What may be printed, recorded or sent of a value: the value itself, and of a secret Secret::printable().
+using PrintableValue = std::variant<bool, std::int64_t, double, std::string>;
+PrintableValue printable(const ParameterValue& value);
 
 /// A parameter that describes itself: config checking, --help, the viewer's sliders and the reference page all read
 /// this one description. Constants of this type stand beside what they set.
@@ -29,6 +34,8 @@ struct Parameter {
   /// What it means where it is not given, which none of its values can express ("at the windward edge"). Then it has no
   /// default, and values have it only if it was given. Empty: default_value, of which otherwise only the type counts.
   std::string_view left_out = {};
+  /// texts only: the path of a file with a secret in it, which other users of the machine are not to read
+  bool is_secret_file = false;
 };
 
 /// What is wrong with a given value; the file and line are the caller's to add.
@@ -47,8 +54,9 @@ class ParameterValues {
  public:
   using Map = std::map<std::string, ParameterValue, std::less<>>;
 
-  /// Fills what `given` leaves out with defaults. Refuses unknown names, wrong types (an integer passes for a number),
-  /// numbers out of range or not finite, and texts that are not among the choices.
+  /// Fills what `given` leaves out with defaults. Refuses unknown names, wrong types (an integer passes for a number, a
+  /// text for a secret), numbers out of range or not finite, texts that are not among the choices, and texts with a
+  /// user's name and password in them. No error shows a secret.
   static Result<ParameterValues, ParameterError> resolve(std::span<const Parameter> table, const Map& given);
 
   /// Is there a value of this name? What has a default always has one.
@@ -58,6 +66,9 @@ class ParameterValues {
   std::int64_t integer(std::string_view name) const;
   double number(std::string_view name) const;
   const std::string& text(std::string_view name) const;
+  /// Throws std::runtime_error where it is withheld (Secret::is_withheld): the values are of a recording or of a
+  /// configuration that was printed, and the secret has to be given again.
+  const Secret& secret(std::string_view name) const;
 
   const Map& all() const { return values_; }
 

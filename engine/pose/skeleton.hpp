@@ -36,6 +36,7 @@ struct StrandSkeleton {
   std::vector<float> link_length_m;
 
   std::size_t padded_count() const { return padded_to_blocks(strand_count); }
+  friend bool operator==(const StrandSkeleton&, const StrandSkeleton&) = default;
 };
 
 /// One bend for each strand: the vector (east, south) toward which its tip link is turned, its length the angle in
@@ -57,6 +58,7 @@ struct GridSkeleton {
   std::vector<float> rest_x_m, rest_y_m, rest_z_m;
 
   std::size_t stride() const { return padded_to_blocks(columns); }
+  friend bool operator==(const GridSkeleton&, const GridSkeleton&) = default;
 };
 
 /// How far each joint is from its place at rest, in the skeleton's layout. Zero is the rest pose. The fixed edge stays
@@ -80,6 +82,8 @@ struct TreeLevel {
   bool is_leaves = false;            ///< blades to be drawn, not wood
   std::vector<float> base_radius_m;  ///< wood: at the root; leaves: half the width. padded_count() elements
   std::vector<float> tip_radius_m;   ///< wood: at the tip. padded_count() elements
+
+  friend bool operator==(const TreeLevel&, const TreeLevel&) = default;
 };
 
 /// What colour a tree's leaves have. The stream (pose.fbs) has the same in the same order.
@@ -94,6 +98,8 @@ inline constexpr std::array<std::string_view, 3> kFoliageColorNames = {"green", 
 struct TreeSkeleton {
   std::vector<TreeLevel> levels;
   FoliageColor foliage = FoliageColor::kGreen;
+
+  friend bool operator==(const TreeSkeleton&, const TreeSkeleton&) = default;
 };
 inline constexpr std::size_t kMaxTreeLevels = 8;
 
@@ -120,6 +126,7 @@ struct SurfaceSkeleton {
   std::vector<float> axis_x_m, axis_z_m;
 
   bool moves_rows() const { return !axis_x_m.empty(); }
+  friend bool operator==(const SurfaceSkeleton&, const SurfaceSkeleton&) = default;
 };
 
 /// How far each point is moved along its normal, and where its colour stands on the ramp; and how each row is moved

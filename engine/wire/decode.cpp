@@ -2,22 +2,18 @@
 #include <cstring>
 #include <memory>
 
+#include "engine/base/printable_text.hpp"
 #include "engine/wire/decode_models.hpp"
 
 namespace yuragi::wire {
 
-/// Texts end up in terminals and logs: control characters (C0, DEL, and C1 in UTF-8) become question marks.
+/// Texts end up in terminals and logs.
 bool read_text(const flatbuffers::String* from, std::string& to) {
   to.clear();
   if (from == nullptr) return true;
   if (from->size() > kMaxTextBytes) return false;
   to.assign(from->c_str(), from->size());
-  for (std::size_t i = 0; i < to.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(to[i]);
-    const bool is_c1 = byte == 0xC2 && i + 1 < to.size() && static_cast<unsigned char>(to[i + 1]) < 0xA0;
-    if (byte < 0x20 || byte == 0x7F || is_c1) to[i] = '?';
-    if (is_c1) to[++i] = '?';
-  }
+  make_printable(to);
   return true;
 }
 
@@ -59,6 +55,7 @@ bool read(const fb::Subscribe& from, Subscribe& to) {
   to.poses = from.poses();
   to.sensors = from.sensors();
   to.raw = from.raw();
+  to.takes_new_scenes = from.takes_new_scenes();
   return read_text(from.client(), to.client) && read_text(from.raw_sensor(), to.raw_sensor);
 }
 
@@ -146,7 +143,27 @@ bool read(const fb::Shaping* from, Shaping& to) {
          take(from->site_median_m_s(), kMaxWind_m_s, to.site_median_m_s) &&
          take(from->site_strong_m_s(), kMaxWind_m_s, to.site_strong_m_s) &&
          take(from->site_known_s(), kMaxDuration_s, to.site_known_s) && take(from->gusts(), kMaxGain, to.gusts) &&
-         read_text(from->text(), to.text);
+         take(from->openness(), 1.0, to.openness) && read_text(from->text(), to.text);
+}
+
+/// A server that does not know of it sends none.
+bool read(const fb::Lateness* from, std::optional<Lateness>& to) {
+  if (from == nullptr) return true;
+  to = Lateness{from->p50_s(), from->p99_s(), from->max_s()};
+  return is_within(to->p50_s, 0.0, kMaxDuration_s) && is_within(to->p99_s, 0.0, kMaxDuration_s) &&
+         is_within(to->max_s, 0.0, kMaxDuration_s);
+}
+
+/// A server that records nothing, or does not tell, sends none.
+bool read(const fb::Recorder* from, std::optional<RecorderStatus>& to) {
+  if (from == nullptr) return true;
+  if (from->state() > fb::RecorderState_MAX) return false;
+  to = RecorderStatus{.state = static_cast<RecorderState>(from->state()),
+                      .written = from->written(),
+                      .waiting = from->waiting(),
+                      .lost = from->lost()};
+  if (const auto free_bytes = from->free_bytes()) to->free_bytes = *free_bytes;
+  return read_text(from->error(), to->error);
 }
 
 bool read(const fb::Sensors& from, Sensors& to) {
@@ -156,7 +173,11 @@ bool read(const fb::Sensors& from, Sensors& to) {
     if (!read(*from.sensors()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.sensors.emplace_back())) return false;
   to.late_ticks = from.late_ticks();
   to.clients = from.clients();
-  return read(from.shaping(), to.shaping);
+  to.refused_clients = from.refused_clients();
+  to.stuck_clients = from.stuck_clients();
+  to.idle_clients = from.idle_clients();
+  return read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
+         read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder);
 }
 
 bool read(const fb::PlayerCommand& from, PlayerCommand& to) {
@@ -185,7 +206,30 @@ bool read(const fb::PlayerState& from, PlayerState& to) {
          read_text(from.file(), to.file) && read_text(from.refusal(), to.refusal);
 }
 
+bool read(const fb::ReloadCommand& from, ReloadCommand& to) {
+  return read_text(from.file(), to.file);
+}
+
+using TextVector = flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>;
+
+bool read_texts(const TextVector* from, std::vector<std::string>& to) {
+  if (from == nullptr) return true;
+  if (from->size() > kMaxReloadItems) return false;
+  for (flatbuffers::uoffset_t i = 0; i < from->size(); ++i) {
+    if (!read_text(from->Get(i), to.emplace_back())) return false;
+  }
+  return true;
+}
+
+bool read(const fb::ReloadReport& from, ReloadReport& to) {
+  to.outcome =
+      from.outcome() > fb::ReloadOutcome_MAX ? ReloadOutcome::kFailed : static_cast<ReloadOutcome>(from.outcome());
+  return read_texts(from.applied(), to.applied) && read_texts(from.takes_restart(), to.takes_restart) &&
+         read_texts(from.mistakes(), to.mistakes);
+}
+
 bool read(const fb::Control& from, Control& to) {
+  if (from.reload() != nullptr && !read(*from.reload(), to.reload.emplace())) return false;
   if (from.player() != nullptr && !read(*from.player(), to.player.emplace())) return false;
   to.shown = from.shown();
   to.hide_others = from.hide_others();
@@ -207,7 +251,7 @@ bool read(const fb::ControlReply& from, ControlReply& to) {
   if (players > kMaxSensors) return false;
   for (std::size_t i = 0; i < players; ++i)
     if (!read(*from.players()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.players.emplace_back())) return false;
-  return true;
+  return from.reload() == nullptr || read(*from.reload(), to.reload.emplace());
 }
 
 bool read(const fb::RawTrace& from, RawTrace& to) {

@@ -15,7 +15,7 @@ inline bool is_within(double value, double low, double high) {
   return value >= low && value <= high;
 }
 
-/// A text of at most kMaxTextBytes, its control characters defused.
+/// A text of at most kMaxTextBytes, made printable.
 bool read_text(const flatbuffers::String* from, std::string& to);
 
 /// A scene's skeleton, in padded arrays. Of an unknown kind: strands, none of them.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <span>
 
 #include "engine/wire/schema.hpp"
 #include "engine/wire/wire.hpp"
@@ -143,6 +144,18 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   return table.Finish();
 }
 
+flatbuffers::Offset<fb::Recorder> add_recorder(Builder& builder, const RecorderStatus& recorder) {
+  const auto error = add_text(builder, recorder.error);
+  fb::RecorderBuilder table(builder);
+  table.add_state(static_cast<fb::RecorderState>(recorder.state));
+  table.add_written(recorder.written);
+  table.add_waiting(recorder.waiting);
+  table.add_lost(recorder.lost);
+  if (recorder.free_bytes) table.add_free_bytes(*recorder.free_bytes);
+  table.add_error(error);
+  return table.Finish();
+}
+
 flatbuffers::Offset<fb::Shaping> add_shaping(Builder& builder, const Shaping& shaping) {
   const auto text = add_text(builder, shaping.text);
   fb::ShapingBuilder table(builder);
@@ -158,7 +171,25 @@ flatbuffers::Offset<fb::Shaping> add_shaping(Builder& builder, const Shaping& sh
   table.add_site_known_s(static_cast<float>(shaping.site_known_s));
   table.add_text(text);
   table.add_gusts(static_cast<float>(shaping.gusts));
+  table.add_openness(static_cast<float>(shaping.openness));
   return table.Finish();
+}
+
+/// The first kMaxReloadItems of them.
+flatbuffers::Offset<flatbuffers::Vector<Text>> add_texts(Builder& builder, const std::vector<std::string>& texts) {
+  std::vector<Text> added;
+  for (const std::string& text : std::span(texts).first(std::min(texts.size(), kMaxReloadItems))) {
+    added.push_back(add_text(builder, text));
+  }
+  return builder.CreateVector(added);
+}
+
+flatbuffers::Offset<fb::ReloadReport> add_reload_report(Builder& builder, const ReloadReport& report) {
+  const auto applied = add_texts(builder, report.applied);
+  const auto takes_restart = add_texts(builder, report.takes_restart);
+  const auto mistakes = add_texts(builder, report.mistakes);
+  return fb::CreateReloadReport(builder, static_cast<fb::ReloadOutcome>(report.outcome), applied, takes_restart,
+                                mistakes);
 }
 
 flatbuffers::Offset<fb::PlayerCommand> add_player(Builder& builder, const PlayerCommand& wish) {
@@ -190,6 +221,11 @@ flatbuffers::Offset<fb::PlayerState> add_player(Builder& builder, const PlayerSt
   return table.Finish();
 }
 
+std::optional<fb::Lateness> to_schema(const std::optional<Lateness>& lateness) {
+  if (!lateness) return std::nullopt;
+  return fb::Lateness(lateness->p50_s, lateness->p99_s, lateness->max_s);
+}
+
 template <class Table>
 Bytes finish(Builder& builder, fb::Body type, flatbuffers::Offset<Table> body) {
   fb::FinishSizePrefixedMessageBuffer(builder, fb::CreateMessage(builder, type, body.Union()));
@@ -212,7 +248,7 @@ Bytes encode(const Subscribe& subscribe) {
   const auto raw_sensor = subscribe.raw_sensor.empty() ? Text() : add_text(builder, subscribe.raw_sensor);
   return finish(builder, fb::Body_Subscribe,
                 fb::CreateSubscribe(builder, subscribe.protocol, subscribe.poses, subscribe.sensors, client,
-                                    subscribe.raw, raw_sensor));
+                                    subscribe.raw, raw_sensor, subscribe.takes_new_scenes));
 }
 
 Bytes encode(const Scenes& scenes) {
@@ -238,17 +274,35 @@ Bytes encode(const Sensors& sensors) {
   const fb::Wind wind = to_schema(sensors.wind);
   const fb::WindPlace place = place_to_schema(sensors.wind);
   const auto shaping = add_shaping(builder, sensors.shaping);
-  return finish(builder, fb::Body_Sensors,
-                fb::CreateSensors(builder, vector, &wind, sensors.late_ticks, sensors.clients, shaping, &place));
+  const auto io_lateness = to_schema(sensors.io_lateness);
+  const auto tick_lateness = to_schema(sensors.tick_lateness);
+  const auto recorder =
+      sensors.recorder ? add_recorder(builder, *sensors.recorder) : flatbuffers::Offset<fb::Recorder>();
+  fb::SensorsBuilder table(builder);
+  table.add_sensors(vector);
+  table.add_wind(&wind);
+  table.add_late_ticks(sensors.late_ticks);
+  table.add_clients(sensors.clients);
+  table.add_shaping(shaping);
+  table.add_wind_place(&place);
+  table.add_refused_clients(sensors.refused_clients);
+  table.add_stuck_clients(sensors.stuck_clients);
+  table.add_idle_clients(sensors.idle_clients);
+  if (io_lateness) table.add_io_lateness(&*io_lateness);
+  if (tick_lateness) table.add_tick_lateness(&*tick_lateness);
+  if (sensors.recorder) table.add_recorder(recorder);
+  return finish(builder, fb::Body_Sensors, table.Finish());
 }
 
 Bytes encode(const Control& control) {
   Builder builder;
   const auto scene = add_text(builder, control.scene);
   const auto player = control.player ? add_player(builder, *control.player) : flatbuffers::Offset<fb::PlayerCommand>();
+  const auto reload = control.reload ? fb::CreateReloadCommand(builder, add_text(builder, control.reload->file))
+                                     : flatbuffers::Offset<fb::ReloadCommand>();
   return finish(builder, fb::Body_Control,
                 fb::CreateControl(builder, scene, control.shown, control.hide_others,
-                                  static_cast<float>(control.over_s), player));
+                                  static_cast<float>(control.over_s), player, reload));
 }
 
 Bytes encode(const ControlReply& reply) {
@@ -264,8 +318,10 @@ Bytes encode(const ControlReply& reply) {
   const auto message = add_text(builder, reply.message);
   const auto scene_vector = builder.CreateVector(scenes);
   const auto player_vector = builder.CreateVector(players);
+  const auto reload =
+      reply.reload ? add_reload_report(builder, *reply.reload) : flatbuffers::Offset<fb::ReloadReport>();
   return finish(builder, fb::Body_ControlReply,
-                fb::CreateControlReply(builder, reply.done, message, scene_vector, player_vector));
+                fb::CreateControlReply(builder, reply.done, message, scene_vector, player_vector, reload));
 }
 
 Bytes encode(const RawTrace& trace) {

@@ -42,6 +42,7 @@ inline constexpr std::size_t kMaxLinksPerStrand = 256;
 inline constexpr std::size_t kMaxSensors = 256;
 inline constexpr std::size_t kMaxRefusalReasons = 64;
 inline constexpr double kMaxFade_s = 3600.0;
+inline constexpr std::size_t kMaxReloadItems = 1024;  ///< of each kind in a ReloadReport; encoders leave out more
 inline constexpr std::uint32_t kMaxSteps = 1'000'000;
 inline constexpr double kMinPlayRate = 0.01;
 inline constexpr double kMaxPlayRate = 1000.0;
@@ -65,8 +66,9 @@ struct Subscribe {
   bool poses = true;
   bool sensors = false;
   std::string client;
-  bool raw = false;             ///< RawTrace
-  std::string raw_sensor = {};  ///< of this one only; empty: of every sensor
+  bool raw = false;               ///< RawTrace
+  std::string raw_sensor = {};    ///< of this one only; empty: of every sensor
+  bool takes_new_scenes = false;  ///< Scenes may come again; otherwise it is let go when the scenes change
 };
 
 /// A skeleton of a kind that this build does not know is decoded as one of no strands, and so are its poses.
@@ -131,6 +133,26 @@ struct Shaping {
   double site_known_s = 0.0;
   std::string text = {};  ///< all that is at work, for a person to read; empty: nothing
   double gusts = 1.0;
+  double openness = 1.0;  ///< 0: closed, 1: open
+};
+
+/// How late something was that has its time, since the daemon began.
+struct Lateness {
+  double p50_s = 0.0;
+  double p99_s = 0.0;
+  double max_s = 0.0;
+};
+
+enum class RecorderState : std::uint8_t { kWriting, kRetrying, kHanging };
+
+/// How the recording of readings does.
+struct RecorderStatus {
+  RecorderState state = RecorderState::kWriting;
+  std::uint64_t written = 0;                               ///< readings on the disk
+  std::uint64_t waiting = 0;                               ///< readings that are not yet written
+  std::uint64_t lost = 0;                                  ///< readings that were dropped
+  std::optional<std::uint64_t> free_bytes = std::nullopt;  ///< on its disk
+  std::string error = {};                                  ///< why it cannot write at present; empty: it can
 };
 
 struct Sensors {
@@ -139,6 +161,12 @@ struct Sensors {
   std::uint64_t late_ticks = 0;
   std::uint32_t clients = 0;
   Shaping shaping = {};
+  std::uint64_t refused_clients = 0;                      ///< there was no place for them
+  std::uint64_t stuck_clients = 0;                        ///< let go because they stopped reading
+  std::uint64_t idle_clients = 0;                         ///< let go because they subscribed to nothing, or not at all
+  std::optional<Lateness> io_lateness = std::nullopt;     ///< of the I/O thread's steps
+  std::optional<Lateness> tick_lateness = std::nullopt;   ///< of the animation's ticks
+  std::optional<RecorderStatus> recorder = std::nullopt;  ///< nothing: nothing is recorded, or it is not known
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };
@@ -152,13 +180,20 @@ struct PlayerCommand {
   double rate = 1.0;        ///< kRate: kMinPlayRate to kMaxPlayRate
 };
 
-/// A request to show or hide scenes; or, with `player`, to change how recordings are played.
+/// Has the server read its configuration again.
+struct ReloadCommand {
+  std::string file = {};  ///< absolute path of the one that is meant; empty: whichever the server reads
+};
+
+/// A request to show or hide scenes; or, with `player`, to change how recordings are played; or, with `reload`, to read
+/// the configuration again.
 struct Control {
   std::string scene;  ///< its name; empty: change nothing, only report the status
   bool shown = true;
   bool hide_others = false;  ///< and hide every other scene, in the same time
   double over_s = 2.0;       ///< 0 to kMaxFade_s
   std::optional<PlayerCommand> player = std::nullopt;
+  std::optional<ReloadCommand> reload = std::nullopt;
 };
 
 struct SceneState {
@@ -185,11 +220,24 @@ struct PlayerState {
   std::string refusal;  ///< why the last order was not carried out
 };
 
+/// kDone: applied, or nothing to apply. All others: nothing was changed. One that this build does not know is decoded
+/// as kFailed.
+enum class ReloadOutcome : std::uint8_t { kDone, kMistake, kNotAllowed, kNoFile, kFailed };
+
+/// What came of reading the configuration again.
+struct ReloadReport {
+  ReloadOutcome outcome = ReloadOutcome::kDone;
+  std::vector<std::string> applied = {};
+  std::vector<std::string> takes_restart = {};
+  std::vector<std::string> mistakes = {};  ///< "file:line:column: key: what is wrong"
+};
+
 struct ControlReply {
   bool done = false;
   std::string message;  ///< what was done, or why not
   std::vector<SceneState> scenes;
   std::vector<PlayerState> players = {};
+  std::optional<ReloadReport> reload = std::nullopt;
 };
 
 /// One message to or from a sensor's device, as it went over the wire.
@@ -251,7 +299,7 @@ Result<std::size_t, WireError> read_size_prefix(std::span<const std::uint8_t, kS
                                                 std::size_t limit);
 
 /// The message in `bytes` (without the size prefix; any alignment). Never reads outside them, whatever they hold. Texts
-/// come out without control characters, so that they can go to a terminal or a log.
+/// come out as valid UTF-8 without control characters (make_printable()), so that they can go to a terminal or a log.
 Result<Message, WireError> decode(std::span<const std::uint8_t> bytes);
 
 /// Do the frame's poses pair with the skeletons? Ask before kinematics: they are two messages, and only each is

@@ -26,7 +26,8 @@ class WorkerPool {
 
   std::size_t size() const noexcept { return size_; }
 
-  /// Calls work(Part) once for each part, and returns when all are done. `work` must not throw.
+  /// Calls work(Part) once for each part, and returns when all are done. `work` must not throw: an exception of it ends
+  /// the program (std::terminate).
   template <class Work>
   void run(const Work& work) noexcept {
     run_task([](const void* task, Part part) { (*static_cast<const Work*>(task))(part); }, &work);

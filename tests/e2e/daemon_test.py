@@ -3,6 +3,7 @@
 
 usage: daemon_test.py FOLDER_OF_PROGRAMS FOLDER_OF_SCHEMA_MODULES
 """
+import fcntl
 import json
 import os
 import re
@@ -208,8 +209,23 @@ class DaemonTest(unittest.TestCase):
         self.assertEqual(daemon.wait(HANG_S), 0)
         self.assertEqual(os.listdir(self.folder), ["wall.windlog"], "closed in order")
 
+    def test_a_log_that_nobody_reads_delays_nobody(self):
+        daemon = subprocess.Popen([YURAGI, "run", "--listen", "127.0.0.1:0", "--verbose"], stderr=subprocess.PIPE, bufsize=0)
+        self.addCleanup(daemon.stderr.close)
+        self.addCleanup(daemon.kill)
+        fcntl.fcntl(daemon.stderr, fcntl.F_SETPIPE_SZ, 4096)
+        listening = next(line for line in daemon.stderr if b"listening on" in line)  # and it is not read on
+        address = listening.split()[-1].decode()
+        with Stream(address, sensors=False) as stream:
+            first = stream.next("Frame")
+            for _ in range(100):  # some 20 kB of log
+                Stream(address, poses=False).close()
+            self.assertGreater(stream.next("Frame").Sequence(), first.Sequence())
+        daemon.terminate()
+        self.assertEqual(daemon.wait(HANG_S), 0)
+
     def test_it_ends_on_any_signal_to_end(self):
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for number in (signal.SIGINT, signal.SIGTERM):
             daemon = self.start_daemon()
             with Stream(daemon.address()) as stream:
                 stream.next("Frame")
@@ -271,6 +287,16 @@ class DaemonTest(unittest.TestCase):
         self.assertEqual(done.returncode, 69)
         self.assertIn(daemon.address(), done.stderr)
 
+    def test_what_ends_it_during_its_set_up_ends_it_at_once_and_nothing_has_been_recorded(self):
+        pipe = self.file("site.json")
+        os.mkfifo(pipe)
+        path = self.file("wall.toml", f'[shaping]\nsite_file = "{pipe}"\n')
+        for number in (signal.SIGINT, signal.SIGTERM):
+            daemon = self.start_daemon("--config", path, "--record", self.file("wall.windlog"))
+            with open(pipe, "wb"):  # opened when the daemon reads from it, and waits for what is never written
+                self.assertEqual(daemon.end(number), -number, daemon.text())
+            self.assertEqual(sorted(os.listdir(self.folder)), ["site.json", "wall.toml"])
+
     def test_the_example_client_finds_nothing_wrong(self):
         daemon = self.start_daemon()
         done = subprocess.run([sys.executable, pose_client.__file__, "--connect", daemon.address(), "--schema", SCHEMA_MODULES,
@@ -291,6 +317,35 @@ class DaemonTest(unittest.TestCase):
         self.assertEqual(run("check-config", path).returncode, 0)
         full = self.file("full.toml", run("check-config", "--full", path).stdout)
         self.assertEqual(run("check-config", full).returncode, 0)
+
+    def two_baud_rates(self):
+        """A configuration whose sensors are right one by one, and cannot be opened together."""
+        sensor = '[[sensor]]\nname = "%s"\ndriver = "modbus"\ntransport = "rtu"\ndevice = "/dev/yuragi-none"\nbaud = %d\n'
+        return self.file("wall.toml", sensor % ("roof", 4800) + sensor % ("mast", 9600))
+
+    def test_what_check_config_passes_runs(self):
+        def expect_refused(path, why):
+            for command in (["check-config", path], ["run", "--listen", "127.0.0.1:0", "--config", path]):
+                done = run(*command)
+                self.assertEqual(done.returncode, 78, done.stdout + done.stderr)
+                self.assertIn(why, done.stderr)
+
+        path = self.two_baud_rates()
+        expect_refused(path, path + ":7:1: sensor: /dev/yuragi-none is used with 4800 8N1 by another sensor")
+        scenes = [f'[[scene]]\nkind = "grass"\nname = "{name}"\nblades_across = 2000\nblades_deep = 1100\nlinks = 1\n' for name in "ab"]
+        expect_refused(self.file("large.toml", "".join(scenes)), "the scenes are larger than the stream allows")
+
+    def test_a_start_that_fails_leaves_a_recording_as_it_was_and_begins_none(self):
+        path = self.two_baud_rates()
+        log = self.file("storm.windlog")
+        self.assertEqual(run("record", log, "--listen", "127.0.0.1:0", "--duration", "1").returncode, 0)
+        with open(log, "rb") as recording:
+            before = recording.read()
+        for file in (log, self.file("new.windlog")):
+            self.assertEqual(run("record", file, "--listen", "127.0.0.1:0", "--config", path).returncode, 78)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["storm.windlog", "wall.toml"])
+        with open(log, "rb") as recording:
+            self.assertEqual(recording.read(), before)
 
     def test_where_a_sensor_stands_is_told_and_stays_untold_where_it_was_not(self):
         sensor = '[[sensor]]\nname = "%s"\ndriver = "synthetic"\n'
@@ -455,6 +510,27 @@ port = {port}
         ticks = int(re.search(r"(\d+) ticks", done.stderr).group(1))
         self.assertLess(ticks, 2 * 60, "three seconds at four times their pace, 60 ticks a second")
         self.assertIn("the recording has ended", done.stderr)
+
+    def test_a_day_is_replayed_with_the_configuration_and_all_sensors_of_the_recording(self):
+        log = self.file("day.windlog")
+        config = self.file("wall.toml", SMALL_MEADOW + "".join(
+            f'[[sensor]]\nname = "{name}"\ndriver = "synthetic"\nspeed = {speed}\n[sensor.blend]\npriority = 1\n'
+            for name, speed in (("roof", 4), ("yard", 5))))
+        done = run("record", log, "--config", config, "--duration", 3, "--listen", "127.0.0.1:0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        runs = [run("replay", log, "--as-recorded", "--rate", "max") for _ in range(2)]
+        self.assertEqual(runs[0].returncode, 0, runs[0].stderr)
+        self.assertRegex(runs[0].stdout, r"pose hash  [0-9a-f]{16}")
+        self.assertEqual(runs[0].stdout, runs[1].stdout)
+        _, address = self.start_replay(log, "--as-recorded", "--paused")
+        with Stream(address, poses=False) as stream:
+            sensors = stream.next("Sensors")
+            self.assertEqual([sensors.Sensors(i).Name() for i in range(sensors.SensorsLength())], [b"roof", b"yard"])
+        done = run("replay", log, "--as-recorded", "--rate", 4, "--listen", "127.0.0.1:0")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the recording has ended", done.stderr)
+        for option in (("--config", config), ("--loop",), ("--sensor", "roof"), ("--same-time-of-day",)):
+            self.assertEqual(run("replay", log, "--as-recorded", *option).returncode, 64, option)
 
     # ---- playing a recording ----
 
@@ -953,6 +1029,54 @@ shown = false
             self.assertEqual(done.returncode, 0, done.stderr)
 
     # ---- clients ----
+
+    def address_as_of_another_machine(self, daemon):
+        """The address of a daemon that listens on 0.0.0.0, by which its own clients are not on the loopback interface."""
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as route:
+            try:
+                route.connect(("192.0.2.1", 9))  # sends nothing
+            except OSError:
+                self.skipTest("this machine has no address but the loopback's")
+            own = route.getsockname()[0]
+        if own.startswith("127."):
+            self.skipTest("this machine has no address but the loopback's")
+        return own + ":" + daemon.address().split(":")[-1]
+
+    def test_another_machine_is_told_the_names_of_files_only(self):
+        log = self.recording([5.0] * 100)
+        daemon = self.start(YURAGI, "replay", log, "--loop", "--listen", "0.0.0.0:0")
+        remote = self.address_as_of_another_machine(daemon)
+        local = "127.0.0.1:" + remote.split(":")[-1]
+        for address, detail in ((remote, "playing " + os.path.basename(log)), (local, "playing " + log)):
+            with Stream(address, poses=False) as stream:
+                sensor = stream.wait_for_sensor(lambda sensor: sensor.Detail().startswith(b"playing"))
+                self.assertEqual(sensor.Detail().decode(), detail)
+
+    def test_idle_clients_of_another_machine_take_no_place_of_this_one(self):
+        daemon = self.start(YURAGI, "run", "--listen", "0.0.0.0:0")
+        remote = self.address_as_of_another_machine(daemon)
+        local = "127.0.0.1:" + remote.split(":")[-1]
+        refused = 0
+        clients = []
+        for _ in range(40):
+            clients.append(pose_client.SocketBytes(remote, HANG_S))
+            clients[-1].send(pose_client.subscribe_message(poses=False, sensors=False, client="idle"))
+            _, hello = pose_client.body_of(next(pose_client.messages(clients[-1]))[0])
+            refused += hello.Refused() is not None
+        self.assertEqual(refused, 32)
+        table = run("sensors", "watch", "--connect", local, "--once")
+        self.assertEqual(table.returncode, 0, table.stderr)
+        self.assertRegex(table.stdout, r"since the start: clients refused \d+, stuck 0, idle 0; "
+                         r"late \(p50, p99, most\): I/O .* ms; ticks .* ms\n")
+        for client in clients:
+            client.socket.close()
+
+    def test_raw_messages_are_for_those_who_may_control(self):
+        address = self.start_two_scenes(control="nobody")
+        refused = run("sensors", "watch", "--raw", "--connect", address)
+        self.assertEqual(refused.returncode, 69)
+        self.assertIn("raw messages cannot be watched: the configuration has [stream] control", refused.stderr)
+        self.assertEqual(run("sensors", "watch", "--once", "--connect", address).returncode, 0)
 
     def test_a_client_that_stands_still_holds_up_nobody_and_is_let_go(self):
         daemon = self.start_daemon()

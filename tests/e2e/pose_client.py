@@ -92,8 +92,9 @@ def messages(source):
         yield Message.GetRootAs(body, 0), 4 + size
 
 
-def subscribe_message(poses=True, sensors=False, client="pose_client.py", raw_sensor=None):
-    """The one message that a client sends: what it wants to see. raw_sensor: the sensor whose raw messages it wants; "": all."""
+def subscribe_message(poses=True, sensors=False, client="pose_client.py", raw_sensor=None, takes_new_scenes=False):
+    """The one message that a client sends: what it wants to see. raw_sensor: the sensor whose raw messages it wants; "": all.
+    takes_new_scenes: it does not mind that Scenes comes again; otherwise the daemon ends the connection when the scenes change."""
     from yuragi.stream import Body, Message, Subscribe
 
     builder = flatbuffers.Builder(256)
@@ -106,6 +107,7 @@ def subscribe_message(poses=True, sensors=False, client="pose_client.py", raw_se
     Subscribe.AddClient(builder, name)
     Subscribe.AddRaw(builder, raw_sensor is not None)
     Subscribe.AddRawSensor(builder, traced)
+    Subscribe.AddTakesNewScenes(builder, takes_new_scenes)
     subscribe = Subscribe.End(builder)
     Message.Start(builder)
     Message.AddBodyType(builder, Body.Body.Subscribe)
@@ -482,6 +484,10 @@ def read_union(kinds, kind, table):
 # ---- What this program does with it ----
 
 
+class Refused(EOFError):
+    """The daemon ends the connection, and says why."""
+
+
 class Watcher:
     """Takes the messages in, keeps count, and notes what is not as it should be."""
 
@@ -490,6 +496,7 @@ class Watcher:
         self.problems = []
         self.tick_rate_hz = 0.0
         self.scenes = None
+        self.lists = 0  # of scenes that have come
         self.frames = 0
         self.bytes = 0
         self.missed = 0
@@ -507,7 +514,7 @@ class Watcher:
 
     def hello(self, hello):
         if hello.Refused() is not None:
-            raise EOFError("the daemon refuses the connection: " + hello.Refused().decode())
+            raise Refused("the daemon refuses the connection: " + hello.Refused().decode())
         if hello.Protocol() != PROTOCOL:
             older = "this client" if hello.Protocol() > PROTOCOL else "the daemon"
             raise EOFError(f"the daemon speaks protocol {hello.Protocol()}, this client protocol {PROTOCOL}: "
@@ -516,7 +523,8 @@ class Watcher:
         self.tick_rate_hz = hello.TickRateHz()
 
     def scenes_message(self, table):
-        self.expect(self.scenes is None, "Scenes came twice")
+        """Scenes may come again: each frame behind it is of the new ones."""
+        self.lists += 1
         self.scenes = read_scenes(table)
         for name, _, model in self.scenes:
             if model is not None and self.check:
@@ -586,6 +594,7 @@ class Watcher:
             "first_frame_latency_s": latency_s,
             "first_frame_latency_frames": latency_s * self.tick_rate_hz if latency_s is not None else None,
             "missed": self.missed,
+            "lists_of_scenes": self.lists,
             "max_bend_rad": self.max_bend_rad,
             "tick_rate_hz": self.tick_rate_hz,
             "strands": sum(model.count for model in models if isinstance(model, Strands)),
@@ -607,6 +616,7 @@ def parse_arguments():
     parser.add_argument("--timeout", type=float, default=10.0, help="seconds without any message that end it (10)")
     parser.add_argument("--check", action="store_true", help="verify everything that the schema promises")
     parser.add_argument("--tips", action="store_true", help="print the first tips or points of the last frame")
+    parser.add_argument("--old", action="store_true", help="do not take new scenes: connect again when they change")
     parser.add_argument("--json", action="store_true", help="print a summary in JSON and nothing else")
     return parser.parse_args()
 
@@ -620,14 +630,26 @@ def main():
     subscribed_s = time.monotonic()
     try:
         source = FileBytes(options.file) if options.file else SocketBytes(options.connect, options.timeout)
-        source.send(subscribe_message())
+        source.send(subscribe_message(takes_new_scenes=not options.old))
         subscribed_s = line_s = time.monotonic()
         line_frames = line_bytes = line_missed = 0
-        for message, size in messages(source):
+        stream = messages(source)
+        while options.frames is None or watcher.frames < options.frames:
+            message, size = next(stream)
             kind, table = body_of(message)
             now_s = time.monotonic()
             if kind == "Hello":
-                watcher.hello(table)
+                try:
+                    watcher.hello(table)
+                except Refused:
+                    if not (options.old and watcher.frames):
+                        raise
+                    # It was let go because the scenes have changed, perhaps: who connects again gets the new ones.
+                    say("connecting again")
+                    source = SocketBytes(options.connect, options.timeout)
+                    source.send(subscribe_message())
+                    stream = messages(source)
+                    continue
                 say(f"{table.Software().decode()}, {table.TickRateHz():g} Hz")
             elif kind == "Scenes":
                 watcher.scenes_message(table)
@@ -647,8 +669,6 @@ def main():
                     flush=True,
                 )
                 line_s, line_frames, line_bytes, line_missed = now_s, watcher.frames, watcher.bytes, watcher.missed
-            if options.frames is not None and watcher.frames >= options.frames:
-                break
     except KeyboardInterrupt:
         pass
     except (OSError, EOFError, ValueError, struct.error) as error:

@@ -24,7 +24,8 @@ import tempfile
 import time
 
 NOT_RUN = (
-    (r"^(config/demo|tests/run)\.sh", "installs packages and builds"),
+    (r"^(config/demo|config/package|tests/run)\.sh", "installs packages and builds"),
+    (r"/etc/yuragi", "needs the package to be installed"),
     (r"^sudo ", "changes the machine"),
     (r"^yuragi-viewer\b", "needs a display"),
     (r"/dev/ttyUSB|^yuragi calibrate (zero|north)", "needs a device"),

@@ -25,6 +25,7 @@ from programs import shared_data
 
 YURAGI = os.path.abspath(sys.argv.pop(1))
 EVIL = "<script>alert('x')</script>&\""
+FAR = 2**63 // 2 - 1  # the largest time that a recording can hold, ns
 START_S = 1532095200  # 2018-07-20T14:00:00Z
 SVG_DATA = "data:image/svg+xml;base64,"
 VOID = set("meta br link img hr input".split())
@@ -165,8 +166,8 @@ class ReportCommand(unittest.TestCase):
 
         # No UTF-8, line ends, very long: as a file from outside can have it.
         with sqlite3.connect(log) as file:
-            file.execute("UPDATE sensor SET name = CAST(X'61FF0A3C623E' AS TEXT) || ?, driver = ? WHERE name = 'mast'",
-                         ("y" * 5000, "</style><b onclick=x>"))
+            file.execute("UPDATE series SET name = CAST(X'61FF0A3C623E' AS TEXT) || ? WHERE name = 'mast'", ("y" * 5000,))
+            file.execute("UPDATE sensor SET driver = '</style><b onclick=x>' WHERE series = 1")
         text, numbers = self.report(log)
         self.check_page(text)
         self.assertNotIn("y" * 300, text)
@@ -320,7 +321,7 @@ class ReportCommand(unittest.TestCase):
         self.assertEqual(numbers["sensors"][0]["mean_m_s"], 3.25)
         self.assertIsNone(numbers["sensors"][0]["spectrum"])
         with sqlite3.connect(log) as file:
-            file.execute("DELETE FROM reading")
+            file.execute("DELETE FROM reading_1")
         text, numbers = self.report(log)
         page, figures = self.check_page(text)
         self.assertIn("holds no readings", page.text)
@@ -369,18 +370,29 @@ class ReportCommand(unittest.TestCase):
             self.assertFalse(out.exists())
         self.assertEqual((self.folder / "there.html").read_text(encoding="ascii"), "precious")
 
-    def test_any_times_and_numbers_make_a_page(self):
-        log = self.record(self.faulty())
+    def check_changed(self, log, changes):
         whole = log.read_bytes()
-        far = 2**63 // 2 - 1
-        for change in ("utc_ns = random() / 2", f"utc_ns = {far}", f"utc_ns = -{far}", "mono_ns = 5", "mono_ns = rowid",
-                       "mono_ns = abs(random()) / 4", "speed_m_s = 1e-300", "speed_m_s = -1", "direction_deg = 359.9999999"):
+        for table, change in changes:
             log.write_bytes(whole)
             with sqlite3.connect(log) as file:
-                file.execute(f"UPDATE reading SET {change}")
+                file.execute(f"UPDATE {table} SET {change}")
             text, _ = self.report(log)
             self.check_page(text)
             self.assertNotRegex(text.split("<body>")[1], r"\b(nan|inf)\b", change)
+
+    def test_any_times_and_numbers_make_a_page(self):
+        numbers = ("speed_m_s = 1e-300", "speed_m_s = -1", "direction_deg = 359.9999999")
+        changes = ("clock_ns = random() / 2", f"clock_ns = {FAR}", f"clock_ns = -{FAR}", "time_ns = -time_ns",
+                   "time_ns = abs(random()) / 4", *numbers)
+        self.check_changed(self.record(self.faulty()), [("reading_1", change) for change in changes])
+
+        older = self.folder / "format1.windlog"
+        older.write_bytes((pathlib.Path(__file__).parents[1] / "drivers/windlog/format1.windlog").read_bytes())
+        with sqlite3.connect(older) as file:  # of several sessions the times may add up to more than a recording can hold
+            file.execute("DELETE FROM reading WHERE session = 2")
+        changes = ("utc_ns = random() / 2", f"utc_ns = {FAR}", f"utc_ns = -{FAR}", "mono_ns = 5", "mono_ns = rowid",
+                   "mono_ns = abs(random()) / 4", *numbers)
+        self.check_changed(older, [("reading", change) for change in changes])
 
     def test_too_many_sensors_are_refused_with_advice(self):
         run = yuragi("report", self.record([(i, f"s{i}", 1, None, None, "good") for i in range(40)]), "-o", self.folder / "a.html")

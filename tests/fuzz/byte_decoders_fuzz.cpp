@@ -48,6 +48,7 @@ void read_frames(std::vector<std::uint8_t> bytes, bool is_mended) {
   require_physical(decode::hid::decode_te923(bytes));
   require_physical(decode::hid::decode_acurite(bytes));
   require_physical(decode::hid::decode_fineoffset_record(bytes));
+  static_cast<void>(decode::hid::decode_fineoffset_quantities(bytes));
   static_cast<void>(decode::hid::encode_wmr300_acknowledgement(bytes));
   for (const auto model : {decode::hid::FineOffsetModel::kWh1080, decode::hid::FineOffsetModel::kWh3080}) {
     if (const auto fixed = decode::hid::decode_fineoffset_fixed_block(bytes, model)) {

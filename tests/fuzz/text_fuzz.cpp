@@ -53,6 +53,8 @@ void decode_everything(std::string_view line, unsigned choices) {
   numbers.separator = (choices & 32U) != 0 ? ' ' : ',';
   for (const std::string_view text : {line, std::string_view(sentence), std::string_view(frame)}) {
     require_physical(decode::text::decode_nmea({.checksum = checksum, .status = status, .xdr_first_id = 0}, text));
+    static_cast<void>(
+        decode::text::decode_nmea_quantities({.checksum = checksum, .status = status, .xdr_first_id = 0}, text));
     require_physical(decode::text::decode_gill(gill, text));
     require_physical(decode::text::decode_ft({.checksum = checksum, .status = status}, text));
     require_physical(decode::text::decode_umb({}, text));

@@ -40,6 +40,10 @@ std::string make_recording() {
         reading.time.mono += std::chrono::milliseconds(100 * i);
         reading.direction_deg = i;
         if (!writer->append(*sensor, reading)) std::abort();
+        wind::StationQuantities quantities;
+        quantities.time = reading.time;
+        quantities.air_temperature_c = 20.0;
+        if (!writer->append(*sensor, quantities)) std::abort();
       }
     }
   }
@@ -113,6 +117,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   auto reader = windlog::WindlogReader::open(scratch_file());
   if (!reader) return 0;
+  const auto use_quantities = [&](const windlog::LoggedQuantities& logged) {
+    if (!wind::plausible_part(logged.quantities) || logged.sensor >= reader->sensors().size()) std::abort();
+  };
+  static_cast<void>(reader->each_quantities(std::chrono::seconds(size % 20), Nanoseconds::max(), use_quantities));
   reader->seek(std::chrono::seconds(size % 40));
   static_cast<void>(reader->log_time_of(UtcTime{}));
   for (;;) {

@@ -29,6 +29,12 @@ void demand_place(const wind::WindState& wind) {
   if (!(std::abs(wind.upwind_m) <= 1e6) || !(wind.to_middle_s >= 0.0 && wind.to_middle_s <= 1e12)) std::abort();
 }
 
+void demand_lateness(const std::optional<wire::Lateness>& lateness) {
+  if (!lateness) return;
+  for (const double value_s : {lateness->p50_s, lateness->p99_s, lateness->max_s})
+    if (!(value_s >= 0.0 && value_s <= 1e12)) std::abort();
+}
+
 /// What decode() promises of everything that it lets through.
 void demand_consistency(const wire::Message& message) {
   if (const auto* scenes = std::get_if<wire::Scenes>(&message)) {
@@ -43,7 +49,11 @@ void demand_consistency(const wire::Message& message) {
     if (!(wish.rate >= wire::kMinPlayRate && wish.rate <= wire::kMaxPlayRate)) std::abort();
     if (wish.count < 1 || wish.count > wire::kMaxSteps) std::abort();
   }
-  if (const auto* sensors = std::get_if<wire::Sensors>(&message)) demand_place(sensors->wind);
+  if (const auto* sensors = std::get_if<wire::Sensors>(&message)) {
+    demand_place(sensors->wind);
+    demand_lateness(sensors->io_lateness);
+    demand_lateness(sensors->tick_lateness);
+  }
   if (const auto* frame = std::get_if<wire::Frame>(&message)) {
     if (frame->opacities.size() != frame->poses.size()) std::abort();
     demand_place(frame->info.wind);

@@ -158,7 +158,9 @@ class KernelTest(unittest.TestCase):
 
     def test_the_daemon_needed_no_more_than_the_udev_rules_give(self):
         self.assertRegex(self.daemon_log, r"uid=1000\(wind\)")
-        self.assertNotRegex(self.daemon_log, r"[Pp]ermission")
+        # On a busy machine a device may be there for a moment before udev has given it to the group.
+        for refused in re.finditer(r"sensor (\w+): .*[Pp]ermission", self.daemon_log):
+            self.assertRegex(self.daemon_log[refused.end() :], rf"sensor {refused.group(1)}: connected", refused.group(0))
 
     def test_the_daemon_ended_in_order(self):
         self.assertEqual(self.text("console.log").count("the daemon has ended with 0"), 1, self.daemon_log)

@@ -53,6 +53,13 @@ class MosquittoBroker {
     command.insert(command.end(), more.begin(), more.end());
     run_program(command);
   }
+  /// The same, kept for later subscribers, with a payload that is too long for a command line.
+  void retain(const std::string& topic, const std::string& payload) const {
+    const auto file = folder_ / "payload";
+    std::ofstream(file) << payload;
+    run_program({"mosquitto_pub", "-h", "127.0.0.1", "-p", std::to_string(port_), "-q", "1", "-r", "-t", topic, "-f",
+                 file.string()});
+  }
 
  private:
   test::TemporaryFolder folder_;

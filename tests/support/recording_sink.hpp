@@ -23,6 +23,7 @@ struct RecordingSink final : drivers::sensor::SensorSink {
 
   std::vector<wind::WindReading> readings;
   std::vector<wind::WindReading> believed;  ///< those of them that a hub would give to the wind
+  std::vector<wind::StationQuantities> station_quantities;
   std::vector<drivers::decode::Refusal> refusals;
   std::vector<Link> links;
   std::vector<Raw> raws;
@@ -32,7 +33,10 @@ struct RecordingSink final : drivers::sensor::SensorSink {
     readings.push_back(reading);
     if (wind::is_plausible(reading) && judge.judge(reading)) believed.push_back(reading);
   }
-  void refused(drivers::decode::Refusal why) override { refusals.push_back(why); }
+  void quantities(const wind::StationQuantities& said) override { station_quantities.push_back(said); }
+  void refused(drivers::decode::Refusal why, std::uint64_t times = 1) override {
+    refusals.insert(refusals.end(), times, why);
+  }
   void link(wind::LinkState state, std::string_view detail) override { links.push_back({state, std::string(detail)}); }
   void raw(drivers::sensor::RawDirection direction, std::span<const std::uint8_t> message) override {
     raws.push_back({direction, {message.begin(), message.end()}});

@@ -114,8 +114,8 @@ class RunningSensor final : private drivers::sensor::SensorSink {
   void reading(const wind::WindReading& reading) override {
     change([&](RecordingSink& sink) { sink.reading(reading); });
   }
-  void refused(drivers::decode::Refusal why) override {
-    change([&](RecordingSink& sink) { sink.refused(why); });
+  void refused(drivers::decode::Refusal why, std::uint64_t times) override {
+    change([&](RecordingSink& sink) { sink.refused(why, times); });
   }
   void link(wind::LinkState state, std::string_view detail) override {
     change([&](RecordingSink& sink) { sink.link(state, detail); });

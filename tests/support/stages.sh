@@ -94,8 +94,8 @@ test_preset() {
   rm -f "$results"
   check "configuring $preset" cmake --preset "$preset" --log-level=WARNING || return
   check "building $preset" cmake --build --preset "$preset" || return
-  # Twice as many at once as there are cores: those that talk to devices, simulated ones, mostly wait.
-  ctest --preset "$preset" --parallel "$((2 * $(nproc)))" --output-junit "$results" "$@" || status=$?
+  # Three times as many at once as there are cores: those that talk to devices, simulated ones, mostly wait.
+  ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" "$@" || status=$?
   collect "ctest of $preset" "$results" "$status"
 }
 

@@ -149,11 +149,12 @@ class PictureTest : public testing::Test {
     return run(words, folder_, environment_without_screen());
   }
 
-  std::unique_ptr<Picture> take(const std::string& file, double lean_rad, const std::vector<std::string>& more) const {
+  std::unique_ptr<Picture> take(const std::string& file, double lean_rad, const std::vector<std::string>& more,
+                                const wire::Sensors& status = {}) const {
     // From the greeting on the meadow stands still: the picture is of this pose, whenever it is taken.
     const pose::Skeleton meadow = test_meadow(60, 6.0);
     wire::FrameEncoder encoder;
-    wire::Bytes greeting = greeting_for(meadow);
+    wire::Bytes greeting = greeting_for(meadow) + wire::encode(status);
     for (std::uint64_t i = 0; i < 3; ++i) {
       greeting = greeting + frame_of(meadow, test_pose(meadow, 0.0, lean_rad, 0.0, 140.0), i,
                                      0.1 * static_cast<double>(i), 140.0, encoder);
@@ -202,6 +203,23 @@ TEST_F(PictureTest, DrawsTheOverlayWhenAsked) {
   EXPECT_GT(without->difference(*with), 1.0);
 }
 
+TEST_F(PictureTest, FadesToBlackOutsideOfOpeningHoursWhenAsked) {
+  wire::Sensors closing;
+  closing.shaping.openness = 0.5;
+  wire::Sensors closed;
+  closed.shaping.openness = 0.0;
+  const std::vector<std::string> dark = {"--frames", "2", "--dark-when-closed"};
+  const auto open = take("open.png", 0.3, dark);
+  const auto half = take("half.png", 0.3, dark, closing);
+  const auto black = take("black.png", 0.3, dark, closed);
+  const auto unasked = take("unasked.png", 0.3, {"--frames", "2"}, closed);
+  ASSERT_TRUE(open->is_there() && half->is_there() && black->is_there() && unasked->is_there());
+  EXPECT_GT(open->mean(0.0, 1.0).brightness(), 60.0);
+  EXPECT_NEAR(half->mean(0.0, 1.0).brightness(), 0.5 * open->mean(0.0, 1.0).brightness(), 2.0);
+  EXPECT_EQ(black->mean(0.0, 1.0).brightness(), 0.0);
+  EXPECT_LT(unasked->difference(*open), 0.1);
+}
+
 TEST_F(PictureTest, ShowsEveryKindThatTheStreamCarriesAndEachAlone) {
   const std::vector<wire::SceneModel> garden = test_garden();
   std::vector<float> opacities(garden.size(), 1.0F);
@@ -228,6 +246,36 @@ TEST_F(PictureTest, ShowsEveryKindThatTheStreamCarriesAndEachAlone) {
   const Ended ended = take_picture(server.port(), "none.png", {"--scene", "a scene that is not there"});
   EXPECT_EQ(ended.code, 64);
   EXPECT_THAT(ended.said, testing::HasSubstr("it has: grass, fur, curtain"));
+}
+
+/// The scenes change while it watches: a tree in place of a garden.
+TEST_F(PictureTest, ShowsTheNewScenesWhenTheyHaveChanged) {
+  const std::vector<wire::SceneModel> garden = test_garden();
+  const std::vector<wire::SceneModel> tree = {test_model("tree")};
+  const std::vector<float> all_opaque(garden.size(), 1.0F);
+  wire::FrameEncoder encoder;
+  const auto frames_of = [&](const std::vector<wire::SceneModel>& models, int first) {
+    wire::Bytes bytes;
+    for (int i = first; i < first + 3; ++i) {
+      bytes = bytes + frame_of(models, std::span(all_opaque).first(models.size()), 0.1 * i, 0.5,
+                               static_cast<std::uint64_t>(i), encoder);
+    }
+    return bytes;
+  };
+  const StreamServer changing(greeting_for(garden) + frames_of(garden, 0) + wire::encode(wire::Scenes{tree}) +
+                              frames_of(tree, 3));
+  const StreamServer steady(greeting_for(tree) + frames_of(tree, 3));
+  const std::vector<std::string> late = {"--at", "1.5", "--camera", "20,10,12"};
+  const Ended ended = take_picture(changing.port(), "changed.png", late);
+  EXPECT_EQ(ended.code, 0) << ended.said;
+  EXPECT_EQ(take_picture(steady.port(), "steady.png", late).code, 0);
+  const StreamServer before(greeting_for(garden) + frames_of(garden, 0));
+  EXPECT_EQ(take_picture(before.port(), "before.png", late).code, 0);
+  const Picture changed(folder_ / "changed.png");
+  const Picture expected(folder_ / "steady.png");
+  const Picture old(folder_ / "before.png");
+  ASSERT_TRUE(changed.is_there() && expected.is_there() && old.is_there());
+  EXPECT_LT(changed.difference(expected), 0.2 * changed.difference(old)) << changed.difference(old);
 }
 
 TEST_F(PictureTest, EndsWith69WhenNoDaemonAnswers) {

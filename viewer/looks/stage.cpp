@@ -1,71 +1,85 @@
 #include "viewer/looks/stage.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/pose/pose_arrays.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
 
-/// The box around those of the bounds for which `is_chosen`; nothing where there are none.
-template <class IsChosen>
-std::optional<meshes::Bounds> around(const std::vector<meshes::Bounds>& bounds, IsChosen&& is_chosen) {
-  std::optional<meshes::Bounds> all;
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
-    if (is_chosen(i)) all = all ? united(*all, bounds[i]) : bounds[i];
-  }
-  return all;
-}
-
 constexpr meshes::Bounds kNoField{glm::vec3(1e6F), glm::vec3(-1e6F)};
 
 }  // namespace
 
 void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
-  renderers_.clear();
-  bounds_.clear();
-  scenes_ = std::move(scenes);
-  for (const wire::SceneModel& scene : scenes_) {
-    bounds_.push_back(meshes::bounds_of(scene.skeleton));
-    renderers_.push_back(make_scene_renderer(scene));
+  std::vector<std::unique_ptr<SceneView>> before = std::exchange(views_, {});
+  scenes_.clear();
+  for (wire::SceneModel& scene : scenes) {
+    const auto same = std::ranges::find_if(before, [&](const auto& view) {
+      return view && view->scene.kind == scene.kind && view->scene.skeleton == scene.skeleton;
+    });
+    if (same != before.end()) {
+      views_.push_back(std::move(*same));
+      views_.back()->scene.name = std::move(scene.name);
+    } else {
+      auto view = std::make_unique<SceneView>();
+      view->scene = std::move(scene);
+      view->bounds = meshes::bounds_of(view->scene.skeleton);
+      view->renderer = make_scene_renderer(view->scene);
+      views_.push_back(std::move(view));
+    }
+    scenes_.push_back(&views_.back()->scene);
   }
+  const bool is_there = std::ranges::any_of(scenes_, [&](const auto* scene) { return only_ && scene->name == *only_; });
+  if (!is_there) only_.reset();
 }
 
 void Stage::show_next() {
-  const auto is_only = [this](const wire::SceneModel& scene) { return only_ && scene.name == *only_; };
+  const auto is_only = [this](const wire::SceneModel* scene) { return only_ && scene->name == *only_; };
   const auto now = std::find_if(scenes_.begin(), scenes_.end(), is_only);
   const auto next = now == scenes_.end() ? scenes_.begin() : std::next(now);
-  only_ = next == scenes_.end() ? std::nullopt : std::optional(next->name);
+  only_ = next == scenes_.end() ? std::nullopt : std::optional((*next)->name);
+}
+
+/// The box around the scenes for which `is_chosen`; nothing where there are none.
+template <class IsChosen>
+std::optional<meshes::Bounds> Stage::around(IsChosen&& is_chosen) const {
+  std::optional<meshes::Bounds> all;
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    if (is_chosen(i)) all = all ? united(*all, views_[i]->bounds) : views_[i]->bounds;
+  }
+  return all;
 }
 
 meshes::Bounds Stage::bounds() const {
-  return around(bounds_, [this](std::size_t scene) { return is_chosen(scene); }).value_or(meshes::Bounds{});
+  return around([this](std::size_t scene) { return is_chosen(scene); }).value_or(meshes::Bounds{});
 }
 
 meshes::CameraPlace Stage::home(double aspect) const {
   bool is_all_field = true;
-  for (std::size_t scene = 0; scene < renderers_.size(); ++scene) {
-    is_all_field = is_all_field && (!is_chosen(scene) || renderers_[scene]->is_field());
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    is_all_field = is_all_field && (!is_chosen(scene) || views_[scene]->renderer->is_field());
   }
   return is_all_field ? meshes::place_across(bounds()) : meshes::place_around(bounds(), aspect);
 }
 
 std::size_t Stage::node_count() const {
   std::size_t count = 0;
-  for (const wire::SceneModel& scene : scenes_) count += pose::node_count(scene.skeleton);
+  for (const wire::SceneModel* scene : scenes_) count += pose::node_count(scene->skeleton);
   return count;
 }
 
 bool Stage::is_seen(const stream::PoseMoment& moment, std::size_t scene) const {
   return is_chosen(scene) && scene < moment.poses.size() && scene < moment.opacities.size() &&
-         moment.opacities[scene] > 0.0F && pose::fits(moment.poses[scene], scenes_[scene].skeleton);
+         moment.opacities[scene] > 0.0F && pose::fits(moment.poses[scene], scenes_[scene]->skeleton);
 }
 
 meshes::Bounds Stage::field(const stream::PoseMoment& moment) const {
   const auto grows = [&](std::size_t scene) {
-    return is_seen(moment, scene) && renderers_[scene]->is_field() && moment.opacities[scene] > 0.5F;
+    return is_seen(moment, scene) && views_[scene]->renderer->is_field() && moment.opacities[scene] > 0.5F;
   };
-  return around(bounds_, grows).value_or(kNoField);
+  return around(grows).value_or(kNoField);
 }
 
 void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target) {
@@ -80,9 +94,9 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   glDisable(GL_SCISSOR_TEST);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
 
-  for (std::size_t scene = 0; scene < renderers_.size(); ++scene) {
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
-    SceneRenderer& renderer = *renderers_[scene];
+    SceneRenderer& renderer = *views_[scene]->renderer;
     renderer.move_to(moment.poses[scene]);
     door_.open(moment.opacities[scene], scene);
     renderer.draw(view);
@@ -99,10 +113,10 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
     door_.close();
   }
   landscape_.draw();
-  for (std::size_t scene = 0; scene < renderers_.size(); ++scene) {
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
     door_.open(moment.opacities[scene], scene);
-    renderers_[scene]->draw_light();
+    views_[scene]->renderer->draw_light();
     door_.close();
   }
   target.resolve();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,9 +18,10 @@ namespace yuragi::viewer::looks {
 /// All scene views, each with its SceneRenderer, in a landscape. Needs a current context; on its thread.
 class Stage {
  public:
-  /// Replaces the scenes.
+  /// Replaces the scenes. One of the same kind and skeleton as before keeps what it has on the GPU. Where the scene
+  /// that alone was drawn is gone, all are drawn.
   void set_scenes(std::vector<wire::SceneModel> scenes);
-  const std::vector<wire::SceneModel>& scenes() const { return scenes_; }
+  const std::vector<const wire::SceneModel*>& scenes() const { return scenes_; }
 
   /// Draws only the scene of this name; all where there is no name.
   void show_only(std::optional<std::string> name) { only_ = std::move(name); }
@@ -36,13 +38,20 @@ class Stage {
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
  private:
-  bool is_chosen(std::size_t scene) const { return !only_ || scenes_[scene].name == *only_; }
+  struct SceneView {
+    wire::SceneModel scene;
+    meshes::Bounds bounds;
+    std::unique_ptr<SceneRenderer> renderer;
+  };
+
+  bool is_chosen(std::size_t scene) const { return !only_ || scenes_[scene]->name == *only_; }
+  template <class IsChosen>
+  std::optional<meshes::Bounds> around(IsChosen&& is_chosen) const;
   bool is_seen(const stream::PoseMoment& moment, std::size_t scene) const;
   meshes::Bounds field(const stream::PoseMoment& moment) const;
 
-  std::vector<wire::SceneModel> scenes_;
-  std::vector<std::unique_ptr<SceneRenderer>> renderers_;  // one a scene
-  std::vector<meshes::Bounds> bounds_;                     // one a scene
+  std::vector<std::unique_ptr<SceneView>> views_;  // a renderer refers to its scene, which may not move
+  std::vector<const wire::SceneModel*> scenes_;    // of views_
   std::optional<std::string> only_;
   Landscape landscape_;
   gl::ScreenDoor door_;

@@ -37,6 +37,15 @@ class PoseTimeline {
   /// Advances to local_s. Returns the moment to show, valid until the next call.
   const PoseMoment& advance(double local_s);
 
+  /// Can a frame of the moment sender_s, arriving at local_s, be the next of the run that is shown?
+  bool continues(double sender_s, double local_s) const {
+    return !current().is_empty() && current().continues(sender_s, local_s);
+  }
+  /// Takes over what a timeline of the same sender knows of its clock. Before the first frame.
+  void take_clock_of(const PoseTimeline& other) { current().take_clock_of(other.current()); }
+  /// The moment that the last advance() was to show, on the sender's time line. Not before the first frame.
+  double shown_s() const { return current().shown_s(); }
+
   Playback playback() const;
   /// How far the picture is behind the frame with the shortest delay.
   double delay_s() const { return current().delay_s(); }

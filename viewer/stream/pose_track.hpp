@@ -27,6 +27,11 @@ class PoseTrack {
   bool is_empty() const { return history_.is_empty(); }
   bool is_replaying() const { return is_replaying_; }
   double delay_s() const { return clock_.delay_s(); }
+  /// The moment that the last advance() was to show, on the sender's time line.
+  double shown_s() const { return shown_s_; }
+
+  /// Takes over what a track of the same sender knows of its clock. Before the first push().
+  void take_clock_of(const PoseTrack& other) { clock_ = other.clock_; }
 
   /// Can a frame of the moment sender_s, arriving at local_s, be the next of this run? Not where the sender's time went
   /// back, or advanced by much more than ours: then the sender has started again.

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
 
@@ -26,9 +27,10 @@ using boost::system::error_code;
 class StreamConnection::Session {
  public:
   explicit Session(StreamOptions options) : options_(std::move(options)), backoff_(options_.min_backoff) {
-    subscription_ = wire::encode(wire::Subscribe{.poses = true, .sensors = true, .client = "yuragi-viewer"});
+    subscription_ = wire::encode(
+        wire::Subscribe{.poses = true, .sensors = true, .client = "yuragi-viewer", .takes_new_scenes = true});
     connect();
-    thread_ = std::thread([this] { context_.run(); });
+    thread_ = std::thread([this] { serve(); });
   }
 
   ~Session() {
@@ -57,6 +59,19 @@ class StreamConnection::Session {
   }
 
  private:
+  /// An exception is an error of this program, or there is no memory for a message: the connection is given up for it,
+  /// as for any other trouble.
+  void serve() {
+    for (;;) {
+      try {
+        context_.run();
+        return;
+      } catch (const std::exception& error) {
+        give_up(fmt::format("lost the connection to {} by an error of this program ({})", address(), error.what()));
+      }
+    }
+  }
+
   std::string address() const { return fmt::format("{}:{}", options_.host, options_.port); }
 
   void set_status(StreamState state, std::string text) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/settings/config_file.hpp"
+#include "daemon/stream/control_client.hpp"
 #include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::tools::calibration {
@@ -35,7 +36,7 @@ std::string key_of(const settings::ConfigChange& change) {
 }
 
 /// The driver's parameters whose values differ from those in the recording, except a microphone's own calibration,
-/// which is undone.
+/// which is undone, and secrets, which are not recorded.
 std::set<std::string> settings_that_differ(const settings::SensorConfig& sensor, const SensorReadings& collected) {
   const bool is_microphone = sensor.driver->name == std::string_view("microphone");
   std::set<std::string> keys;
@@ -44,6 +45,7 @@ std::set<std::string> settings_that_differ(const settings::SensorConfig& sensor,
     if (!values) return {"some that this version does not understand: " + values.error().message};
     for (const auto& [key, value] : values->all()) {
       const bool is_undone = is_microphone && (key == "gain" || key == "exponent" || key == "curve");
+      if (std::holds_alternative<Secret>(value)) continue;
       if (!is_undone && value != sensor.values.all().at(key)) keys.insert(key);
     }
   }
@@ -202,8 +204,23 @@ void CalibrationSession::finish(std::vector<settings::ConfigChange> wanted, cons
     dialog_.print("Nothing was written.");
   } else {
     const auto kept = settings::replace_config(request_.config_file, text_, *edited).value();
-    dialog_.print(fmt::format("{} was written; the previous version is in {}. Restart a running daemon to apply it.",
-                              request_.config_file.string(), kept.string()));
+    dialog_.print(
+        fmt::format("{} was written; the previous version is in {}.", request_.config_file.string(), kept.string()));
+    apply_in_daemon();
+  }
+}
+
+/// Has the daemon that was started with this file, if it runs, read it again; says what came of it.
+void CalibrationSession::apply_in_daemon() {
+  const std::string address = request_.connect.value_or(config_.stream.listen);
+  const auto report = stream::ask_to_reload(address, settings::absolute_path(request_.config_file));
+  if (!report) {
+    dialog_.print(fmt::format("Restart a running daemon to apply it: {}.", report.error().message));
+  } else if (report->outcome == wire::ReloadOutcome::kDone) {
+    dialog_.print(fmt::format("The daemon at {} has read it again:\n{}", address, stream::reload_text(*report)));
+  } else {
+    dialog_.print(fmt::format("The daemon at {} goes on without it:\n{}Restart the daemon that uses this file.",
+                              address, stream::reload_text(*report)));
   }
 }
 

@@ -48,8 +48,8 @@ class CalibrationSession {
   /// person has to do before; not shown where the source is a recording.
   CollectedReadings collect(const std::string& preparation);
 
-  /// Shows the changes and their `effect`, asks for confirmation, and writes them. Values that are unchanged are left
-  /// out.
+  /// Shows the changes and their `effect`, asks for confirmation, writes them, and has a running daemon apply them.
+  /// Values that are unchanged are left out.
   void finish(std::vector<settings::ConfigChange> wanted, const std::vector<std::string>& effect);
 
   /// The effect of new calibration values on indicated speeds in m/s: the lines of a table.
@@ -58,6 +58,7 @@ class CalibrationSession {
 
  private:
   void open_source();
+  void apply_in_daemon();
   std::size_t find(const std::string& name) const;
   void beware(const CollectedReadings& collected) const;  ///< warns of readings that are unsuitable
   ParameterValue value_now(const settings::ConfigChange& change) const;

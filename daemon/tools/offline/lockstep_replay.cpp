@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "daemon/animation/animation.hpp"
+#include "daemon/sensing/player_director.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
+#include "daemon/shaping/wind_shaper.hpp"
 #include "engine/pose/pose_hash.hpp"
 
 namespace yuragi::daemon::tools::offline {
@@ -13,6 +15,65 @@ std::uint64_t hash_poses(std::uint64_t hash, std::span<const pose::Pose* const> 
   for (const pose::Pose* pose : poses) hash = pose::pose_hash(hash, *pose);
   return hash;
 }
+
+/// The animation, tick by tick, and the figures of what moved it.
+class Ticks {
+ public:
+  Ticks(animation::Animation& animation, double rate_hz, const std::function<void(double)>& progress,
+        const UseTick& use)
+      : animation_(animation), rate_hz_(rate_hz), progress_(progress), use_(use) {}
+
+  /// The log time of the next tick.
+  double now_s() const { return static_cast<double>(result_.ticks) / rate_hz_; }
+
+  void add(const wind::WindReading& reading) {
+    ++result_.readings;
+    result_.reading_mean_m_s += reading.speed_m_s;
+    result_.reading_max_m_s = std::max(result_.reading_max_m_s, reading.speed_m_s);
+  }
+
+  void step(const wind::ground::DrivingWind& wind) {
+    const double time_s = now_s();
+    animation_.step(wind, 1.0 / rate_hz_);
+    result_.pose_hash = hash_poses(result_.pose_hash, animation_.poses());
+    if (use_) use_(time_s, animation_);
+    if (wind.state.source == wind::WindSource::kLive) {
+      const double speed_m_s = speed_of(wind.state.wind);
+      ++followed_ticks_;
+      result_.wind_mean_m_s += speed_m_s;
+      result_.wind_max_m_s = std::max(result_.wind_max_m_s, speed_m_s);
+    }
+    const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz_);
+    if (progress_ && result_.ticks % ticks_between_progress == 0) progress_(time_s);
+    ++result_.ticks;
+  }
+
+  LockstepResult result() const {
+    LockstepResult result = result_;
+    result.log_duration_s = now_s();
+    if (result.readings > 0) result.reading_mean_m_s /= static_cast<double>(result.readings);
+    if (followed_ticks_ > 0) result.wind_mean_m_s /= static_cast<double>(followed_ticks_);
+    return result;
+  }
+
+ private:
+  animation::Animation& animation_;
+  double rate_hz_;
+  const std::function<void(double)>& progress_;
+  const UseTick& use_;
+  LockstepResult result_;
+  std::uint64_t followed_ticks_ = 0;
+};
+
+/// Log time, moved from tick to tick.
+class LogClock final : public drivers::sensor::Clock {
+ public:
+  Instant now() const noexcept override { return now_; }
+  void set(MonoTime log_time, UtcTime utc) { now_ = {log_time, utc}; }
+
+ private:
+  Instant now_;
+};
 
 }  // namespace
 
@@ -30,52 +91,56 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
   one_source.wind.fallback.reset();
   wind::blend::BlendedEstimator estimator = sensing::make_estimator(one_source, gusts, animation.reach_m());
   wind::shaping::WindShaping shaping(config.shaping.settings, gusts);
-
-  const double rate_hz = config.animation.rate_hz;
-  const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz);
-  LockstepResult result;
-  std::uint64_t followed_ticks = 0;
   const std::optional<wind::judging::JudgeSettings>& judged_by = one_source.sensors[0].judge;
   wind::judging::ReadingJudge judge(judged_by.value_or(wind::judging::JudgeSettings{}));
 
-  for (std::uint64_t tick = 0; !player.is_finished(); ++tick) {
-    const double now_s = static_cast<double>(tick) / rate_hz;
-    if (duration_s > 0.0 && now_s >= duration_s) break;
-
+  Ticks ticks(animation, config.animation.rate_hz, progress, use);
+  while (!player.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s)) {
     // Readings that are due by this tick, at their own log time.
-    const Instant now{MonoTime(from_seconds(now_s)), UtcTime(from_seconds(now_s))};
+    const Instant now{MonoTime(from_seconds(ticks.now_s())), UtcTime(from_seconds(ticks.now_s()))};
     const auto played = player.play(now, [&](const wind::WindReading& reading) {
       // As in the daemon: readings that are not believed are left out.
       if (judged_by && reading.quality != wind::ReadingQuality::kSimulated && !judge.judge(reading)) return;
-      if (!estimator.accept(0, reading)) return;
-      ++result.readings;
-      result.reading_mean_m_s += reading.speed_m_s;
-      result.reading_max_m_s = std::max(result.reading_max_m_s, reading.speed_m_s);
+      if (estimator.accept(0, reading)) ticks.add(reading);
     });
     if (!played) return played.error();
 
     // Opening hours do not apply: log time is not local time.
-    wind::ground::DrivingWind wind{estimator.advance(MonoTime(from_seconds(now_s))), estimator.ground(),
-                                   estimator.stroke()};
+    wind::ground::DrivingWind wind{estimator.advance(now.mono), estimator.ground(), estimator.stroke()};
     shaping.shape(wind, true);
-    const wind::WindState& state = wind.state;
-    animation.step(wind, 1.0 / rate_hz);
-    result.pose_hash = hash_poses(result.pose_hash, animation.poses());
-    if (use) use(now_s, animation);
-    ++result.ticks;
-    if (state.source == wind::WindSource::kLive) {
-      const double speed_m_s = speed_of(state.wind);
-      ++followed_ticks;
-      result.wind_mean_m_s += speed_m_s;
-      result.wind_max_m_s = std::max(result.wind_max_m_s, speed_m_s);
-    }
-    if (progress && tick % ticks_between_progress == 0) progress(now_s);
+    ticks.step(wind);
   }
+  return ticks.result();
+}
 
-  result.log_duration_s = static_cast<double>(result.ticks) / rate_hz;
-  if (result.readings > 0) result.reading_mean_m_s /= static_cast<double>(result.readings);
-  if (followed_ticks > 0) result.wind_mean_m_s /= static_cast<double>(followed_ticks);
-  return result;
+Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstallation& installation, double duration_s,
+                                                   const std::function<void(double)>& progress, const UseTick& use) {
+  const settings::Config& config = installation.config;
+  const std::shared_ptr<const wind::turbulence::GustNoise> gusts = sensing::make_gust_noise(config);
+  animation::Animation animation(config, gusts);
+  Ticks ticks(animation, config.animation.rate_hz, progress, use);
+  LogClock clock;
+  sensing::SensorHub hub(
+      config, clock, gusts, [&ticks](std::size_t, const wind::WindReading& reading) { ticks.add(reading); },
+      animation.reach_m(), sensing::SensorThread::kOfCaller);
+  const std::vector<sensing::NamedPlayer> players = hub.players();
+  const sensing::PlayerDirector director(config.stream.control, players);
+  shaping::WindShaper shaper(config, gusts);
+  shaper.keep_site_file(hub.site());
+
+  while (!hub.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s)) {
+    const Nanoseconds log_time = from_seconds(ticks.now_s());
+    clock.set(MonoTime(log_time), installation.begin + log_time);
+    wind::ground::DrivingWind wind{hub.advance(), hub.ground(), hub.stroke()};
+    for (const sensing::NamedPlayer& named : players) {
+      if (auto failure = named.player->report().failure; !failure.empty()) {
+        return Failure{std::move(failure), FailureKind::kBadData};
+      }
+    }
+    shaper.shape(wind, director.recorded_clock().value_or(installation.begin), hub.is_any_live());
+    ticks.step(wind);
+  }
+  return ticks.result();
 }
 
 }  // namespace yuragi::daemon::tools::offline

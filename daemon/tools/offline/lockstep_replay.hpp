@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "daemon/animation/animation.hpp"
+#include "daemon/sensing/recorded_installation.hpp"
 #include "daemon/settings/config.hpp"
 #include "drivers/windlog/windlog_player.hpp"
 
@@ -32,6 +33,13 @@ using UseTick = std::function<void(double log_time_s, const animation::Animation
 Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& config,
                                                    const std::filesystem::path& recording,
                                                    const drivers::windlog::PlayerOptions& options, double duration_s,
+                                                   const std::function<void(double log_time_s)>& progress,
+                                                   const UseTick& use = {});
+
+/// The same of an installation as it was recorded: through the daemon's own SensorHub (calibration, judging, vote,
+/// blend) and WindShaper (opening hours by the recorded clock). `result.readings` are those of all sensors before
+/// judging.
+Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstallation& installation, double duration_s,
                                                    const std::function<void(double log_time_s)>& progress,
                                                    const UseTick& use = {});
 

@@ -8,6 +8,7 @@
 
 #include "daemon/sensing/refusal_text.hpp"
 #include "engine/base/compass.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::tools::sensors {
 namespace {
@@ -67,6 +68,39 @@ std::string place_of_wind(const wind::WindState& wind) {
   return text;
 }
 
+/// "0.05, 0.20, 12.50 ms". The percentiles are upper ends of classes; none is above the maximum, which is exact.
+std::string lateness_text(const wire::Lateness& lateness) {
+  return fmt::format("{:.2f}, {:.2f}, {:.2f} ms", 1e3 * std::min(lateness.p50_s, lateness.max_s),
+                     1e3 * std::min(lateness.p99_s, lateness.max_s), 1e3 * lateness.max_s);
+}
+
+/// How the daemon has done since it began; empty where it does not tell.
+std::string service_text(const wire::Sensors& sensors) {
+  if (!sensors.io_lateness) return {};
+  return fmt::format("since the start: clients refused {}, stuck {}, idle {}; late (p50, p99, most): I/O {}{}",
+                     sensors.refused_clients, sensors.stuck_clients, sensors.idle_clients,
+                     lateness_text(*sensors.io_lateness),
+                     sensors.tick_lateness ? "; ticks " + lateness_text(*sensors.tick_lateness) : "");
+}
+
+/// How the recording does; empty where nothing is recorded.
+std::string recorder_text(const wire::Sensors& sensors) {
+  if (!sensors.recorder) return {};
+  const wire::RecorderStatus& recorder = *sensors.recorder;
+  std::string text = fmt::format("recorded {}, waiting {}, lost {}", count_text(recorder.written, "reading"),
+                                 recorder.waiting, recorder.lost);
+  if (recorder.free_bytes) text += fmt::format("; {:.1f} GB free", 1e-9 * static_cast<double>(*recorder.free_bytes));
+  switch (recorder.state) {
+    case wire::RecorderState::kWriting:
+      return text;
+    case wire::RecorderState::kRetrying:
+      return text + "; CANNOT WRITE, trying again: " + recorder.error;
+    case wire::RecorderState::kHanging:
+      return text + "; HANGS: " + recorder.error;
+  }
+  return text;
+}
+
 /// `text` under a row: indented, broken between words.
 std::string wrapped(std::string_view text) {
   constexpr std::size_t kWidth = 100;
@@ -93,6 +127,8 @@ std::string sensor_table(const wire::Sensors& sensors) {
                                   sensors.late_ticks);
   if (const std::string place = place_of_wind(sensors.wind); !place.empty()) table += wrapped(place);
   if (!sensors.shaping.text.empty()) table += wrapped("shaped: " + sensors.shaping.text);
+  if (const std::string recorder = recorder_text(sensors); !recorder.empty()) table += wrapped(recorder);
+  if (const std::string service = service_text(sensors); !service.empty()) table += fmt::format("  {}\n", service);
   table += '\n';
   const auto out = std::back_inserter(table);
   const auto row = [&](const auto&... cells) {

@@ -19,6 +19,26 @@ std::optional<double> fineoffset_speed_m_s(unsigned low, unsigned high) {
   return tenths / 10.0;
 }
 
+constexpr double kRainOfATip_mm = 0.3;
+constexpr unsigned kNoWord = 0xFFFF;
+constexpr unsigned kNoHumidity = 0xFF;
+
+/// Tenths, of which the top bit is the sign.
+std::optional<double> signed_tenths(unsigned word) {
+  if (word == kNoWord) return std::nullopt;
+  const double size = (word & 0x7FFFU) / 10.0;
+  return (word & 0x8000U) != 0 ? -size : size;
+}
+
+/// Why no record can be in these bytes.
+std::optional<Refusal> record_refusal(ByteSpan record) {
+  if (record.size() < kShortestRecord) return Refusal::kTooShort;
+  if (record.size() > kFineOffsetBlock) return Refusal::kMalformed;
+  const bool is_blank = std::ranges::all_of(record, [](std::uint8_t byte) { return byte == 0; });
+  if (is_blank) return Refusal::kMalformed;
+  return std::nullopt;
+}
+
 bool is_fineoffset_position(std::uint32_t position, std::uint32_t length) {
   return position >= kFineOffsetFirstRecord && (position - kFineOffsetFirstRecord) % length == 0 &&
          position + length <= kMemoryEnd;
@@ -53,10 +73,7 @@ std::uint16_t previous_fineoffset_position(std::uint16_t position, FineOffsetMod
 }
 
 Result<DecodedWind, Refusal> decode_fineoffset_record(ByteSpan record) noexcept {
-  if (record.size() < kShortestRecord) return Refusal::kTooShort;
-  if (record.size() > kFineOffsetBlock) return Refusal::kMalformed;
-  const bool is_blank = std::ranges::all_of(record, [](std::uint8_t byte) { return byte == 0; });
-  if (is_blank) return Refusal::kMalformed;
+  if (const auto refusal = record_refusal(record)) return *refusal;
   if ((record[15] & kNoContact) != 0) return Refusal::kInvalid;
 
   DecodedWind wind;
@@ -70,6 +87,17 @@ Result<DecodedWind, Refusal> decode_fineoffset_record(ByteSpan record) noexcept 
     }
   }
   return checked(wind);
+}
+
+std::optional<wind::StationQuantities> decode_fineoffset_quantities(ByteSpan record) noexcept {
+  if (record_refusal(record)) return std::nullopt;
+  wind::StationQuantities said;
+  if (const unsigned pressure = little_endian_16(record, 7); pressure != kNoWord) said.pressure_hpa = pressure / 10.0;
+  if ((record[15] & kNoContact) != 0) return said;
+  if (record[4] != kNoHumidity) said.relative_humidity_percent = record[4];
+  said.air_temperature_c = signed_tenths(little_endian_16(record, 5));
+  said.rain_total_mm = little_endian_16(record, 13) * kRainOfATip_mm;
+  return said;
 }
 
 }  // namespace yuragi::drivers::decode::hid

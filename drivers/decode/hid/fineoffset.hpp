@@ -3,11 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "drivers/decode/byte_order.hpp"
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
+#include "engine/wind/station_quantities.hpp"
 
 namespace yuragi::drivers::decode::hid {
 
@@ -22,9 +24,13 @@ namespace yuragi::drivers::decode::hid {
 //                 16       minutes between two records
 //                 27, 28   records in the ring, low byte first
 //                 30, 31   address of the current record, low byte first
-//   record        9        average, low 8 bits     10   gust, low 8 bits
-//   (16 bytes,    11       low nibble: average's high 4 bits; high nibble: gust's. Both 0.1 m/s; 0xfff: none
-//   WH3080: 20)   12       direction, points of 22.5 degrees; bit 7: none
+//   record        4        humidity outside, %; 0xff: none
+//   (16 bytes,    5, 6     temperature outside, 0.1 degrees Celsius, low byte first; the top bit is the sign; ff ff:
+//   none WH3080: 20)   7, 8     pressure at the console, 0.1 hPa, low byte first; ff ff: none
+//                 9        average, low 8 bits     10   gust, low 8 bits
+//                 11       low nibble: average's high 4 bits; high nibble: gust's. Both 0.1 m/s; 0xfff: none
+//                 12       direction, points of 22.5 degrees; bit 7: none
+//                 13, 14   rain since the counter was 0, 0.3 mm, low byte first
 //                 15       bit 6: no contact with the sensors, the values are old
 //
 // A record in the ring and the current one are alike; the console writes the latter every 48 s.
@@ -57,5 +63,10 @@ std::uint16_t previous_fineoffset_position(std::uint16_t position, FineOffsetMod
 /// kImplausible. A direction that is no point of the compass is left out, and the reading uncertain. Thread-safe and
 /// realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_fineoffset_record(ByteSpan record) noexcept;
+
+/// What such a record says besides the wind, without its time; nothing where decode_fineoffset_record() would refuse
+/// it as kTooShort or kMalformed. Without contact to the sensors outside it is the pressure alone. Values are not
+/// checked for their range (wind::plausible_part). Thread-safe and realtime-safe: yes.
+std::optional<wind::StationQuantities> decode_fineoffset_quantities(ByteSpan record) noexcept;
 
 }  // namespace yuragi::drivers::decode::hid

@@ -164,7 +164,68 @@ NmeaResult decode_xdr(const NmeaOptions& options, const TextFields& fields) {
   return checked(wind);
 }
 
+constexpr double kHectopascalsPerBar = 1000.0;
+constexpr double kHectopascalsPerPascal = 0.01;
+constexpr double kHectopascalsPerInchOfMercury = 33.86389;  // at 0 degrees Celsius
+
+/// A number, times a factor; nothing where there is none.
+std::optional<double> scaled(std::string_view field, double factor) {
+  const NmeaValue number = parse_number(field);
+  if (!number || !*number) return std::nullopt;
+  return **number * factor;
+}
+
+/// $--MDA,inHg,I,bar,B,air,C,water,C,relative humidity,absolute humidity,dew point,C,...
+wind::StationQuantities quantities_of_mda(const TextFields& fields) {
+  wind::StationQuantities said;
+  if (fields[4] == "B") said.pressure_hpa = scaled(fields[3], kHectopascalsPerBar);
+  if (!said.pressure_hpa && fields[2] == "I") said.pressure_hpa = scaled(fields[1], kHectopascalsPerInchOfMercury);
+  if (fields[6] == "C") said.air_temperature_c = scaled(fields[5], 1.0);
+  said.relative_humidity_percent = scaled(fields[9], 1.0);
+  return said;
+}
+
+std::optional<double> xdr_pressure_hpa(std::string_view value, std::string_view unit) {
+  if (unit == "B") return scaled(value, kHectopascalsPerBar);
+  if (unit == "P") return scaled(value, kHectopascalsPerPascal);
+  if (unit == "H") return scaled(value, 1.0);
+  return std::nullopt;
+}
+
+wind::StationQuantities quantities_of_xdr(const TextFields& fields, int first_id) {
+  wind::StationQuantities said;
+  for (std::size_t at = 1; at + 3 < fields.count; at += 4) {
+    if (xdr_role(fields[at + 3], first_id) != XdrRole::kLeast) continue;  // the first of the numbers
+    const std::string_view type = fields[at];
+    const std::string_view value = fields[at + 1];
+    const std::string_view unit = fields[at + 2];
+    if (type == "C" && unit == "C") said.air_temperature_c = scaled(value, 1.0);
+    if (type == "P") said.pressure_hpa = xdr_pressure_hpa(value, unit);
+    if (type == "H" && unit == "P") said.relative_humidity_percent = scaled(value, 1.0);
+    if (type == "V" && unit == "M") said.rain_total_mm = scaled(value, 1.0);
+    if (type == "R" && unit == "M") said.rain_rate_mm_h = scaled(value, 1.0);
+  }
+  return said;
+}
+
 }  // namespace
+
+std::optional<wind::StationQuantities> decode_nmea_quantities(const NmeaOptions& options,
+                                                              std::string_view line) noexcept {
+  const auto sentence = sentence_of(line, options.checksum);
+  if (!sentence) return std::nullopt;
+  const TextFields fields = split_fields(*sentence, ',');
+  const bool is_mda = fields[0].ends_with("MDA");
+  const bool is_xdr = fields[0].ends_with("XDR");
+  constexpr std::size_t kTalkerAndSentence = 5;
+  if (fields[0].size() != kTalkerAndSentence || !fields.are_all || (!is_mda && !is_xdr)) return std::nullopt;
+  const wind::StationQuantities said =
+      is_mda ? quantities_of_mda(fields) : quantities_of_xdr(fields, options.xdr_first_id);
+  for (const wind::StationQuantity& each : wind::kStationQuantities) {
+    if (said.*each.value) return said;
+  }
+  return std::nullopt;
+}
 
 NmeaResult decode_nmea(const NmeaOptions& options, std::string_view line) noexcept {
   const auto sentence = sentence_of(line, options.checksum);

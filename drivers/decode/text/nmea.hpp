@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/text_fields.hpp"
+#include "engine/wind/station_quantities.hpp"
 
 namespace yuragi::drivers::decode::text {
 
@@ -32,5 +34,20 @@ struct NmeaOptions {
 /// where that is refused), kInvalid (its status says so, or no value is there), kImplausible. One half may be empty.
 /// Where a sentence has the speed in several units, m/s is taken first. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_nmea(const NmeaOptions& options, std::string_view line) noexcept;
+
+/// What one line says besides the wind, without its time; nothing where it is no sound sentence, or says nothing of the
+/// kind. Values are not checked for their range (wind::plausible_part); one that is no number, or has another unit, is
+/// left out alone.
+///
+///   MDA   pressure in bar (field 3, B), else in inches of mercury (field 1, I); air temperature (field 5, C); relative
+///         humidity (field 9)
+///   XDR   C: air temperature (C); P: pressure (B bar, P Pa, H hPa); H: relative humidity (P); V: rain since the
+///   counter
+///         was set back (M: mm); R: rain rate (M: mm/h)
+///
+/// Of XDR only transducers whose id is the number `options.xdr_first_id` count: others may be an engine, or the inside
+/// of the device. Sources: as of decode_nmea. Thread-safe and realtime-safe: yes.
+std::optional<wind::StationQuantities> decode_nmea_quantities(const NmeaOptions& options,
+                                                              std::string_view line) noexcept;
 
 }  // namespace yuragi::drivers::decode::text

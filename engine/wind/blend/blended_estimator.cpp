@@ -368,24 +368,30 @@ void BlendedEstimator::write_gusts() noexcept {
   }
 }
 
-/// The weight of a source's turbulence at a frequency, over the square of the mean speed: its share in the mean; above
-/// the frequencies that absolute sources resolve, that of the relative ones.
-double BlendedEstimator::variance_share(std::size_t index, double frequency_hz,
-                                        const MeasuredMean& measured) const noexcept {
-  double gusts = 0.0;
+/// What all sources together leave open at a frequency.
+BlendedEstimator::OpenPart BlendedEstimator::open_part(double frequency_hz,
+                                                       const MeasuredMean& measured) const noexcept {
+  OpenPart open;
   double unknown = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    gusts += choice_.gusts(i);
+    open.gusts += choice_.gusts(i);
     unknown += shares_[i].middle * (1.0 - sources_[i].trust_at(frequency_hz));
   }
+  if (measured.weight > 0.0) open.given = std::clamp(unknown / measured.weight, 0.0, 1.0);
+  return open;
+}
+
+/// The weight of a source's turbulence at a frequency, over the square of the mean speed: its share in the mean; above
+/// the frequencies that absolute sources resolve, that of the relative ones.
+double BlendedEstimator::variance_share(std::size_t index, const OpenPart& open,
+                                        const MeasuredMean& measured) const noexcept {
   const double own = shares_[index].middle;
-  if (gusts < kLeastShare) return own;
-  const double given = measured.weight > 0.0 ? std::clamp(unknown / measured.weight, 0.0, 1.0) : 0.0;
-  const double kept = own * (1.0 - std::min(gusts, 1.0) * given);
+  if (open.gusts < kLeastShare) return own;
+  const double kept = own * (1.0 - std::min(open.gusts, 1.0) * open.given);
   if (!settings_.sources[index].is_relative) return kept;
   const double strength =
       sources_[index].scale.gust_gain() * sources_[index].speed_m_s() / std::max(measured.speed_m_s, kLeastSpeed_m_s);
-  return kept + measured.weight * choice_.gusts(index) * given * std::min(strength * strength, 4.0);
+  return kept + measured.weight * choice_.gusts(index) * open.given * std::min(strength * strength, 4.0);
 }
 
 /// The strength of each octave of the noise, and the part of it that the sensors measure (engine/wind/README.md W20).
@@ -402,9 +408,10 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& meas
   const double shown = part_of_octave(0.5 * settings_.rate_hz / frequency_hz);
   double variance_along = (1.0 - measured.weight) * climate_along_[octave];
   double variance_across = (1.0 - measured.weight) * climate_across_[octave];
+  const OpenPart open = open_part(frequency_hz, measured);
   for (std::size_t index = 0; index < sources_.size(); ++index) {
     if (!sources_[index].record().has_reading()) continue;
-    const double share = variance_share(index, frequency_hz, measured);
+    const double share = variance_share(index, open, measured);
     variance_along += share * sources_[index].along()[octave];
     variance_across += share * sources_[index].across()[octave];
   }

@@ -67,6 +67,10 @@ class BlendedEstimator {
   WindState advance(MonoTime now) noexcept;
 
   /// The same wind over the ground, as of the last advance(); without tapes.
+  /// Other scenes reach farther, or less far: BlendSettings::reach_m. The windward edge moves there as the wind blows,
+  /// so that nothing jumps. Realtime-safe.
+  void set_reach(double reach_m) noexcept { settings_.reach_m = reach_m; }
+
   const ground::GroundWind& ground() const noexcept { return ground_; }
   /// What the last advance() adds to the tapes.
   const ground::WindStroke& stroke() const noexcept { return stroke_; }
@@ -110,6 +114,12 @@ class BlendedEstimator {
   struct Power {
     double along = 0.0, across = 0.0;
   };
+  /// At a frequency: the share of the gusts that relative sources give, and the part of the mean's that no absolute
+  /// source resolves and that is given to them.
+  struct OpenPart {
+    double gusts = 0.0;
+    double given = 0.0;
+  };
 
   bool is_direction_live(std::size_t besides) const noexcept;
   void share_out(double dt_s) noexcept;
@@ -131,7 +141,8 @@ class BlendedEstimator {
   Power measured_power(const turbulence::OctaveFollower::Response& bands,
                        std::span<const BandWeights> shares) const noexcept;
   void show(const MeasuredMean& measured) noexcept;
-  double variance_share(std::size_t source, double frequency_hz, const MeasuredMean& measured) const noexcept;
+  OpenPart open_part(double frequency_hz, const MeasuredMean& measured) const noexcept;
+  double variance_share(std::size_t source, const OpenPart& open, const MeasuredMean& measured) const noexcept;
 
   BlendSettings settings_;
   WindVector climate_;

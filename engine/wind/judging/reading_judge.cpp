@@ -76,6 +76,17 @@ void ReadingJudge::count_impossible(std::uint64_t readings) noexcept {
   if (is_implausible_ && fault_ <= ReadingFault::kImplausible) fault_ = ReadingFault::kImplausible;
 }
 
+void ReadingJudge::recalibrate(const WindReading& before, const WindReading& after) noexcept {
+  believed_ = 0;
+  suspicion_.reset();
+  if (fault_ == ReadingFault::kSpike) fault_ = ReadingFault::kNone;
+  if (same_ && says_the_same(*same_, before)) same_ = after;
+  if (!(before.speed_m_s > 0.0) || !(after.speed_m_s > 0.0)) return;
+  const double factor = after.speed_m_s / before.speed_m_s;
+  resolution_m_s_ *= factor;
+  usual_m_s_ *= factor;
+}
+
 ReadingFault ReadingJudge::fault_of(const WindReading& reading, double time_s,
                                     std::optional<double> others_m_s) noexcept {
   const bool is_out_of_range = reading.speed_m_s > settings_.max_speed_m_s;

@@ -63,6 +63,14 @@ class ReadingJudge {
   /// Counts readings that were refused before they came here as impossible.
   void count_impossible(std::uint64_t readings) noexcept;
 
+  /// Judges by other settings from now on; what was found out about the sensor stays.
+  void change(const JudgeSettings& settings) noexcept { settings_ = settings; }
+
+  /// The sensor's calibration has changed: its last reading, which was `before`, would be `after`. Readings until now
+  /// are no measure for the height of those that follow, so that the change is no spike; how long the sensor has
+  /// repeated its value or stood still, and how many of its readings were bad, stays known.
+  void recalibrate(const WindReading& before, const WindReading& after) noexcept;
+
   /// What is wrong at the moment: kImplausible, kFrozen or kSeized for as long as it lasts, kSpike while a suspect is
   /// held back.
   ReadingFault fault() const noexcept { return fault_; }

@@ -34,6 +34,12 @@ void SensorVote::accept(std::size_t sensor, MonoTime time, double speed_m_s) noe
   voter.last = time;
 }
 
+void SensorVote::forget_mean(std::size_t sensor) noexcept {
+  Voter& voter = voters_[sensor];
+  voter.last.reset();
+  voter.measured_s = 0.0;
+}
+
 void SensorVote::advance(MonoTime now) noexcept {
   if (!counted_) counted_ = now;
   const double passed_s = seconds(now - *counted_);

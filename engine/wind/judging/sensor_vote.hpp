@@ -44,6 +44,10 @@ class SensorVote {
   /// Whether a sensor can be compared at the moment: it is live, not a recording, and not frozen.
   void set_comparable(std::size_t sensor, bool takes_part) noexcept { voters_[sensor].is_comparable = takes_part; }
 
+  /// Forgets the mean speed of a sensor, which counts otherwise from now on: it takes part again after `memory_s`. What
+  /// was decided about it stays until then.
+  void forget_mean(std::size_t sensor) noexcept;
+
   /// Advances to `now`. Counts votes about once a second.
   void advance(MonoTime now) noexcept;
 

@@ -22,6 +22,13 @@ std::size_t bin_of(double speed_m_s) noexcept {
 
 }  // namespace
 
+void SpeedMemory::change_memory(double memory_s) noexcept {
+  memory_s_ = memory_s;
+  const double known_s = this->known_s();
+  if (known_s <= memory_s) return;
+  for (double& time_s : times_s_) time_s *= memory_s / known_s;
+}
+
 void SpeedMemory::add(double speed_m_s, double dt_s) noexcept {
   if (!(dt_s > 0.0)) return;
   const double kept = std::exp(-dt_s / memory_s_);

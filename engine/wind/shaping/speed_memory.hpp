@@ -17,6 +17,9 @@ class SpeedMemory {
   /// `memory_s`, above 0: after so long, 1/e of a moment is still remembered.
   explicit SpeedMemory(double memory_s) noexcept : memory_s_(memory_s) {}
 
+  /// Remembers for another time from now on; more than that is scaled to it.
+  void change_memory(double memory_s) noexcept;
+
   /// It blew at this speed (finite, at least 0) for dt_s.
   void add(double speed_m_s, double dt_s) noexcept;
 

@@ -70,11 +70,47 @@ void know_less(ground::WindStroke& stroke, const turbulence::GustNoise::Moment& 
 
 WindShaping::WindShaping(const WindShapingSettings& settings, std::shared_ptr<const turbulence::GustNoise> noise)
     : settings_(settings),
+      now_(strengths_of(settings)),
+      ceiling_(settings.ceiling),
       noise_(std::move(noise)),
       along_(turbulence::gust_variances(*noise_, settings.turbulence_intensity, settings.length_m)),
       across_(turbulence::gust_variances(*noise_, turbulence::kAcrossPerAlong * settings.turbulence_intensity,
                                          settings.length_m)),
       memory_(settings.site_memory_s) {}
+
+WindShaping::Strengths WindShaping::strengths_of(const WindShapingSettings& settings) noexcept {
+  return {.floor_m_s = settings.floor_m_s,
+          .gusts = settings.gusts,
+          .per_ceiling_from_s_m = 1.0 / settings.ceiling.from_m_s,
+          .per_ceiling_most_s_m = 1.0 / settings.ceiling.most_m_s};
+}
+
+void WindShaping::change(const WindShapingSettings& settings) noexcept {
+  const WindShapingSettings before = settings_;
+  settings_ = settings;
+  settings_.turbulence_intensity = before.turbulence_intensity;
+  settings_.length_m = before.length_m;
+  if (settings.site_memory_s != before.site_memory_s) memory_.change_memory(settings.site_memory_s);
+  look_at_memory();
+  from_ = now_;
+  change_ = {};
+}
+
+/// Goes on from the settings before a change to those after it, and ends exactly at those.
+void WindShaping::change_strengths(double dt_s) noexcept {
+  if (change_.value == 1.0) return;
+  follow_to_the_end(change_, 1.0, kChangeOver_s, dt_s);
+  now_ = strengths_of(settings_);
+  ceiling_ = settings_.ceiling;
+  if (change_.value == 1.0) return;
+  const double part = change_.value;
+  const auto between = [part](double before, double after) { return before + part * (after - before); };
+  now_ = {.floor_m_s = between(from_.floor_m_s, now_.floor_m_s),
+          .gusts = between(from_.gusts, now_.gusts),
+          .per_ceiling_from_s_m = between(from_.per_ceiling_from_s_m, now_.per_ceiling_from_s_m),
+          .per_ceiling_most_s_m = between(from_.per_ceiling_most_s_m, now_.per_ceiling_most_s_m)};
+  ceiling_ = {.from_m_s = 1.0 / now_.per_ceiling_from_s_m, .most_m_s = 1.0 / now_.per_ceiling_most_s_m};
+}
 
 void WindShaping::shape(ground::DrivingWind& wind, bool is_open, bool is_of_site) noexcept {
   WindState& state = wind.state;
@@ -84,6 +120,7 @@ void WindShaping::shape(ground::DrivingWind& wind, bool is_open, bool is_of_site
   // The slow part: means, what the site is like, and the gains that follow from both.
   const double speed_m_s = speed_of(state.wind);
   const double way_s = std::exchange(has_begun_, true) ? dt_s : kForEver_s;
+  change_strengths(dt_s);
   mean_.step(speed_m_s, kPhaseOfArrival / settings_.over_s, way_s);
   quick_mean_.step(speed_m_s, kPhaseOfArrival / kQuickOver_s, way_s);
   live_s_ = is_of_site && state.live_weight > 0.5 ? live_s_ + dt_s : 0.0;
@@ -102,19 +139,19 @@ void WindShaping::apply_gains(ground::DrivingWind& wind) const noexcept {
   const double gain = site_.value * floor_.value * opening_.value;
   wind.state.wind = gain * wind.state.wind;
   wind.ground = gain * wind.ground;
-  if (settings_.gusts == 1.0) return;
-  wind.ground.gust_gain = settings_.gusts;
+  if (now_.gusts == 1.0) return;
+  wind.ground.gust_gain = now_.gusts;
   const WindVector way = noise_->everywhere(wind.ground.gusts);
-  wind.ground.everywhere = wind.ground.everywhere + (settings_.gusts - 1.0) * way;
-  for (float& deviation : wind.ground.gusts.along_m_s) deviation *= static_cast<float>(settings_.gusts);
-  for (float& deviation : wind.ground.gusts.across_m_s) deviation *= static_cast<float>(settings_.gusts);
+  wind.ground.everywhere = wind.ground.everywhere + (now_.gusts - 1.0) * way;
+  for (float& deviation : wind.ground.gusts.along_m_s) deviation *= static_cast<float>(now_.gusts);
+  for (float& deviation : wind.ground.gusts.across_m_s) deviation *= static_cast<float>(now_.gusts);
   wind.state.wind = wind_where_measured(wind.ground, wind.stroke, *noise_);
 }
 
 /// The ceiling: on the wind measured now, for as long as it crosses the ground.
 void WindShaping::hold_back(ground::DrivingWind& wind) noexcept {
   speed_m_s_ = speed_of(wind.state.wind);
-  ceiling_gain_ = settings_.ceiling.gain(speed_m_s_);
+  ceiling_gain_ = ceiling_.gain(speed_m_s_);
   wind.state.wind = ceiling_gain_ * wind.state.wind;
   if (wind.stroke.pen_count == 0) wind.ground = ceiling_gain_ * wind.ground;
   for (ground::WindPen& pen : wind.stroke.pens) pen.now.gain = pen.written.gain = ceiling_gain_;
@@ -168,7 +205,7 @@ void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept
 
   // A front counts before the slow mean has followed it.
   const double mean_m_s = std::max({mean_.value, quick_mean_.value / kFrontTimesMean, 0.0});
-  const double floor_m_s = settings_.floor_m_s;
+  const double floor_m_s = now_.floor_m_s;
   const double least_m_s = floor_m_s / kMostFloorGain;
   const double site_mean_m_s = site_.value * mean_m_s;
   const double wanted_gain =
@@ -177,12 +214,13 @@ void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept
   follow_to_the_end(breeze_, std::max(0.0, floor_m_s - kMostFloorGain * site_mean_m_s), kFloorGainOver_s, dt_s);
 
   follow_to_the_end(opening_, is_open ? 1.0 : settings_.closed_level, settings_.fade_s, dt_s);
+  follow_to_the_end(openness_, is_open ? 1.0 : 0.0, settings_.fade_s, dt_s);
 }
 
 /// Adds the floor's breeze: a mean from where the wind last came, and gusts of its own, which it carries along. Their
 /// power is the difference between a wind of the floor's strength and one without the breeze.
 void WindShaping::add_breeze(ground::DrivingWind& wind, double dt_s) noexcept {
-  const double breeze_m_s = std::clamp(breeze_.value, 0.0, settings_.floor_m_s);
+  const double breeze_m_s = std::clamp(breeze_.value, 0.0, now_.floor_m_s);
   if (breeze_m_s <= 0.0 && blown_m_.u_m_s == 0.0 && blown_m_.v_m_s == 0.0) return;
   ground::GroundWind& ground = wind.ground;
   turbulence::GustNoise::Moment& gusts = ground.gusts;
@@ -191,7 +229,7 @@ void WindShaping::add_breeze(ground::DrivingWind& wind, double dt_s) noexcept {
   noise_->carry(gusts.carried, blown_m_.u_m_s, -blown_m_.v_m_s, 1.0);
   carry_tapes(wind.stroke, blown_m_, blown_way_m_);
 
-  const double scale = opening_.value * std::sqrt(breeze_m_s * (2.0 * settings_.floor_m_s - breeze_m_s));
+  const double scale = opening_.value * std::sqrt(breeze_m_s * (2.0 * now_.floor_m_s - breeze_m_s));
   turbulence::GustNoise::Moment own = gusts;
   const turbulence::GustNoise::Moment real = gusts;
   for (std::size_t i = 0; i < turbulence::GustNoise::kOctaves; ++i) {
@@ -216,8 +254,9 @@ WindShapingReport WindShaping::report() const noexcept {
           .site_gain = site_.value,
           .floor_gain = floor_.value,
           .breeze_m_s = breeze_.value,
-          .gusts = settings_.gusts,
+          .gusts = now_.gusts,
           .opening = opening_.value,
+          .openness = openness_.value,
           .speed_m_s = speed_m_s_,
           .ceiling_gain = ceiling_gain_,
           .median_m_s = median_m_s_,

@@ -41,6 +41,7 @@ struct WindShapingReport {
   double breeze_m_s = 0.0;  ///< what the floor adds
   double gusts = 1.0;       ///< how strong the gusts are, compared with the real ones
   double opening = 1.0;     ///< the factor on the wind: closed_level when closed, 1 when open
+  double openness = 1.0;    ///< 0 when closed, 1 when open, whatever closed_level is
   double speed_m_s = 0.0;   ///< of the wind at this moment, before the ceiling
   double ceiling_gain = 1.0;
   double median_m_s = 0.0;  ///< the site's own, as far as it is remembered
@@ -66,6 +67,7 @@ struct WindShapingReport {
 class WindShaping {
  public:
   static constexpr double kMostFloorGain = 3.0;
+  static constexpr double kChangeOver_s = 5.0;  ///< how long change() takes
 
   /// `noise`: the one that the estimator and the scenes have.
   WindShaping(const WindShapingSettings& settings, std::shared_ptr<const turbulence::GustNoise> noise);
@@ -73,6 +75,10 @@ class WindShaping {
   /// Shapes the wind of wind.state.time. A time that goes back is taken as no time at all. The first call begins where
   /// its wind and `is_open` say, without a way there. `is_of_site`: live wind is what the site has, and is remembered.
   void shape(ground::DrivingWind& wind, bool is_open, bool is_of_site = true) noexcept;
+
+  /// Shapes by other settings from now on, over the next seconds (kChangeOver_s): what is remembered of the site stays,
+  /// and nothing jumps. Turbulence and length of the breeze stay as they were constructed. Realtime-safe: yes.
+  void change(const WindShapingSettings& settings) noexcept;
 
   const WindShapingSettings& settings() const noexcept { return settings_; }
   WindShapingReport report() const noexcept;
@@ -82,6 +88,15 @@ class WindShaping {
   bool restore(std::span<const double> times_s) noexcept;
 
  private:
+  /// The settings that act at once, as far as a change of them has come.
+  struct Strengths {
+    double floor_m_s = 0.0;
+    double gusts = 1.0;
+    double per_ceiling_from_s_m = 0.0, per_ceiling_most_s_m = 0.0;  ///< 1 over a speed; 0: no ceiling
+  };
+  static Strengths strengths_of(const WindShapingSettings& settings) noexcept;
+
+  void change_strengths(double dt_s) noexcept;
   void remember(double mean_m_s, double dt_s) noexcept;
   void look_at_memory() noexcept;
   double site_gain_of(double mean_m_s) const noexcept;
@@ -91,6 +106,9 @@ class WindShaping {
   void hold_back(ground::DrivingWind& wind) noexcept;
 
   WindShapingSettings settings_;
+  Strengths from_, now_;                ///< before a change, and as far as it has come
+  math::CriticallyDamped change_{1.0};  ///< how far it has come
+  SoftCeiling ceiling_;                 ///< of now_
   std::shared_ptr<const turbulence::GustNoise> noise_;
   turbulence::GustVariances along_, across_;  ///< of the breeze
   SpeedMemory memory_;
@@ -98,7 +116,7 @@ class WindShaping {
   double unstored_s_ = 0.0;  ///< time since the memory was updated
   double median_m_s_ = 0.0, strong_m_s_ = 0.0, known_s_ = 0.0;
   math::CriticallyDamped mean_, quick_mean_;  ///< of the real wind's speed
-  math::CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0};
+  math::CriticallyDamped site_{1.0}, floor_{1.0}, breeze_, opening_{1.0}, openness_{1.0};
   WindVector blown_m_;        ///< how far the breeze has carried the gusts besides
   double blown_way_m_ = 0.0;  ///< and along how much of a way
   double speed_m_s_ = 0.0, ceiling_gain_ = 1.0;

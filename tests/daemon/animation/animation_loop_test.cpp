@@ -1,64 +1,56 @@
 #include "daemon/animation/animation_loop.hpp"
 
 #include <atomic>
-#include <cstdlib>
 #include <new>
+#include <random>
 
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <unistd.h>
 
+#include "daemon/animation/scene_exchange.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/sensing/system_clock.hpp"
 #include "engine/pose/pose_arrays.hpp"
+#include "tests/support/failing_scene.hpp"
+#include "tests/support/replaced_allocation.hpp"
 
 // Every allocation of this program by a thread other than the test's own is counted: that leaves the animation's.
 namespace {
 std::atomic<int> other_threads_allocations{0};
 thread_local bool is_test_thread = false;
-
-void* counted_allocation(std::size_t size) {
-  if (!is_test_thread) ++other_threads_allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
 }  // namespace
 
-void* operator new(std::size_t size) {
-  return counted_allocation(size);
-}
-void* operator new[](std::size_t size) {
-  return counted_allocation(size);
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
-void operator delete[](void* memory, std::size_t) noexcept {
-  std::free(memory);
+void* yuragi::test::allocate(std::size_t size) {
+  if (!is_test_thread) ++other_threads_allocations;
+  if (is_memory_gone) throw std::bad_alloc();
+  return allocate_as_usual(size);
 }
 
 namespace yuragi::daemon::animation {
 namespace {
+
+#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
+constexpr int kReloads = 100;  // each takes many times as long
+#else
+constexpr int kReloads = 2000;
+#endif
 
 class AnimationLoopTest : public ::testing::Test {
  protected:
   AnimationLoopTest() { is_test_thread = true; }
 
   /// Waits for the next frame as the I/O thread does, and decodes it.
-  wire::Frame next_frame() {
+  wire::Frame next_frame() { return next_frame(loop_); }
+  wire::Frame next_frame(AnimationLoop& loop) {
     while (true) {
-      pollfd ready{.fd = loop_.frame_ready_fd(), .events = POLLIN, .revents = 0};
-      if (poll(&ready, 1, 5000) != 1) throw std::runtime_error("no frame in 5 s");
+      pollfd ready{.fd = loop.frame_ready_fd(), .events = POLLIN, .revents = 0};
+      if (poll(&ready, 1, 60'000) != 1) throw std::runtime_error("no frame in a minute");
       std::uint64_t made = 0;
       if (read(ready.fd, &made, sizeof made) != sizeof made) continue;
-      if (const wire::Bytes* bytes = loop_.take_frame()) {
-        const auto message = wire::decode(std::span(*bytes).subspan(wire::kSizePrefixBytes));
+      if (const PublishedFrame* frame = loop.take_frame()) {
+        generation_ = frame->generation;
+        const auto message = wire::decode(std::span(frame->bytes).subspan(wire::kSizePrefixBytes));
         return std::get<wire::Frame>(message.value());
       }
     }
@@ -74,6 +66,8 @@ class AnimationLoopTest : public ::testing::Test {
   Latest<wind::ground::DrivingWind> wind_;
   Animation animation_{settings::default_config(), sensing::make_gust_noise(settings::default_config())};
   AnimationLoop loop_{animation_, wind_, clock_, 240.0};
+  std::uint64_t generation_ = 0;  // of the frame that was taken last
+  wire::Scenes scenes_;           // that were announced last
 };
 
 TEST_F(AnimationLoopTest, MakesFrameAfterFrameThatShowTheNewestWind) {
@@ -121,6 +115,124 @@ TEST_F(AnimationLoopTest, ACueFadesTheSceneWithoutAnyAllocation) {
   EXPECT_EQ(other_threads_allocations.load(), before);
 }
 
+/// Small scenes that differ in all that a reload may change: which there are, their order, parameters and gains.
+settings::Config random_config(std::mt19937& random, std::size_t most) {
+  const auto one_of = [&random](int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); };
+  std::string text = "seed = " + std::to_string(1 + one_of(2)) + "\n";
+  const int count = 1 + one_of(static_cast<int>(most));
+  for (int i = 0; i < count; ++i) {
+    text += "[[scene]]\nname = \"" + std::string(1, static_cast<char>('a' + i)) + "\"\n";
+    text +=
+        "shown = " + std::string(one_of(3) == 0 ? "false" : "true") + "\ngain = " + std::to_string(one_of(3)) + "\n";
+    text += one_of(4) == 0
+                ? "kind = \"curtain\"\n"
+                : "kind = \"grass\"\nblades_deep = 2\nblades_across = " + std::to_string(2 + one_of(2)) + "\n";
+  }
+  return settings::parse_config(text, "test.toml");
+}
+
+TEST_F(AnimationLoopTest, AChangeOfTheScenesAllocatesNothingOnItsThreadAndItsFramesAreAnnounced) {
+  settings::Config next = settings::default_config();
+  SceneDirector director(next, [this](const SceneCue& cue) { return loop_.cue(cue); });
+  SceneExchange exchange(animation_, loop_, director);
+  scenes_ = animation_.describe();
+  loop_.start();
+  for (int count = 0; count < 5; ++count) next_frame();
+
+  // The meadow is made anew, and there is another one: the frames become three times as large, and then twice.
+  next.scenes.push_back(next.scenes[0]);
+  next.scenes[0].placement.x_m = 3.0;
+  next.scenes[1].name = "second";
+  auto change = make_scene_change(*exchange.present(), next, 0.1);
+  const int before = other_threads_allocations.load();
+  ASSERT_TRUE(exchange.begin(change));
+  EXPECT_EQ(change, nullptr);
+  std::vector<std::size_t> scenes_of_lists;
+  std::unique_ptr<SceneChange> finished;
+  while (!finished) {
+    const wire::Frame frame = next_frame();
+    if (const auto message = exchange.new_scenes(generation_)) {
+      scenes_ = std::get<wire::Scenes>(wire::decode(std::span(*message).subspan(wire::kSizePrefixBytes)).value());
+      scenes_of_lists.push_back(scenes_.scenes.size());
+    }
+    EXPECT_TRUE(wire::fits(frame, scenes_));
+    finished = exchange.take_finished();
+  }
+  for (int count = 0; count < 10; ++count) next_frame();
+  EXPECT_EQ(other_threads_allocations.load(), before);
+  EXPECT_EQ(scenes_of_lists, (std::vector<std::size_t>{3, 2}));
+  EXPECT_FALSE(exchange.is_changing());
+}
+
+TEST_F(AnimationLoopTest, WhileOneChangeIsCarriedOutThereIsNoOther) {
+  settings::Config next = settings::default_config();
+  SceneDirector director(next, [this](const SceneCue& cue) { return loop_.cue(cue); });
+  SceneExchange exchange(animation_, loop_, director);
+  next.scenes[0].placement.x_m = 3.0;
+  auto change = make_scene_change(*exchange.present(), next);
+  auto another = make_scene_change(*exchange.present(), next);
+  ASSERT_TRUE(exchange.begin(change));
+  EXPECT_FALSE(exchange.begin(another));
+  EXPECT_NE(another, nullptr);
+  EXPECT_TRUE(exchange.is_changing());
+  // Neither of them is lost with a loop that never ran (address sanitizer).
+}
+
+/// Thousands of reloads, and a cue now and then, against the running thread.
+TEST_F(AnimationLoopTest, ScenesAreExchangedThousandsOfTimes) {
+  std::mt19937 random(7);
+  settings::Config config = random_config(random, 5);
+  Animation animation(config, sensing::make_gust_noise(config));
+  AnimationLoop loop(animation, wind_, clock_, 4000.0);
+  SceneDirector director(config, [&loop](const SceneCue& cue) { return loop.cue(cue); });
+  SceneExchange exchange(animation, loop, director);
+  scenes_ = animation.describe();
+  const std::weak_ptr<const SceneRoster> first = exchange.present();
+  loop.start();
+
+  std::uint64_t newest_generation = 0;
+  std::uint64_t lists = 0;
+  const auto take = [&] {
+    const wire::Frame frame = next_frame(loop);
+    EXPECT_GE(generation_, newest_generation);
+    newest_generation = generation_;
+    if (const auto message = exchange.new_scenes(generation_)) {
+      scenes_ = std::get<wire::Scenes>(wire::decode(std::span(*message).subspan(wire::kSizePrefixBytes)).value());
+      ++lists;
+    }
+    EXPECT_TRUE(wire::fits(frame, scenes_)) << "a frame is of the scenes that were announced last";
+    return frame;
+  };
+  for (int round = 0; round < kReloads && !HasFailure(); ++round) {
+    config = random_config(random, 5);
+    auto change = make_scene_change(*exchange.present(), config, static_cast<double>(random() % 3) * 0.001);
+    while (!exchange.begin(change)) take();
+    while (exchange.is_changing()) {
+      if (random() % 4 == 0) {
+        director.handle({.scene = std::string(1, static_cast<char>('a' + random() % 5)),
+                         .shown = random() % 2 == 0,
+                         .hide_others = random() % 4 == 0,
+                         .over_s = 0.0},
+                        true);
+      }
+      take();
+      exchange.take_finished();
+    }
+    if (round % 50 != 0) continue;
+    // When all fades are over, what the director says is what is seen.
+    for (int count = 0; count < 40; ++count) take();
+    const wire::Frame frame = take();
+    const std::vector<wire::SceneState> states = director.handle({.scene = ""}, true).scenes;
+    ASSERT_EQ(states.size(), frame.opacities.size());
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      EXPECT_EQ(states[i].name, scenes_.scenes.at(i).name);
+      EXPECT_EQ(frame.opacities[i], states[i].shown ? 1.0F : 0.0F) << states[i].name;
+    }
+  }
+  EXPECT_GT(lists, std::uint64_t{kReloads});
+  EXPECT_TRUE(first.expired()) << "what has left is freed";
+}
+
 TEST_F(AnimationLoopTest, CountsItsTicksAndHowLateTheyWere) {
   loop_.start();
   for (int count = 0; count < 10; ++count) next_frame();
@@ -129,6 +241,27 @@ TEST_F(AnimationLoopTest, CountsItsTicksAndHowLateTheyWere) {
   EXPECT_GE(counters.ticks.load(), 10U);
   EXPECT_GT(counters.work.percentile_s(0.5), 0.0);
   EXPECT_GT(counters.lateness.percentile_s(1.0), 0.0);
+}
+
+TEST_F(AnimationLoopTest, SaysWhyItHasEndedByItselfAndKeepsTheLastFrame) {
+  const settings::Config config = config_with_failing_scene();
+  Animation animation(config, sensing::make_gust_noise(config));
+  AnimationLoop loop(animation, wind_, clock_, 240.0);
+  loop.start();
+  std::uint64_t last_sequence = 0;
+  while (!loop.failure()) {
+    pollfd ready{.fd = loop.frame_ready_fd(), .events = POLLIN, .revents = 0};
+    ASSERT_EQ(poll(&ready, 1, 60'000), 1) << "the I/O thread is woken for the failure, too";
+    std::uint64_t made = 0;
+    ASSERT_EQ(read(ready.fd, &made, sizeof made), ssize_t{sizeof made});
+    if (const PublishedFrame* frame = loop.take_frame()) {
+      const auto message = wire::decode(std::span(frame->bytes).subspan(wire::kSizePrefixBytes));
+      last_sequence = std::get<wire::Frame>(message.value()).info.sequence;
+    }
+  }
+  EXPECT_EQ(loop.failure(), "std::bad_alloc");
+  EXPECT_EQ(last_sequence + 1, std::uint64_t{FailingScene::kGoodTicks});
+  EXPECT_EQ(loop.counters().ticks.load(), std::uint64_t{FailingScene::kGoodTicks});
 }
 
 TEST_F(AnimationLoopTest, EndsAtOnceAndTwice) {

@@ -22,6 +22,17 @@ TEST(DurationHistogram, TellsPercentilesToWithinAnEighthAbove) {
   }
 }
 
+TEST(DurationHistogram, TellsTheLongestExactly) {
+  DurationHistogram histogram;
+  EXPECT_EQ(histogram.max_s(), 0.0);
+  histogram.add(microseconds(-5));
+  EXPECT_EQ(histogram.max_s(), 0.0);
+  for (const int us : {3, 1234, 5}) histogram.add(microseconds(us));
+  EXPECT_EQ(histogram.max_s(), 1234e-6);
+  histogram.add(hours(100'000));
+  EXPECT_EQ(histogram.max_s(), 360e6);
+}
+
 TEST(DurationHistogram, TakesWhatIsNegativeAndWhatIsTooLong) {
   DurationHistogram histogram;
   histogram.add(microseconds(-5));

@@ -129,21 +129,76 @@ TEST_F(CsvCommands, ExportWritesWhatItSays) {
             "2018-07-20T14:00:00.100000000Z,0.100000000,mast,6.1,187.5,,good\n");
 }
 
+/// How many rows `yuragi export` writes of a part of a recording.
+std::ptrdiff_t exported_rows(const std::string& recording, const std::vector<std::string>& part) {
+  std::vector<std::string> arguments = {"export", recording, "-o", "-"};
+  arguments.insert(arguments.end(), part.begin(), part.end());
+  const Outcome outcome = yuragi(arguments);
+  EXPECT_EQ(outcome.code, 0) << outcome.error;
+  return std::count(outcome.output.begin(), outcome.output.end(), '\n') - 1;
+}
+
 TEST_F(CsvCommands, ExportTakesAPart) {
   test::write_session(path("a.windlog"), test::numbered_readings(100));
-  const auto rows = [&](std::vector<std::string> more) {
-    std::vector<std::string> arguments = {"export", path("a.windlog"), "-o", "-"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = yuragi(arguments);
-    EXPECT_EQ(outcome.code, 0) << outcome.error;
-    return std::count(outcome.output.begin(), outcome.output.end(), '\n') - 1;
-  };
+  const auto rows = [&](const std::vector<std::string>& part) { return exported_rows(path("a.windlog"), part); };
   EXPECT_EQ(rows({}), 100);
   EXPECT_EQ(rows({"--from", "2", "--to", "3"}), 10);
   EXPECT_EQ(rows({"--from", "2018-07-20T14:00:02Z", "--to", "2018-07-20T14:00:04Z"}), 20);
   EXPECT_EQ(rows({"--from", "2030-01-01"}), 0);
   EXPECT_EQ(rows({"--to", "2030-01-01"}), 100);
   EXPECT_EQ(yuragi({"export", path("a.windlog"), "-o", "-", "--from", "soon"}).code, kExitUsage);
+}
+
+TEST_F(CsvCommands, ExportBeginsSoLongBeforeTheEnd) {
+  test::write_session(path("a.windlog"), test::numbered_readings(100));
+  const auto rows = [&](const std::vector<std::string>& part) { return exported_rows(path("a.windlog"), part); };
+  EXPECT_EQ(rows({"--since", "2s"}), 21) << "the last reading, and those of the two seconds before it";
+  EXPECT_EQ(rows({"--since", "7d"}), 100);
+  EXPECT_EQ(rows({"--since", "2018-07-20T14:00:02Z"}), 90);
+  EXPECT_EQ(rows({"--since", "2018-07-20T14:00:02Z", "--until", "2018-07-20T14:00:04Z"}), 20);
+  EXPECT_EQ(rows({"--since", "2s", "--until", "1s"}), 10);
+  EXPECT_EQ(rows({"--since", "2030-01-01"}), 0);
+  EXPECT_EQ(yuragi({"export", path("a.windlog"), "-o", "-", "--since", "soon"}).code, kExitUsage);
+  EXPECT_EQ(yuragi({"export", path("a.windlog"), "-o", "-", "--since", "1h", "--from", "3"}).code, kExitUsage);
+  EXPECT_EQ(yuragi({"export", path("a.windlog"), "-o", path("b.windlog"), "--since", "1h"}).code, kExitUsage);
+}
+
+TEST_F(CsvCommands, ExportWritesMeansOfBlocks) {
+  std::vector<wind::WindReading> readings;
+  const auto add = [&readings](std::int64_t ms, double speed_m_s, std::optional<double> direction_deg,
+                               std::optional<double> gust_m_s = std::nullopt) {
+    readings.push_back(test::reading_at(ms, speed_m_s));
+    readings.back().direction_deg = direction_deg;
+    readings.back().gust_m_s = gust_m_s;
+  };
+  add(7'000, 2.0, 350.0, 3.5);  // from 14:00:07 on
+  add(8'000, 2.0, 10.0);
+  add(9'000, 5.0, std::nullopt);
+  add(31'000, 3.0, 90.0);
+  add(32'000, 3.0, 270.0);
+  add(40'000, 0.0, 123.0);  // on the edge: of the next block
+  test::write_session(path("a.windlog"), readings);
+  const Outcome outcome = yuragi({"export", path("a.windlog"), "-o", "-", "--resample", "10"});
+  EXPECT_EQ(outcome.code, 0) << outcome.error;
+  EXPECT_EQ(outcome.output,
+            "utc,time_s,sensor,speed_m_s,direction_deg,gust_m_s,count\n"
+            "2018-07-20T14:00:00.000000000Z,-7.000000000,mast,3,0,5,3\n"
+            "2018-07-20T14:00:10.000000000Z,3.000000000,mast,,,,0\n"
+            "2018-07-20T14:00:20.000000000Z,13.000000000,mast,,,,0\n"
+            "2018-07-20T14:00:30.000000000Z,23.000000000,mast,3,,3,2\n"
+            "2018-07-20T14:00:40.000000000Z,33.000000000,mast,0,,0,1\n");
+  EXPECT_THAT(outcome.error, HasSubstr("6 readings"));
+}
+
+TEST_F(CsvCommands, AClockThatLeaptByDecadesIsNoTableOfEmptyRows) {
+  std::vector<wind::WindReading> readings = {test::reading_at(0, 2.0)};
+  test::write_session(path("a.windlog"), readings);
+  readings[0].time.utc += std::chrono::hours(24 * 365 * 31);
+  test::write_session(path("a.windlog"), readings);
+  const Outcome refused = yuragi({"export", path("a.windlog"), "-o", "-", "--resample", "1s"});
+  EXPECT_EQ(refused.code, kExitUsage);
+  EXPECT_THAT(refused.error, HasSubstr("choose longer blocks"));
+  EXPECT_EQ(yuragi({"export", path("a.windlog"), "-o", "-", "--resample", "10d"}).code, 0);
 }
 
 TEST_F(CsvCommands, ExportCopiesALiveRecordingAsOneFile) {

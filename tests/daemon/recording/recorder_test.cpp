@@ -1,11 +1,16 @@
 #include "daemon/recording/recorder.hpp"
 
 #include <array>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <future>
+#include <limits>
 
 #include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -52,13 +57,121 @@ TEST(Recorder, WritesEverythingByItsEndAndLeavesOneFile) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
+wind::StationQuantities temperature_at(std::int64_t mono_ms, double air_temperature_c) {
+  wind::StationQuantities quantities;
+  quantities.time = test::at_ms(mono_ms, test::kSampleUtc_ms + mono_ms);
+  quantities.air_temperature_c = air_temperature_c;
+  return quantities;
+}
+
+std::vector<double> temperatures_in(const std::filesystem::path& file) {
+  std::vector<double> all;
+  auto reader = drivers::windlog::WindlogReader::open(file);
+  EXPECT_TRUE(reader);
+  if (!reader) return all;
+  EXPECT_TRUE(reader->each_quantities(Nanoseconds{0}, Nanoseconds::max(),
+                                      [&](const drivers::windlog::LoggedQuantities& logged) {
+                                        all.push_back(logged.quantities.air_temperature_c.value_or(-1.0));
+                                      }));
+  return all;
+}
+
+TEST(Recorder, WritesWhatStationsSayBesidesTheWind) {
+  const test::TemporaryFolder folder;
+  {
+    Recorder recorder(folder / "a.windlog", info_of({{"mast", "nmea", ""}, {"roof", "nmea", ""}}));
+    for (const auto& reading : test::numbered_readings(50)) EXPECT_TRUE(recorder.push(0, reading));
+    EXPECT_TRUE(recorder.push(0, temperature_at(2000, 11.0)));
+    EXPECT_TRUE(recorder.push(1, temperature_at(2000, 12.0)));
+    EXPECT_TRUE(recorder.push(1, temperature_at(4000, 13.0)));
+    EXPECT_FALSE(recorder.push(2, temperature_at(4000, 13.0)));
+  }
+  EXPECT_EQ(temperatures_in(folder / "a.windlog"), (std::vector<double>{11.0, 12.0, 13.0}));
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 50U);
+}
+
+TEST(Recorder, LosesNoReadingToATableOfQuantitiesThatIsDamaged) {
+  const test::TemporaryFolder folder;
+  test::write_session(folder / "a.windlog", test::numbered_readings(5));
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open((folder / "a.windlog").c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database, "CREATE TABLE quantity (text TEXT)", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(database);
+
+  std::vector<std::string> reports;
+  {
+    Recorder recorder(folder / "a.windlog", info_of({{"mast", "nmea", ""}}),
+                      [&](std::string_view sentence) { reports.emplace_back(sentence); });
+    for (const auto& reading : test::numbered_readings(50)) EXPECT_TRUE(recorder.push(0, reading));
+    EXPECT_TRUE(recorder.push(0, temperature_at(2000, 11.0)));
+  }
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 55U);
+  ASSERT_EQ(reports.size(), 1U);
+  EXPECT_NE(reports[0].find("1 message of stations, besides the wind, could not be recorded"), std::string::npos)
+      << reports[0];
+}
+
+/// The permissions of a file as a person writes them: 0640.
+unsigned mode_of(const std::filesystem::path& file) {
+  struct stat status {};
+  EXPECT_EQ(stat(file.c_str(), &status), 0) << file;
+  return status.st_mode & 07777U;
+}
+
+/// Sets the process's umask, and sets it back.
+class Umask {
+ public:
+  explicit Umask(mode_t mask) : before_(umask(mask)) {}
+  ~Umask() { umask(before_); }
+  Umask(const Umask&) = delete;
+  Umask& operator=(const Umask&) = delete;
+
+ private:
+  mode_t before_;
+};
+
+TEST(Recorder, MakesFilesThatOthersCannotRead) {
+  const test::TemporaryFolder folder;
+  const Umask none(0);
+  const std::filesystem::path file = folder / "a.windlog";
+  Recorder recorder(file, info_of({{"mast", "", ""}}));
+  recorder.push(0, test::reading_at(1, 1.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
+  for (const char* suffix : {"", "-wal", "-shm"}) EXPECT_EQ(mode_of(file.string() + suffix), 0640U) << suffix;
+  recorder.close();
+  EXPECT_EQ(mode_of(file), 0640U);
+}
+
+TEST(Recorder, MakesAFileBehindALinkThatOthersCannotReadEither) {
+  const test::TemporaryFolder folder;
+  const Umask none(0);
+  std::filesystem::create_directory(folder / "disk");
+  std::filesystem::create_symlink("disk/b.windlog", folder / "b.windlog");
+  std::filesystem::create_symlink("b.windlog", folder / "a.windlog");
+  { const Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}})); }
+  EXPECT_EQ(mode_of(folder / "disk/b.windlog"), 0640U);
+}
+
+TEST(Recorder, KeepsToAStricterUmaskAndToTheModeOfAFileThatIsThere) {
+  const test::TemporaryFolder folder;
+  {
+    const Umask strict(077);
+    const Recorder recorder(folder / "strict.windlog", info_of({{"mast", "", ""}}));
+  }
+  EXPECT_EQ(mode_of(folder / "strict.windlog"), 0600U);
+  test::write_session(folder / "old.windlog", test::numbered_readings(1));
+  ASSERT_EQ(chmod((folder / "old.windlog").c_str(), 0664), 0);
+  { const Recorder recorder(folder / "old.windlog", info_of({{"mast", "", ""}})); }
+  EXPECT_EQ(mode_of(folder / "old.windlog"), 0664U);
+}
+
 TEST(Recorder, CommitsByItself) {
   const test::TemporaryFolder folder;
   Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
   recorder.push(0, test::reading_at(1, 1.0));
   wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
   EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 1U);
-  static_assert(Recorder::kCommitInterval <= std::chrono::milliseconds(500));
+  static_assert(RecorderLimits{}.commit_every <= std::chrono::seconds(1));
 }
 
 TEST(Recorder, AppendsASessionAtEachStart) {
@@ -68,6 +181,75 @@ TEST(Recorder, AppendsASessionAtEachStart) {
     recorder.push(0, test::reading_at(1000 * std::int64_t{run}, 1.0));
   }
   EXPECT_EQ(drivers::windlog::WindlogReader::open(folder / "a.windlog")->sessions().size(), 3U);
+}
+
+TEST(Recorder, BeginsASessionWithAnotherConfigurationBetweenTwoReadings) {
+  const test::TemporaryFolder folder;
+  const auto readings = test::numbered_readings(3000);
+  {
+    Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}, {"roof", "", ""}}));
+    RecordingInfo next = info_of({{"mast", "", ""}, {"roof", "", "rate = 4"}});
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      if (i == 1000) {
+        next.configuration = "[wind]\nspeed = 5\n";
+        recorder.begin_session(next, {});
+      }
+      if (i == 2000) {  // of two before the next reading only the last matters
+        recorder.begin_session(next, {});
+        next.configuration = "[wind]\nspeed = 6\n";
+        recorder.begin_session(next, {});
+      }
+      EXPECT_TRUE(recorder.push(i % 2, readings[i]));
+      if (i == 500 || i == 1500) {
+        wait_for(recorder, [i](const RecorderStatus& status) { return status.written == i + 1; });
+      }
+    }
+    recorder.begin_session(next, {});  // and one that gets no reading
+  }
+  auto reader = drivers::windlog::WindlogReader::open(folder / "a.windlog");
+  ASSERT_TRUE(reader);
+  ASSERT_EQ(reader->sessions().size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(reader->configuration(reader->sessions()[i].id).value(),
+              "[wind]\nspeed = " + std::to_string(4 + i) + "\n");
+  }
+  const auto logged = test::read_all(folder / "a.windlog");
+  ASSERT_EQ(logged.size(), readings.size());
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    test::expect_same(logged[i].reading, readings[i]);
+    EXPECT_EQ(logged[i].log_time, readings[i].time.mono - readings[0].time.mono) << "no gap";
+  }
+}
+
+TEST(Recorder, TakesNewRulesAlthoughReadingsWaitBecauseOfTheOldOnes) {
+  const test::TemporaryFolder folder;
+  Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
+  recorder.push(0, test::reading_at(1, 1.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
+  recorder.begin_session(info_of({{"mast", "", ""}}), {.least_free_bytes = ~std::uint64_t{0}});
+  recorder.push(0, test::reading_at(2, 1.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.state == RecorderState::kRetrying; });
+  recorder.begin_session(info_of({{"mast", "", ""}}), {});
+  recorder.push(0, test::reading_at(3, 1.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 3; });
+  EXPECT_EQ(recorder.status().lost, 0U);
+}
+
+TEST(Recorder, KeepsARecordingOfAnOlderFormatUnderAnotherName) {
+  const test::TemporaryFolder folder;
+  const std::string old = test::source_path("tests/drivers/windlog/format1.windlog");
+  std::vector<std::string> reports;
+  for (int run = 0; run < 2; ++run) {
+    std::filesystem::copy_file(old, folder / "a.windlog", std::filesystem::copy_options::overwrite_existing);
+    Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}),
+                      [&](std::string_view report) { reports.emplace_back(report); });
+    recorder.push(0, test::reading_at(1, 1.0));
+  }
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 1U);
+  EXPECT_EQ(test::read_all(folder / "a-format1.windlog").size(), 34U);
+  EXPECT_EQ(test::read_all(folder / "a-format1-2.windlog").size(), 34U);
+  ASSERT_EQ(reports.size(), 2U);
+  EXPECT_NE(reports[1].find("a-format1-2.windlog"), std::string::npos) << reports[1];
 }
 
 TEST(Recorder, CountsWhatCannotBeRecorded) {
@@ -206,6 +388,216 @@ TEST(Recorder, WritesToItsOpenFileWhileTheNameCannotBeLookedUp) {
   }
   EXPECT_EQ(reports, std::vector<std::string>{});
   EXPECT_EQ(test::read_all(folder / "real" / "a.windlog").size(), 1U);
+}
+
+/// Holds every write of SQLite's to the disk while it is closed, as a disk that hangs does.
+class DiskGate {
+ public:
+  DiskGate() {
+    sqlite3_initialize();
+    sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
+    for (const char* name : kCalls) originals_.push_back(vfs->xGetSystemCall(vfs, name));
+    vfs->xSetSystemCall(vfs, "pwrite64", reinterpret_cast<sqlite3_syscall_ptr>(&write_when_open));
+    vfs->xSetSystemCall(vfs, "pwrite", reinterpret_cast<sqlite3_syscall_ptr>(&write_when_open));
+  }
+  ~DiskGate() {
+    sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
+    for (std::size_t i = 0; i < kCalls.size(); ++i) vfs->xSetSystemCall(vfs, kCalls[i], originals_[i]);
+  }
+  DiskGate(const DiskGate&) = delete;
+  DiskGate& operator=(const DiskGate&) = delete;
+
+  static void set_open(bool is_open) {
+    is_open_ = is_open;
+    is_open_.notify_all();
+  }
+
+ private:
+  static constexpr std::array<const char*, 2> kCalls = {"pwrite", "pwrite64"};
+
+  static ssize_t write_when_open(int file, const void* bytes, std::size_t size, off_t offset) {
+    is_open_.wait(false);
+    return pwrite(file, bytes, size, offset);
+  }
+
+  static inline std::atomic<bool> is_open_{true};
+  std::vector<sqlite3_syscall_ptr> originals_;
+};
+
+TEST(Recorder, ADiskThatHangsIsAStateAndTheReadingsWait) {
+  const test::TemporaryFolder folder;
+  const DiskGate gate;
+  Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}), {}, {.hang_after = Nanoseconds{0}});
+  DiskGate::set_open(false);
+  recorder.push(0, test::reading_at(1, 1.0));
+  while (recorder.status().state != RecorderState::kHanging) std::this_thread::yield();
+  recorder.push(0, test::reading_at(2, 1.0));
+  EXPECT_EQ(recorder.status().waiting, 2U);
+  EXPECT_EQ(recorder.status().written, 0U);
+  EXPECT_NE(recorder.status().error.find("a.windlog: the disk does not answer"), std::string::npos);
+  DiskGate::set_open(true);
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 2; });
+  recorder.close();
+  EXPECT_EQ(recorder.status().state, RecorderState::kWriting);
+  EXPECT_EQ(recorder.status().waiting, 0U);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 2U);
+}
+
+TEST(Recorder, EndsAlthoughItsDiskHangsAndSaysWhatWasNotWritten) {
+  const test::TemporaryFolder folder;
+  const DiskGate gate;
+  std::vector<std::string> reports;
+  Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}),
+                    [&](std::string_view report) { reports.emplace_back(report); },
+                    {.hang_after = Nanoseconds{0}, .most_at_end = Nanoseconds{0}});
+  DiskGate::set_open(false);
+  for (int i = 0; i < 3; ++i) recorder.push(0, test::reading_at(i, 1.0));
+  while (recorder.status().state != RecorderState::kHanging) std::this_thread::yield();
+  recorder.close();
+  ASSERT_EQ(reports.size(), 1U);
+  EXPECT_NE(reports[0].find("3 readings"), std::string::npos) << reports[0];
+
+  // What its thread had in hand is written when the disk answers after all, and is not reported any more.
+  DiskGate::set_open(true);
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 3; });
+  while (std::filesystem::exists(folder / "a.windlog-wal")) std::this_thread::yield();
+  EXPECT_EQ(reports.size(), 1U);
+}
+
+TEST(Recorder, BeginsAFileADayAndDeletesTheOldest) {
+  const test::TemporaryFolder folder;
+  std::vector<std::string> reports;
+  constexpr int kDays = 5;
+  for (int day = 0; day < kDays; ++day) {
+    Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}),
+                      [&](std::string_view report) { reports.emplace_back(report); }, {},
+                      {.is_daily = true, .keep_days = 3});
+    for (int hour = 0; hour < 2; ++hour) {
+      recorder.push(0, test::reading_at((24 * day + hour) * 3'600'000, day));
+      wait_for(recorder,
+               [&](const RecorderStatus& status) { return status.written == 1U + static_cast<unsigned>(hour); });
+    }
+  }
+  const auto all = test::read_all(folder / "a.windlog");
+  ASSERT_FALSE(all.empty());
+  EXPECT_EQ(all.front().reading.speed_m_s, 1.0) << "the first day ended more than three days ago";
+  EXPECT_EQ(all.back().reading.speed_m_s, kDays - 1.0);
+  EXPECT_EQ(all.size(), 2U * (kDays - 1));
+  EXPECT_EQ(test::read_all(folder / "a-20180721T140000Z.windlog").size(), 2U);
+  ASSERT_EQ(reports.size(), 1U);
+  EXPECT_NE(reports[0].find("deleted"), std::string::npos) << reports[0];
+}
+
+TEST(Recorder, BeginsANewFileInTheMiddleOfARun) {
+  const test::TemporaryFolder folder;
+  {
+    Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}), {}, {}, {.most_file_bytes = 1});
+    for (int i = 1; i <= 3; ++i) {
+      recorder.push(0, test::reading_at(i, i));
+      wait_for(recorder, [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i); });
+    }
+    EXPECT_EQ(recorder.status().lost, 0U);
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 3);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 3U);
+}
+
+/// Records readings 1 to `count` into files of one reading each.
+void record_parts(const std::filesystem::path& file, int first, int count) {
+  Recorder recorder(file, info_of({{"mast", "", ""}}), {}, {}, {.most_file_bytes = 1});
+  for (int i = first; i < first + count; ++i) {
+    recorder.push(0, test::reading_at(1000 * i, i));
+    wait_for(recorder,
+             [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i - first + 1); });
+  }
+}
+
+std::vector<double> speeds_in(const std::filesystem::path& file) {
+  std::vector<double> speeds;
+  for (const auto& logged : test::read_all(file)) speeds.push_back(logged.reading.speed_m_s);
+  return speeds;
+}
+
+TEST(Recorder, CompletesAFileThatAnotherProgramReadsWithAllItsReadings) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  Recorder recorder(file, info_of({{"mast", "", ""}}), {}, {}, {.is_daily = true});
+  recorder.push(0, test::reading_at(1000, 1.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
+  // In the midst of a query, so that the next reading stays beside the file.
+  sqlite3* reader = nullptr;
+  ASSERT_EQ(sqlite3_open_v2(file.c_str(), &reader, SQLITE_OPEN_READONLY, nullptr), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(reader, "BEGIN; SELECT count(*) FROM session", nullptr, nullptr, nullptr), SQLITE_OK);
+  recorder.push(0, test::reading_at(2000, 2.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 2; });
+  recorder.push(0, test::reading_at(24 * 3'600'000, 3.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 3; });
+  EXPECT_TRUE(std::filesystem::exists(folder / "a-20180720T140000Z.windlog"));
+  EXPECT_EQ(speeds_in(file), (std::vector{1.0, 2.0, 3.0}));
+  sqlite3_close(reader);
+}
+
+/// A recording that a killed process left, with its newest reading beside it.
+void leave_unclosed(const std::filesystem::path& file) {
+  const test::TemporaryFolder folder;
+  auto writer = drivers::windlog::WindlogWriter::open(folder / "b.windlog").value();
+  ASSERT_TRUE(writer.begin_session({test::at_ms(0, test::kSampleUtc_ms), "yuragi test", ""}));
+  const auto sensor = writer.add_sensor("mast", "", "").value();
+  ASSERT_TRUE(writer.append(sensor, test::reading_at(1000, 1.0)));
+  ASSERT_TRUE(writer.commit());
+  std::filesystem::copy_file(folder / "b.windlog", file);
+  std::filesystem::copy_file(folder / "b.windlog-wal", file.string() + "-wal");
+}
+
+TEST(Recorder, KilledBetweenTheStepsOfARenameLosesNothing) {
+  for (int steps = 0; steps <= 3; ++steps) {
+    const test::TemporaryFolder folder;
+    const auto file = folder / "a.windlog";
+    const auto part = folder / "a-20180720T140000Z.windlog";
+    leave_unclosed(file);
+    if (steps >= 1) std::filesystem::rename(file.string() + "-wal", part.string() + "-wal");
+    if (steps >= 2) std::filesystem::rename(file, part);
+    if (steps >= 3) std::ofstream(file).flush();  // the next file is created, and nothing is in it
+    record_parts(file, 2, 2);
+    EXPECT_EQ(speeds_in(file), (std::vector{1.0, 2.0, 3.0})) << "after " << steps << " steps";
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+      const std::string name = entry.path();
+      EXPECT_TRUE(std::filesystem::exists(name.substr(0, name.rfind(".windlog")) + ".windlog")) << name;
+    }
+  }
+}
+
+TEST(Recorder, LeavesTheSpaceFreeThatItIsToldTo) {
+  const test::TemporaryFolder folder;
+  Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}), {}, {},
+                    {.least_free_bytes = std::numeric_limits<std::uint64_t>::max() / 2});
+  recorder.push(0, test::reading_at(1, 1.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.state == RecorderState::kRetrying; });
+  EXPECT_NE(recorder.status().error.find("min_free"), std::string::npos) << recorder.status().error;
+  EXPECT_EQ(recorder.status().written, 0U);
+}
+
+TEST(Recorder, ACopyOfTheFileAloneIsARecordingFromTheBeginningOn) {
+  const test::TemporaryFolder folder;
+  Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}), {},
+                    {.commit_every = std::chrono::milliseconds(1)});
+  std::filesystem::copy_file(folder / "a.windlog", folder / "begin.windlog");
+  EXPECT_EQ(drivers::windlog::WindlogReader::open(folder / "begin.windlog")->sensors().size(), 1U);
+  for (int i = 1; i <= 1 + RecorderWorker::kCommitsPerCheckpoint; ++i) {
+    recorder.push(0, test::reading_at(i, 1.0));
+    wait_for(recorder, [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i); });
+  }
+  std::filesystem::copy_file(folder / "a.windlog", folder / "later.windlog");
+  EXPECT_GE(test::read_all(folder / "later.windlog").size(),
+            static_cast<unsigned>(RecorderWorker::kCommitsPerCheckpoint));
+}
+
+TEST(Recorder, SaysHowMuchSpaceIsLeft) {
+  const test::TemporaryFolder folder;
+  const Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}));
+  const auto space = std::filesystem::space(folder.path());
+  ASSERT_TRUE(recorder.status().free_bytes);
+  EXPECT_NEAR(static_cast<double>(*recorder.status().free_bytes), static_cast<double>(space.available), 1e9);
 }
 
 TEST(Recorder, KilledAtAnyMomentLeavesARecordingOfAllThatWasCommitted) {

@@ -230,6 +230,105 @@ TEST_F(SensorJudgement, LimitsComeFromTheConfiguration) {
   EXPECT_EQ(state(), wind::judging::SensorState::kImplausible);
 }
 
+/// The configuration with another calibration of one sensor, as a file would have it.
+settings::Config recalibrated(settings::Config config, std::size_t sensor, double gain) {
+  settings::SensorConfig& changed = config.sensors[sensor];
+  changed.by_name.calibration.set("gain", gain);
+  changed.calibration = settings::calibration_of(changed.by_name.calibration).value();
+  return config;
+}
+
+TEST_F(SensorJudgement, ANewCalibrationIsNoSpikeAndNoJumpAndCostsNoReading) {
+  start();
+  go_on(300, [&] { publish(0, breeze()); });
+  const double normal_step_m_s = std::exchange(largest_step_m_s_, 0.0);
+  hub_->change(recalibrated(config_, 0, 2.5));
+  go_on(60, [&] {
+    publish(0, breeze());
+    EXPECT_EQ(state(), wind::judging::SensorState::kLive);
+  });
+  EXPECT_EQ(hub_->status()[0].readings, 360U) << "counts go on";
+  EXPECT_TRUE(hub_->status()[0].refused.empty()) << "every reading was believed";
+  EXPECT_EQ(recorded_, 360);
+  EXPECT_NEAR(hub_->status()[0].speed_m_s.value_or(0.0), 2.5 * hub_->status()[0].raw_speed_m_s.value_or(0.0), 1e-9);
+  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_GT(largest_wind_m_s_, 12.0);
+  EXPECT_LT(largest_step_m_s_, 6.0 * normal_step_m_s) << "as a gust of this size";
+  EXPECT_EQ(lines_of_log_with("warning"), 0) << log_.str();
+
+  // Back to a fifth: spikes would be as far below.
+  hub_->change(recalibrated(config_, 0, 0.5));
+  go_on(60, [&] {
+    publish(0, breeze());
+    EXPECT_EQ(state(), wind::judging::SensorState::kLive);
+  });
+  EXPECT_TRUE(hub_->status()[0].refused.empty());
+}
+
+TEST_F(SensorJudgement, ANewCalibrationDoesNotMakeAFrozenSensorMoveOrAMovingOneFrozen) {
+  start();
+  go_on(120, [&] { publish(0, breeze()); });
+  go_on(20, [&] { publish(0, 6.5); });
+  hub_->change(recalibrated(config_, 0, 1.2));
+  go_on(9, [&] { publish(0, 6.5); });
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive) << "29 s and 29 readings, 30 make it frozen";
+  go_on(10, [&] { publish(0, 6.5); });
+  EXPECT_EQ(state(), wind::judging::SensorState::kFrozen) << "the calibration has not made it move";
+  hub_->change(recalibrated(config_, 0, 1.4));
+  go_on(20, [&] {
+    publish(0, 6.5);
+    EXPECT_EQ(state(), wind::judging::SensorState::kFrozen);
+  });
+  go_on(30, [&] { publish(0, breeze()); });
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive);
+}
+
+TEST_F(SensorJudgement, JudgingCanBeChangedSwitchedOffAndOn) {
+  start();
+  go_on(120, [&] { publish(0, breeze()); });
+  go_on(60, [&] { publish(0, 6.5); });
+  EXPECT_EQ(state(), wind::judging::SensorState::kFrozen);
+  settings::Config lenient = config_;
+  lenient.sensors[0].judge->frozen_s = 1000.0;
+  hub_->change(lenient);
+  go_on(2, [&] { publish(0, 6.5); });
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive) << "62 s are not frozen any more";
+
+  settings::Config unjudged = config_;
+  unjudged.sensors[0].judge.reset();
+  hub_->change(unjudged);
+  go_on(60, [&] { publish(0, 70.0); });
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive);
+  hub_->change(config_);
+  go_on(60, [&] { publish(0, breeze()); });
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive) << "and begins without what it has not judged";
+}
+
+TEST_F(SensorJudgementOfThree, ANewCalibrationOfOneIsNoContradiction) {
+  start();
+  const auto all_say = [&] {
+    for (std::size_t sensor = 0; sensor < 3; ++sensor) publish(sensor, breeze());
+  };
+  go_on(1200, all_say);
+  // What it said until now would be far from the others, and what it says from now on is right.
+  hub_->change(recalibrated(config_, 2, 9.0));
+  go_on(1500, [&] {
+    publish(0, breeze());
+    publish(1, breeze());
+    publish(2, breeze() / 9.0);
+    EXPECT_EQ(state(2), wind::judging::SensorState::kLive);
+  });
+  EXPECT_EQ(lines_of_log_with("warning"), 0) << log_.str();
+  // A wrong one is found out by the others, as ever.
+  hub_->change(recalibrated(config_, 2, 90.0));
+  go_on(1500, [&] {
+    publish(0, breeze());
+    publish(1, breeze());
+    publish(2, breeze() / 9.0);
+  });
+  EXPECT_EQ(state(2), wind::judging::SensorState::kImplausible);
+}
+
 TEST_F(SensorJudgement, ARecordingIsJudgedAsTheSensorWasAndNeverTakenForLive) {
   config_.sensors.clear();
   add_sensor(kPlayedDriver);

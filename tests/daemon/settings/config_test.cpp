@@ -1,17 +1,30 @@
 #include "daemon/settings/config.hpp"
 
+#include <array>
+#include <fstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include "daemon/settings/config_edit.hpp"
+#include "daemon/settings/secret_exposure.hpp"
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/site_octaves.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::StartsWith;
+using ::testing::ThrowsMessage;
 
 /// What the reader says of a wrong text.
 std::string mistakes_of(std::string_view text) {
@@ -340,10 +353,138 @@ TEST(Config, MistakesOfAJudgeAreToldAtTheirPlaces) {
   EXPECT_THAT(mistakes_of(sensor + "[sensor.judge]\nfreeze = 10\n"), HasSubstr("sensor.judge.freeze"));
 }
 
+constexpr std::string_view kMqttEntry = "[[sensor]]\ndriver = \"mqtt\"\ntopic = \"a\"\nuser = \"garden\"\n";
+
+TEST(Config, APasswordIsNeverWrittenOut) {
+  const Config config = parse_config(std::string(kMqttEntry) + "password = \"hunter2\"\n", "wall.toml");
+  EXPECT_THAT(to_toml(config), Not(HasSubstr("hunter2")));
+  EXPECT_THAT(to_toml(config), HasSubstr("password = '(secret)'"));
+  EXPECT_THAT(to_toml(config.sensors[0].values), Not(HasSubstr("hunter2")));
+  EXPECT_THAT(to_toml(config), HasSubstr("user = 'garden'")) << "only what is a secret";
+}
+
+TEST(Config, APasswordThatWasWithheldIsTakenAsNone) {
+  const Config config = parse_config(std::string(kMqttEntry) + "password = \"hunter2\"\n", "wall.toml");
+  const Config printed = parse_config(to_toml(config), "printed.toml");
+  EXPECT_EQ(to_toml(printed), to_toml(config)) << "all else can still be read from it";
+  EXPECT_THAT(
+      [&] { open_sensor(printed.sensors[0]); },
+      ThrowsMessage<ConfigError>(AllOf(StartsWith("printed.toml:"), HasSubstr("sensor: password: is \"(secret)\""))));
+  const auto recorded = parse_values(to_toml(config.sensors[0].values), config.sensors[0].driver->parameters);
+  ASSERT_TRUE(recorded);
+  EXPECT_EQ(recorded->text("user"), "garden");
+  EXPECT_THROW(static_cast<void>(recorded->secret("password")), std::runtime_error);
+}
+
+TEST(Config, APasswordThatCannotBeFoundIsToldAtTheSensor) {
+  const Config config =
+      parse_config("\n" + std::string(kMqttEntry) + "password_file = \"/nowhere/secret\"\n", "wall.toml");
+  EXPECT_THAT([&] { open_sensor(config.sensors[0]); },
+              ThrowsMessage<ConfigError>("wall.toml:2:1: sensor: password_file: \"/nowhere/secret\" does not exist"));
+}
+
+TEST(Config, ASecretIsNotWrittenByAnEdit) {
+  const std::array changes{ConfigChange{.table = "", .key = "password", .value = Secret("hunter2")}};
+  const auto edited = edit_sensor(kMqttEntry, "mqtt", changes);
+  ASSERT_TRUE(edited.has_error());
+  EXPECT_THAT(edited.error().message, AllOf(StartsWith("password: "), Not(HasSubstr("hunter2"))));
+}
+
+struct SensorPair {
+  std::string name;   ///< of the case
+  std::string first;  ///< entries of two sensors, without their names
+  std::string second;
+  std::string device;  ///< what they cannot share; empty: they can be opened together
+};
+
+class SensorPairs : public testing::TestWithParam<SensorPair> {};
+
+TEST_P(SensorPairs, ThatNeedTheSameDeviceAreRefused) {
+  const auto& [name, first, second, device] = GetParam();
+  const Config config = parse_config(
+      "[[sensor]]\nname = \"roof\"\n" + first + "\n\n[[sensor]]\nname = \"mast\"\n" + second + "\n", "wall.toml");
+  if (device.empty()) {
+    EXPECT_NO_THROW(open_sensors(config.sensors));
+    return;
+  }
+  EXPECT_THAT([&] { open_sensors(config.sensors); },
+              ThrowsMessage<ConfigError>(
+                  AllOf(StartsWith("wall.toml:"), HasSubstr("\"mast\" and \"roof\" need the same " + device))));
+}
+
+// /dev/yuragi-... is on no machine, so that nothing of what is plugged in here is named.
+INSTANTIATE_TEST_SUITE_P(
+    Devices, SensorPairs,
+    testing::Values(
+        SensorPair{"OneSerialPort", "driver = \"nmea\"\ndevice = \"/dev/yuragi-a\"",
+                   "driver = \"line\"\ndevice = \"/dev/yuragi-a\"", "serial port /dev/yuragi-a"},
+        SensorPair{"OneSerialPortByTwoNames", "driver = \"nmea\"\ndevice = \"/dev/null\"",
+                   "driver = \"line\"\ndevice = \"/dev/../dev/null\"", "serial port /dev/null"},
+        SensorPair{"TwoSerialPorts", "driver = \"nmea\"\ndevice = \"/dev/yuragi-a\"",
+                   "driver = \"nmea\"\ndevice = \"/dev/yuragi-b\"", ""},
+        SensorPair{"OneUdpPort", "driver = \"nmea\"\ntransport = \"udp\"\nport = 9000", "driver = \"osc\"\nport = 9000",
+                   "UDP port 9000"},
+        SensorPair{"OneMulticastGroup", "driver = \"nmea\"\ntransport = \"udp\"\nhost = \"239.1.2.3\"",
+                   "driver = \"nmea\"\ntransport = \"udp\"\nhost = \"239.1.2.3\"", ""},
+        SensorPair{"OneServer", "driver = \"nmea\"\ntransport = \"tcp\"\nhost = \"127.0.0.1\"",
+                   "driver = \"nmea\"\ntransport = \"tcp\"\nhost = \"127.0.0.1\"", ""},
+        SensorPair{"OneModbusLine", "driver = \"modbus\"\ntransport = \"rtu\"\ndevice = \"/dev/yuragi-a\"",
+                   "driver = \"modbus\"\ntransport = \"rtu\"\ndevice = \"/dev/yuragi-a\"\nspeed_slave = 7", ""},
+        SensorPair{"AModbusLineAndText", "driver = \"modbus\"\ntransport = \"rtu\"\ndevice = \"/dev/yuragi-a\"",
+                   "driver = \"nmea\"\ndevice = \"/dev/yuragi-a\"", "serial port /dev/yuragi-a"},
+        SensorPair{"AnyWeatherStation", "driver = \"hid\"", "driver = \"hid\"", "USB weather station"},
+        SensorPair{"TwoWeatherStations", "driver = \"hid\"\npath = \"1-1\"", "driver = \"hid\"\npath = \"1-2\"", ""},
+        SensorPair{"AnyUsbDevice", "driver = \"usb\"", "driver = \"usb\"", "USB device"}),
+    [](const auto& pair) { return pair.param.name; });
+
+class SecretExposure : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text, mode_t mode) {
+    const std::string file = folder_ / name;
+    std::ofstream(file) << text;
+    EXPECT_EQ(chmod(file.c_str(), mode), 0);
+    return file;
+  }
+  std::vector<std::string> warnings_of(const std::string& lines, mode_t mode) {
+    const std::string file = write("wall.toml", std::string(kMqttEntry) + lines, mode);
+    return exposed_secrets(load_config(file), file);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(SecretExposure, IsToldOfAConfigurationThatOthersCanRead) {
+  const std::string file = folder_ / "wall.toml";
+  for (const mode_t open : {0644U, 0604U, 0666U}) {
+    EXPECT_THAT(warnings_of("password = \"hunter2\"\n", open),
+                ElementsAre(file + ":1:1: sensor.password: everybody on this machine can read " + file +
+                            "; chmod 640 " + file));
+  }
+  for (const mode_t closed : {0640U, 0600U, 0660U})
+    EXPECT_THAT(warnings_of("password = \"hunter2\"\n", closed), IsEmpty());
+  EXPECT_THAT(warnings_of("", 0644), IsEmpty()) << "there is no password in it";
+}
+
+TEST_F(SecretExposure, IsToldOfAFileOfASecretThatOthersCanRead) {
+  const std::string secret = write("secret", "hunter2\n", 0644);
+  const std::string line = "password_file = \"" + secret + "\"\n";
+  EXPECT_THAT(warnings_of(line, 0644),
+              ElementsAre(AllOf(HasSubstr("sensor.password_file: "), EndsWith("chmod 640 " + secret))));
+  write("secret", "hunter2\n", 0640);
+  EXPECT_THAT(warnings_of(line, 0644), IsEmpty());
+}
+
+TEST(Config, AMistakeInAPasswordDoesNotShowIt) {
+  EXPECT_THAT(mistakes_of(std::string(kMqttEntry) + "password = 271828\n"),
+              AllOf(StartsWith("wall.toml:5:12: sensor.password: is a whole number; allowed: "),
+                    HasSubstr("text that is never printed"), Not(HasSubstr("271828"))));
+}
+
 TEST(Config, EveryTableIsATypeInTheUnitsOfItsMembers) {
   const Config config = parse_config(R"(
 [stream]
 max_clients = 5
+max_clients_per_address = 2
 control = "anywhere"
 [animation]
 threads = 3
@@ -371,6 +512,8 @@ fade = 30
 )",
                                      "wall.toml");
   EXPECT_EQ(config.stream.max_clients, 5U);
+  EXPECT_EQ(config.stream.max_clients_per_address, 2U);
+  EXPECT_EQ(parse_config("", "").stream.max_clients_per_address, 8U);
   EXPECT_EQ(config.stream.control, ControlPermission::kAnywhere);
   EXPECT_EQ(parse_config("", "").stream.control, ControlPermission::kLoopback);
   EXPECT_EQ(parse_config("[stream]\ncontrol = \"nobody\"\n", "").stream.control, ControlPermission::kNobody);
@@ -385,7 +528,7 @@ fade = 30
   ASSERT_TRUE(config.wind.fallback);
   EXPECT_EQ(config.wind.fallback->recording, "good-day.windlog");
   EXPECT_EQ(config.wind.fallback->after_s, 90.0);
-  EXPECT_EQ(config.wind.fallback->origin, "wall.toml:14:22");
+  EXPECT_EQ(config.wind.fallback->origin, "wall.toml:15:22");
   EXPECT_FALSE(default_config().wind.fallback);
   EXPECT_FALSE(default_config().wind.default_length_m);
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -131,6 +132,61 @@ TEST(WindShaper, NoJumpOfTheClockIsOneOfTheWind) {
   EXPECT_LE(wall.largest_step_m_s, 6.0 / std::numbers::e * (4.75 / 30.0) * kShaperTick_s * 1.001);
 }
 
+settings::ShapingConfig shaping_of(const std::string& shaping) {
+  return settings::parse_config("[shaping]\n" + shaping, "wall.toml").shaping;
+}
+
+TEST(WindShaper, OtherSettingsTakeEffectWithinSecondsAndWithoutAJump) {
+  ShaperBench wall("floor = 4\ngusts = 2\nover = 10\n");
+  EXPECT_NEAR(wall.after(2.0, 120.0), 4.0, 1e-3);
+  wall.largest_step_m_s = 0.0;
+  wall.shaper.change(shaping_of("floor = 0\ngusts = 0.5\nover = 10\n"));
+  double gusts = 2.0;
+  for (int tick = 0; tick < 120; ++tick) {
+    EXPECT_GT(wall.after(2.0), 2.0) << "not at once";
+    EXPECT_NEAR(wall.shaper.status().gusts, gusts, 0.02);
+    gusts = wall.shaper.status().gusts;
+  }
+  wall.shaper.change(shaping_of("floor = 3\ngusts = 1\nover = 10\n"));  // while the first change is under way
+  EXPECT_NEAR(wall.after(2.0), wall.after(2.0), 0.05);
+  EXPECT_NEAR(wall.after(2.0, 60.0), 3.0, 1e-3);
+  EXPECT_EQ(wall.shaper.status().gusts, 1.0) << "exactly, so that the wind is left as it is";
+  EXPECT_LT(wall.largest_step_m_s, 0.05) << "in a sixtieth of a second";
+}
+
+TEST(WindShaper, ABreezeThatIsTakenAwayDiesDownGently) {
+  ShaperBench wall("floor = 4\nover = 10\n");
+  wall.after(0.2, 120.0);
+  const double normal_step_m_s = std::exchange(wall.largest_step_m_s, 0.0);
+  wall.shaper.change(shaping_of("floor = 0\nover = 10\n"));
+  EXPECT_NEAR(wall.after(0.2, 60.0), 0.2, 1e-3);
+  EXPECT_LT(wall.largest_step_m_s, 1.5 * normal_step_m_s + 0.03);
+}
+
+TEST(WindShaper, ACeilingThatComesOrGoesLowersAStormGently) {
+  ShaperBench wall("ceiling = 0\n");
+  EXPECT_EQ(wall.after(40.0, 10.0), 40.0);
+  wall.largest_step_m_s = 0.0;
+  wall.shaper.change(shaping_of("ceiling = 10\nceiling_most = 20\n"));
+  EXPECT_NEAR(wall.after(40.0, 30.0), 17.5, 1e-9) << "10 + 10 x/(1 + x), x = 3";
+  wall.shaper.change(shaping_of("ceiling = 0\n"));
+  EXPECT_EQ(wall.after(40.0, 30.0), 40.0);
+  EXPECT_LT(wall.largest_step_m_s, 0.5);
+}
+
+TEST(WindShaper, NewHoursCloseAndOpenWithTheirOwnFade) {
+  ShaperBench wall("");
+  EXPECT_EQ(wall.after(6.0, 5.0), 6.0);
+  wall.largest_step_m_s = 0.0;
+  wall.shaper.change(shaping_of("hours = \"12:00-18:00\"\nzone = \"Etc/UTC\"\nfade = 20\n"));
+  EXPECT_LT(wall.after(6.0, 60.0), 0.1);
+  EXPECT_EQ(wall.text(), "closed until 12:00");
+  wall.shaper.change(shaping_of(""));
+  EXPECT_GT(wall.after(6.0, 900.0), 5.9);
+  EXPECT_EQ(wall.text(), "");
+  EXPECT_LE(wall.largest_step_m_s, 6.0 / std::numbers::e * (4.75 / 20.0) * kShaperTick_s * 1.001);
+}
+
 TEST(WindShaper, TheFloorIsToldOnceHoweverTheWindFlickers) {
   const CapturedLog log;
   ShaperBench wall("floor = 2\nover = 10\n");
@@ -168,6 +224,22 @@ class SiteFileTest : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("site_file_test." + std::to_string(getpid()));
   std::filesystem::path file_ = folder_ / "site.json";
 };
+
+TEST_F(SiteFileTest, TheSiteIsRememberedOverAChangeOfTheSettings) {
+  ShaperBench wall("site_median = 4\nsite_memory = 0.2\nover = 10\n");
+  wall.after(2.0, 6.0 * 3600.0, 1.0);
+  const double known_s = wall.shaper.status().site_known_s;
+  EXPECT_NEAR(wall.after(2.0), 4.0, 0.1);
+  wall.largest_step_m_s = 0.0;
+  wall.shaper.change(shaping_of("site_median = 6\nsite_memory = 0.1\nover = 10\n"));
+  EXPECT_NEAR(wall.after(2.0, 60.0), 6.0, 0.1);
+  EXPECT_LT(wall.largest_step_m_s, 0.02);
+  EXPECT_NEAR(wall.shaper.status().site_median_m_s, 2.0, 0.1);
+  EXPECT_LE(wall.shaper.status().site_known_s, 8640.0 + 1.0);
+  wall.shaper.change(shaping_of("site_median = 6\nsite_memory = 7\nover = 10\n"));
+  wall.after(2.0, 10.0);
+  EXPECT_GT(wall.shaper.status().site_known_s, 0.5 * known_s) << "a longer memory keeps what there is";
+}
 
 TEST_F(SiteFileTest, TheSiteIsRememberedOverARestart) {
   {

@@ -50,7 +50,9 @@ TEST_F(StreamClientTest, ItReceivesWhatItSubscribedTo) {
   EXPECT_EQ(std::get<wire::Scenes>(client->receive(5s).value()).scenes.size(), 2u);
   on_server([this] { stream_.publish(std::make_shared<const wire::Bytes>(samples::frame_bytes(20'000))); });
   EXPECT_EQ(std::get<wire::Frame>(client->receive(5s).value()).info.sequence, 7u);
-  on_server([this] { stream_.publish_sensors(std::make_shared<const wire::Bytes>(wire::encode(samples::sensors()))); });
+  on_server([this] {
+    stream_.publish_sensors(std::make_shared<const wire::Bytes>(wire::encode(samples::sensors())), nullptr);
+  });
   EXPECT_EQ(std::get<wire::Sensors>(client->receive(5s).value()).sensors.size(), 2u);
 }
 

@@ -3,11 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <sstream>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/write.hpp>
+#include <dirent.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/tcp.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
 
 #include "engine/base/address.hpp"
 #include "engine/wire/message_reader.hpp"
@@ -58,9 +65,13 @@ constexpr std::size_t kManyStrands = 20'000;
 /// Connects, and keeps all that comes unless it is paused.
 class TestClient {
  public:
-  TestClient(asio::io_context& io, const std::string& endpoint, int receive_buffer_bytes = 0) : socket_(io) {
+  /// `from`: the address that it connects from.
+  TestClient(asio::io_context& io, const std::string& endpoint, int receive_buffer_bytes = 0,
+             const char* from = "127.0.0.1")
+      : socket_(io) {
     const Address address = parse_address(endpoint).value();
     socket_.open(tcp::v4());
+    socket_.bind(tcp::endpoint(asio::ip::make_address(from), 0));
     if (receive_buffer_bytes > 0) socket_.set_option(asio::socket_base::receive_buffer_size(receive_buffer_bytes));
     socket_.connect(tcp::endpoint(asio::ip::make_address(address.host), address.port));
     resume();
@@ -71,6 +82,18 @@ class TestClient {
   }
 
   void send(const wire::Bytes& bytes) { asio::write(socket_, asio::buffer(bytes)); }
+
+  /// The descriptor of the server's end of the connection, which is in this process, too; -1 where there is none.
+  int server_end() const {
+    const std::unique_ptr<DIR, int (*)(DIR*)> folder(opendir("/proc/self/fd"), closedir);
+    while (const dirent* entry = readdir(folder.get())) {
+      const int descriptor = std::atoi(entry->d_name);
+      tcp::endpoint peer;
+      auto size = static_cast<socklen_t>(peer.capacity());
+      if (getpeername(descriptor, peer.data(), &size) == 0 && peer == socket_.local_endpoint()) return descriptor;
+    }
+    return -1;
+  }
 
   void pause() { paused_ = true; }
   void resume() {
@@ -113,6 +136,35 @@ class TestClient {
   bool paused_ = false;
 };
 
+/// As from another machine: TcpStreamTest takes only 127.0.0.1 for its own.
+class RemoteClient : public TestClient {
+ public:
+  RemoteClient(asio::io_context& io, const std::string& endpoint, const char* from = "127.0.0.2")
+      : TestClient(io, endpoint, 0, from) {}
+};
+
+/// Keeps what is logged while it lives.
+class LogCapture {
+ public:
+  LogCapture() : before_(spdlog::default_logger()) {
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("captured", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_)));
+  }
+  ~LogCapture() { spdlog::set_default_logger(before_); }
+  LogCapture(const LogCapture&) = delete;
+  LogCapture& operator=(const LogCapture&) = delete;
+
+  std::string text() const { return text_.str(); }
+  std::size_t lines() const {
+    const std::string text = text_.str();
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+
+ private:
+  std::ostringstream text_;
+  std::shared_ptr<spdlog::logger> before_;
+};
+
 class TcpStreamTest : public testing::Test {
  protected:
   TcpStreamSettings settings() {
@@ -121,10 +173,18 @@ class TcpStreamTest : public testing::Test {
     settings.scenes = samples::scenes();
     settings.check_every = 1ms;
     settings.now = [this] { return now_; };
+    settings.is_of_this_machine = [](const std::string& address) { return address == "127.0.0.1"; };
+    settings.raw_refusal = [](bool is_local) {
+      return is_local ? std::nullopt : std::optional<std::string>("raw messages are not for other machines");
+    };
     settings.on_control = [this](const wire::Control& control, bool is_local) {
       controls_.push_back(control);
       all_were_local_ = all_were_local_ && is_local;
       return wire::ControlReply{.done = true, .message = "it is done", .scenes = {}};
+    };
+    settings.on_reload = [this](const wire::ReloadCommand& command, bool is_local, auto reply) {
+      all_were_local_ = all_were_local_ && is_local;
+      reloads_.emplace_back(command.file, std::move(reply));
     };
     return settings;
   }
@@ -140,7 +200,10 @@ class TcpStreamTest : public testing::Test {
     return done();
   }
 
+  void publish_sensors() { stream_.publish_sensors(share(wire::encode(samples::sensors())), nullptr); }
+
   std::vector<wire::Control> controls_;
+  std::vector<std::pair<std::string, std::function<void(const wire::ControlReply&)>>> reloads_;
   bool all_were_local_ = true;
   MonoTime now_{std::chrono::hours(1)};
   asio::io_context io_{1};
@@ -178,14 +241,112 @@ TEST_F(TcpStreamTest, ALateJoinerHasScenesAndThePictureWithoutWaitingForTheNextF
   EXPECT_EQ(client.kinds, (std::vector<std::size_t>{0, 2, 3})) << "hello, scenes, frame";
 }
 
+SharedBytes other_scenes() {
+  return share(wire::encode(wire::Scenes{{{"pond", "grass", samples::meadow(5)}}}));
+}
+
+TEST_F(TcpStreamTest, WhoeverTakesNewScenesGetsThemBeforeTheFirstFrameThatNeedsThem) {
+  TestClient client(io_, stream_.local_endpoint());
+  client.send(wire::encode(wire::Subscribe{.client = "wall", .takes_new_scenes = true}));
+  stream_.publish(frame(1));
+  ASSERT_TRUE(turn_until([&] { return client.frames.size() == 1; }));
+  stream_.publish_scenes(other_scenes());
+  stream_.publish(frame(2));
+  ASSERT_TRUE(turn_until([&] { return client.frames.size() == 2; }));
+  EXPECT_EQ(client.kinds, (std::vector<std::size_t>{0, 2, 3, 2, 3})) << "hello, scenes, frame, scenes, frame";
+  EXPECT_EQ(client.scenes[1].scenes.at(0).name, "pond");
+
+  TestClient late(io_, stream_.local_endpoint());
+  late.send(wire::encode(wire::Subscribe{.client = "late"}));
+  ASSERT_TRUE(turn_until([&] { return late.frames.size() == 1; }));
+  EXPECT_EQ(late.scenes.at(0).scenes.at(0).name, "pond");
+  EXPECT_EQ(late.kinds, (std::vector<std::size_t>{0, 2, 3}));
+}
+
+TEST_F(TcpStreamTest, BetweenNewScenesAndTheirFirstFrameAJoinerIsNotShownAnOldFrame) {
+  stream_.publish(frame(1));
+  stream_.publish_scenes(other_scenes());
+  TestClient client(io_, stream_.local_endpoint());
+  client.send(wire::encode(wire::Subscribe{.client = "late"}));
+  ASSERT_TRUE(turn_until([&] { return client.scenes.size() == 1; }));
+  stream_.publish(frame(2));
+  ASSERT_TRUE(turn_until([&] { return !client.frames.empty(); }));
+  EXPECT_EQ(client.frames, (std::vector<std::uint64_t>{2}));
+}
+
+TEST_F(TcpStreamTest, WhoeverDoesNotTakeNewScenesIsToldSoAndLetGoUnlessItWatchesNoPoses) {
+  TestClient old(io_, stream_.local_endpoint());
+  TestClient table(io_, stream_.local_endpoint());
+  old.send(wire::encode(wire::Subscribe{.client = "old"}));
+  table.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = "table"}));
+  stream_.publish(frame(1));
+  publish_sensors();
+  ASSERT_TRUE(turn_until([&] { return old.frames.size() == 1 && table.sensors.size() == 1; }));
+  stream_.publish_scenes(other_scenes());
+  stream_.publish(frame(2));
+  publish_sensors();
+  ASSERT_TRUE(turn_until([&] { return old.closed && table.sensors.size() == 2; }));
+  ASSERT_EQ(old.hellos.size(), 2U);
+  EXPECT_EQ(old.hellos[1].refused, "the scenes have changed; connect again");
+  EXPECT_EQ(old.frames.size(), 1U);
+  EXPECT_FALSE(table.closed);
+
+  TestClient again(io_, stream_.local_endpoint());
+  again.send(wire::encode(wire::Subscribe{.client = "old"}));
+  ASSERT_TRUE(turn_until([&] { return again.frames.size() == 1; }));
+  EXPECT_EQ(again.scenes.at(0).scenes.at(0).name, "pond");
+}
+
+TEST_F(TcpStreamTest, ASlowClientInTheMiddleOfAFrameFinishesItAndThenGetsTheNewScenes) {
+  FrameMaker large(kManyStrands);
+  TestClient slow(io_, stream_.local_endpoint(), 16384);
+  TestClient old(io_, stream_.local_endpoint(), 16384);
+  TestClient fast(io_, stream_.local_endpoint());
+  for (TestClient* client : {&slow, &fast})
+    client->send(wire::encode(wire::Subscribe{.client = "", .takes_new_scenes = true}));
+  old.send(wire::encode(wire::Subscribe{.client = "old"}));
+  ASSERT_TRUE(turn_until([&] { return !slow.scenes.empty() && !fast.scenes.empty() && !old.scenes.empty(); }));
+  slow.pause();
+  old.pause();
+  constexpr std::uint64_t kFramesEach = 40;
+  for (std::uint64_t i = 1; i <= kFramesEach; ++i) {
+    stream_.publish(large.make(i));
+    ASSERT_TRUE(turn_until([&] { return fast.frames.size() == i; })) << i;
+  }
+  stream_.publish_scenes(other_scenes());
+  for (std::uint64_t i = kFramesEach + 1; i <= 2 * kFramesEach; ++i) {
+    stream_.publish(large.make(i));
+    ASSERT_TRUE(turn_until([&] { return fast.frames.size() == i; })) << i;
+  }
+  slow.resume();
+  old.resume();
+  ASSERT_TRUE(turn_until([&] { return !slow.frames.empty() && slow.frames.back() == 2 * kFramesEach && old.closed; }));
+
+  // Of each client: which of its frames came before the second Scenes, and which behind it?
+  for (const TestClient* client : {&slow, &fast}) {
+    ASSERT_EQ(client->scenes.size(), 2U);
+    std::size_t frame_count = 0;
+    int scenes_count = 0;
+    for (const std::size_t kind : client->kinds) {
+      if (kind == 2) ++scenes_count;
+      if (kind != 3) continue;
+      EXPECT_EQ(client->frames[frame_count] > kFramesEach, scenes_count == 2);
+      ++frame_count;
+    }
+  }
+  EXPECT_LT(slow.frames.size(), 20U);
+  EXPECT_LE(old.frames.back(), kFramesEach);
+  EXPECT_EQ(old.hellos.back().refused, "the scenes have changed; connect again");
+}
+
 TEST_F(TcpStreamTest, OneWhoWatchesSensorsOnlyGetsNoPoses) {
   stream_.publish(frame(1));
-  stream_.publish_sensors(share(wire::encode(samples::sensors())));
+  publish_sensors();
   TestClient client(io_, stream_.local_endpoint());
   client.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = "table"}));
   ASSERT_TRUE(turn_until([&] { return client.sensors.size() == 1; }));
   stream_.publish(frame(2));
-  stream_.publish_sensors(share(wire::encode(samples::sensors())));
+  publish_sensors();
   ASSERT_TRUE(turn_until([&] { return client.sensors.size() == 2; }));
   EXPECT_EQ(client.kinds, (std::vector<std::size_t>{0, 4, 4}));
 }
@@ -205,7 +366,7 @@ TEST_F(TcpStreamTest, RawMessagesGoToThoseWhoAskedForThatSensorAndToNobodyElse) 
   roof.send(
       wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = "", .raw = true, .raw_sensor = "roof"}));
   none.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = ""}));
-  stream_.publish_sensors(share(wire::encode(samples::sensors())));
+  publish_sensors();
   ASSERT_TRUE(turn_until([&] { return !roof.sensors.empty() && !none.sensors.empty(); }));
 
   stream_.publish_trace(trace_of("mast"));
@@ -215,7 +376,7 @@ TEST_F(TcpStreamTest, RawMessagesGoToThoseWhoAskedForThatSensorAndToNobodyElse) 
   EXPECT_EQ(roof.traces[0].sensor, "roof");
   EXPECT_EQ(roof.traces[0].bytes, samples::raw_trace().bytes);
   EXPECT_EQ(roof.traces[0].lost, 3u);
-  stream_.publish_sensors(share(wire::encode(samples::sensors())));
+  publish_sensors();
   ASSERT_TRUE(turn_until([&] { return none.sensors.size() == 2; }));
   EXPECT_TRUE(none.traces.empty());
 }
@@ -303,7 +464,7 @@ TEST_F(TcpStreamTest, AClientThatStopsReadingIsDroppedAfterItsTime) {
 
   now_ += 5s;
   ASSERT_TRUE(turn_until([&] { return stream_.client_count() == 1; }));
-  EXPECT_EQ(stream_.stuck_clients(), 1u);
+  EXPECT_EQ(stream_.counts().stuck, 1U);
   stream_.publish(frame(31));
   EXPECT_TRUE(turn_until([&] { return fine.frames.back() == 31; }));
 }
@@ -317,7 +478,7 @@ TEST_F(TcpStreamTest, AClientThatNeverSubscribesIsDroppedAfterItsTime) {
   ASSERT_TRUE(turn_until([&] { return silent.closed; }));
   EXPECT_FALSE(watching.closed);
   EXPECT_EQ(stream_.client_count(), 1u);
-  EXPECT_EQ(stream_.stuck_clients(), 0u);
+  EXPECT_EQ(stream_.counts().stuck, 0U);
 }
 
 TEST_F(TcpStreamTest, WhoeverSendsWhatAClientMayNotSendIsDropped) {
@@ -453,6 +614,201 @@ TEST_F(TcpStreamTest, AnInvalidControlEndsTheConnection) {
   client.send(wire::encode(wire::Control{.scene = "meadow", .over_s = -1.0}));
   EXPECT_TRUE(turn_until([&] { return client.closed; }));
   EXPECT_TRUE(controls_.empty());
+}
+
+TEST_F(TcpStreamTest, AReloadIsAnsweredWhenItIsDoneAndHoldsUpNothingMeanwhile) {
+  TestClient client(io_, stream_.local_endpoint());
+  client.send(wire::encode(wire::Subscribe{.poses = false, .client = "test"}));
+  client.send(wire::encode(wire::Control{.scene = "", .reload = wire::ReloadCommand{"/etc/wall.toml"}}));
+  client.send(wire::encode(wire::Control{.scene = "meadow"}));
+  ASSERT_TRUE(turn_until([&] { return client.replies.size() == 1; }));
+  EXPECT_EQ(client.replies[0].message, "it is done") << "the other request was answered first";
+  ASSERT_EQ(reloads_.size(), 1U);
+  EXPECT_EQ(reloads_[0].first, "/etc/wall.toml");
+  EXPECT_TRUE(all_were_local_);
+  reloads_[0].second({.done = true, .message = "read again", .scenes = {}});
+  ASSERT_TRUE(turn_until([&] { return client.replies.size() == 2; }));
+  EXPECT_EQ(client.replies[1].message, "read again");
+}
+
+TEST_F(TcpStreamTest, AClientThatHasGoneNeedsNoReply) {
+  {
+    TestClient client(io_, stream_.local_endpoint());
+    client.send(wire::encode(wire::Subscribe{.poses = false, .client = "test"}));
+    client.send(wire::encode(wire::Control{.scene = "", .reload = wire::ReloadCommand{}}));
+    ASSERT_TRUE(turn_until([&] { return reloads_.size() == 1; }));
+  }
+  ASSERT_TRUE(turn_until([&] { return stream_.client_count() == 0; }));
+  reloads_[0].second({.done = true, .message = "read again", .scenes = {}});
+}
+
+TEST_F(TcpStreamTest, FewerPlacesAreForThoseWhoComeFromThenOn) {
+  TestClient first(io_, stream_.local_endpoint());
+  ASSERT_TRUE(turn_until([&] { return stream_.client_count() == 1; }));
+  stream_.set_admission({.max_clients = 1, .max_clients_per_address = 1});
+  TestClient second(io_, stream_.local_endpoint());
+  ASSERT_TRUE(turn_until([&] { return second.closed; }));
+  EXPECT_FALSE(first.closed);
+  EXPECT_EQ(stream_.counts().refused, 1U);
+}
+
+// ---- clients that take places and log ----
+
+TEST_F(TcpStreamTest, TheKernelAsksWhetherAClientIsStillThere) {
+  TestClient client(io_, stream_.local_endpoint());
+  ASSERT_TRUE(turn_until([&] { return !client.hellos.empty(); }));
+  const int server_end = client.server_end();
+  ASSERT_GE(server_end, 0);
+  const auto option = [server_end](int level, int name) {
+    int value = -1;
+    socklen_t size = sizeof value;
+    EXPECT_EQ(getsockopt(server_end, level, name, &value, &size), 0);
+    return value;
+  };
+  EXPECT_EQ(option(SOL_SOCKET, SO_KEEPALIVE), 1);
+  EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPIDLE), 30);
+  EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPINTVL), 10);
+  EXPECT_EQ(option(IPPROTO_TCP, TCP_KEEPCNT), 3);
+  EXPECT_EQ(option(IPPROTO_TCP, TCP_USER_TIMEOUT), 60'000) << "also while something is on its way to it";
+}
+
+TEST_F(TcpStreamTest, AClientThatAsksForNothingIsToldSoAndLetGo) {
+  TestClient idle(io_, stream_.local_endpoint());
+  TestClient watching(io_, stream_.local_endpoint());
+  TestClient asking(io_, stream_.local_endpoint());
+  idle.send(wire::encode(wire::Subscribe{.poses = false, .client = "idle"}));
+  watching.send(wire::encode(wire::Subscribe{.client = "watching"}));
+  asking.send(wire::encode(wire::Subscribe{.poses = false, .client = "asking"}));
+  asking.send(wire::encode(wire::Control{}));
+  ASSERT_TRUE(turn_until([&] { return !watching.scenes.empty() && asking.replies.size() == 1; }));
+  now_ += 9min;
+  asking.send(wire::encode(wire::Control{}));
+  ASSERT_TRUE(turn_until([&] { return asking.replies.size() == 2; }));
+  EXPECT_EQ(stream_.client_count(), 3U);
+
+  now_ += 1min;
+  ASSERT_TRUE(turn_until([&] { return idle.closed; }));
+  ASSERT_EQ(idle.hellos.size(), 2U);
+  EXPECT_THAT(idle.hellos[1].refused.value_or(""), testing::HasSubstr("10 min"));
+  EXPECT_FALSE(asking.closed);
+  EXPECT_FALSE(watching.closed);
+  EXPECT_EQ(stream_.client_count(), 2U);
+}
+
+TEST_F(TcpStreamTest, AnotherMachineHasItsShareOfThePlacesAndThisOneItsOwn) {
+  std::deque<TestClient> clients;
+  const auto connect = [&](const char* from) {
+    clients.emplace_back(io_, stream_.local_endpoint(), 0, from);
+    clients.back().send(wire::encode(wire::Subscribe{.poses = false, .client = ""}));
+    EXPECT_TRUE(turn_until([&] { return !clients.back().hellos.empty(); }));
+    return clients.back().hellos[0].refused.value_or("welcome");
+  };
+  for (const char* from : {"127.0.0.2", "127.0.0.3", "127.0.0.4"}) {
+    for (int i = 0; i < 8; ++i) EXPECT_EQ(connect(from), "welcome");
+    EXPECT_THAT(connect(from), testing::HasSubstr("the maximum number of clients from " + std::string(from)));
+  }
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(connect("127.0.0.5"), "welcome");
+  EXPECT_EQ(stream_.client_count(), 28U);
+  EXPECT_THAT(connect("127.0.0.6"), testing::HasSubstr("the daemon's own machine"));
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(connect("127.0.0.1"), "welcome");
+  EXPECT_THAT(connect("127.0.0.1"), testing::HasSubstr("32"));
+  EXPECT_EQ(stream_.counts().refused, 5U);
+  EXPECT_EQ(stream_.counts().idle, 0U);
+
+  // And in time they lose the places that they do not use.
+  now_ += 10min;
+  EXPECT_TRUE(turn_until([&] { return stream_.client_count() == 0; }));
+  EXPECT_EQ(stream_.counts().idle, 32U);
+  EXPECT_EQ(stream_.counts().stuck, 0U);
+}
+
+TEST_F(TcpStreamTest, RawMessagesAreRefusedToWhoeverMayNotHaveThem) {
+  RemoteClient remote(io_, stream_.local_endpoint());
+  remote.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = "", .raw = true}));
+  ASSERT_TRUE(turn_until([&] { return remote.closed; }));
+  ASSERT_EQ(remote.hellos.size(), 2U);
+  EXPECT_EQ(remote.hellos[1].refused, "raw messages are not for other machines");
+  EXPECT_FALSE(stream_.wants_trace("roof"));
+
+  RemoteClient without(io_, stream_.local_endpoint());
+  without.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = ""}));
+  TestClient local(io_, stream_.local_endpoint());
+  local.send(wire::encode(wire::Subscribe{.poses = false, .client = "", .raw = true}));
+  ASSERT_TRUE(turn_until([&] { return stream_.wants_trace("roof"); }));
+  EXPECT_FALSE(without.closed);
+}
+
+TEST_F(TcpStreamTest, OtherMachinesGetAStateOfTheSensorsOfTheirOwn) {
+  const auto sensors_with = [](const char* detail) {
+    wire::Sensors sensors = samples::sensors();
+    sensors.sensors[0].detail = detail;
+    return share(wire::encode(sensors));
+  };
+  TestClient local(io_, stream_.local_endpoint());
+  local.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = ""}));
+  stream_.publish_sensors(sensors_with("here"), nullptr);
+  ASSERT_TRUE(turn_until([&] { return local.sensors.size() == 1; }));
+  EXPECT_FALSE(stream_.has_remote_clients());
+
+  // Who comes from there waits for the first that is made for it.
+  {
+    RemoteClient remote(io_, stream_.local_endpoint());
+    remote.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = ""}));
+    remote.send(wire::encode(wire::Control{}));
+    ASSERT_TRUE(turn_until([&] { return remote.replies.size() == 1; }));
+    EXPECT_TRUE(stream_.has_remote_clients());
+    EXPECT_TRUE(remote.sensors.empty());
+    EXPECT_FALSE(all_were_local_);
+    stream_.publish_sensors(sensors_with("here"), sensors_with("elsewhere"));
+    ASSERT_TRUE(turn_until([&] { return local.sensors.size() == 2 && remote.sensors.size() == 1; }));
+    EXPECT_EQ(remote.sensors[0].sensors[0].detail, "elsewhere");
+    RemoteClient late(io_, stream_.local_endpoint());
+    late.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = ""}));
+    ASSERT_TRUE(turn_until([&] { return late.sensors.size() == 1; }));
+    EXPECT_EQ(late.sensors[0].sensors[0].detail, "elsewhere");
+  }
+  for (const wire::Sensors& sensors : local.sensors) EXPECT_EQ(sensors.sensors[0].detail, "here");
+  EXPECT_TRUE(turn_until([&] { return !stream_.has_remote_clients(); }));
+}
+
+TEST_F(TcpStreamTest, OnlyLoopbackIsThisMachine) {
+  for (const char* address : {"127.0.0.1", "127.8.9.10", "::1", "::ffff:127.0.0.1"}) {
+    EXPECT_TRUE(TcpStreamSettings::is_loopback(address)) << address;
+  }
+  for (const char* address : {"10.0.0.1", "::ffff:10.0.0.1", "fe80::1", "::", "0.0.0.0", "nonsense", ""}) {
+    EXPECT_FALSE(TcpStreamSettings::is_loopback(address)) << address;
+  }
+}
+
+TEST_F(TcpStreamTest, WhatAClientCallsItselfIsCutAndCleanInTheLog) {
+  const LogCapture log;
+  TestClient client(io_, stream_.local_endpoint());
+  client.send(wire::encode(wire::Subscribe{.client = "a\x1b[2J\xff\xfe" + std::string(900, 'x')}));
+  ASSERT_TRUE(turn_until([&] { return !client.scenes.empty(); }));
+  EXPECT_THAT(log.text(), testing::HasSubstr("(a?[2J??xxx"));
+  EXPECT_THAT(log.text(), testing::Not(testing::HasSubstr(std::string(64, 'x'))));
+  EXPECT_THAT(log.text(), testing::Not(testing::HasSubstr("\xff")));
+}
+
+TEST_F(TcpStreamTest, ClientsCannotFillTheLog) {
+  const LogCapture log;
+  TestClient client(io_, stream_.local_endpoint());
+  client.send(wire::encode(wire::Subscribe{.poses = false, .client = "flood"}));
+  for (std::size_t i = 1; i <= 2000; ++i) {
+    client.send(wire::encode(wire::Control{.scene = std::string(1000, 'x')}));
+    ASSERT_TRUE(turn_until([&] { return client.replies.size() == i; }));
+  }
+  EXPECT_LT(log.lines(), 100U);
+  EXPECT_GT(log.lines(), 10U) << "usual traffic is logged";
+  EXPECT_THAT(log.text(), testing::Not(testing::HasSubstr("left out")));
+
+  // What was left out is told in one line, once.
+  now_ += 10s;
+  ASSERT_TRUE(turn_until([&] { return log.text().find("left out") != std::string::npos; }));
+  const std::size_t lines = log.lines();
+  TestClient next(io_, stream_.local_endpoint());
+  ASSERT_TRUE(turn_until([&] { return !next.hellos.empty(); }));
+  EXPECT_EQ(log.lines(), lines + 1);
 }
 
 }  // namespace

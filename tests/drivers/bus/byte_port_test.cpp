@@ -333,18 +333,53 @@ TEST_F(UdpBytePort, KeepsDatagramsApartAndLongOnesWhole) {
   EXPECT_FALSE(write_text(*port, "x"));
 }
 
-TEST_F(UdpBytePort, TakesOnlyTheSenderThatItIsTold) {
-  const auto port = make_byte_port({.kind = BytePortKind::kUdp, .host = "", .port = port_, .sender = "127.0.0.2"});
+TEST_F(UdpBytePort, TakesOnlyTheSendersThatItIsTold) {
+  const auto port =
+      make_byte_port({.kind = BytePortKind::kUdp, .host = "", .port = port_, .senders = "127.0.0.2, 127.8.0.0/16"});
   ASSERT_TRUE(port->open().has_value());
   const Sender wanted("127.0.0.2");
   const Sender other("127.0.0.1");
   std::vector<std::uint8_t> buffer(kLargestDatagram);
   other.send("other", port_);
-  EXPECT_EQ(port->read(buffer, kHang).status, ByteStatus::kForeign);
+  const ByteArrival refused = port->read(buffer, kHang);
+  EXPECT_EQ(refused.status, ByteStatus::kForeign);
+  EXPECT_EQ(refused.sender, "127.0.0.1");
   wanted.send("wanted", port_);
   const ByteArrival arrival = port->read(buffer, kHang);
   EXPECT_EQ(arrival.status, ByteStatus::kBytes);
   EXPECT_EQ(arrival.size, 6U);
+  Sender("127.8.9.1").send("of the net", port_);
+  EXPECT_EQ(port->read(buffer, kHang).status, ByteStatus::kBytes);
+}
+
+TEST_F(UdpBytePort, CountsWhatTheKernelDropsWhileNobodyReads) {
+  const auto port = make_byte_port({.kind = BytePortKind::kUdp, .host = "127.0.0.1", .port = port_});
+  ASSERT_TRUE(port->open().has_value());
+  const Sender sender("127.0.0.1");
+  const std::string large(8000, 'x');
+  constexpr std::uint32_t kFlood = 2000;  // 16 MB: more than a socket keeps
+  for (std::uint32_t i = 0; i < kFlood; ++i) sender.send(large, port_);
+
+  std::vector<std::uint8_t> buffer(kLargestDatagram);
+  std::uint32_t read = 0;
+  std::uint32_t dropped = 0;
+  const auto read_all = [&] {
+    for (ByteArrival arrival = port->read(buffer, 0s); arrival.status == ByteStatus::kBytes;
+         arrival = port->read(buffer, 0s)) {
+      ++read;
+      dropped += arrival.overrun;
+    }
+  };
+  read_all();
+  EXPECT_LT(read, kFlood);
+  sender.send("after the flood", port_);
+  read_all();
+  EXPECT_GT(dropped, 0U);
+  EXPECT_EQ(read + dropped, kFlood + 1) << "each datagram is accounted for";
+  sender.send("in peace", port_);
+  const ByteArrival later = port->read(buffer, kHang);
+  EXPECT_EQ(later.size, 8U);
+  EXPECT_EQ(later.overrun, 0U);
 }
 
 TEST_F(UdpBytePort, SaysWhatIsWrongAndWhatToDo) {
@@ -358,7 +393,7 @@ TEST_F(UdpBytePort, SaysWhatIsWrongAndWhatToDo) {
   EXPECT_THAT(open({.host = "127.0.0.1", .port = port_}), HasSubstr("another program uses this port"));
   EXPECT_THAT(open({.host = "192.0.2.7", .port = port_}), HasSubstr("this machine does not have that address"));
   EXPECT_THAT(open({.host = "nowhere", .port = port_}), HasSubstr("is not an address of this machine"));
-  EXPECT_THAT(open({.port = port_, .sender = "nobody"}), HasSubstr("is no address"));
+  EXPECT_THAT(open({.port = port_, .senders = "nobody"}), HasSubstr("\"nobody\" is neither an address"));
 }
 
 TEST_F(UdpBytePort, CanBeInterrupted) {

@@ -144,6 +144,49 @@ TEST(NmeaXdr, OfTheWxtHasMeanAndGust) {
       reads(decode_body("WIXDR,A,302,D,4,S,36,K,4", {.checksum = {}, .status = {}, .xdr_first_id = 4}), 10.0, 302.0));
 }
 
+std::optional<wind::StationQuantities> quantities_of(std::string_view body, int xdr_first_id = 0) {
+  return text::decode_nmea_quantities({.checksum = {}, .status = {}, .xdr_first_id = xdr_first_id}, sentence(body));
+}
+
+TEST(NmeaQuantities, AreInMda) {
+  const auto said = quantities_of("WIMDA,29.7544,I,1.0076,B,35.5,C,,,42.1,,20.6,C,116.4,T,107.7,M,1.2,N,0.6,M");
+  ASSERT_TRUE(said.has_value());
+  EXPECT_NEAR(said->pressure_hpa.value_or(0.0), 1007.6, 1e-9);
+  EXPECT_EQ(said->air_temperature_c, 35.5);
+  EXPECT_EQ(said->relative_humidity_percent, 42.1);
+  EXPECT_FALSE(said->rain_total_mm || said->rain_rate_mm_h || said->vertical_speed_m_s);
+
+  const auto inches = quantities_of("WIMDA,29.7544,I,,,-3.5,C,,,,,,,,T,,M,,N,,M");
+  ASSERT_TRUE(inches.has_value());
+  EXPECT_NEAR(inches->pressure_hpa.value_or(0.0), 1007.6, 0.05);
+  EXPECT_EQ(inches->air_temperature_c, -3.5);
+  EXPECT_FALSE(inches->relative_humidity_percent.has_value());
+}
+
+TEST(NmeaQuantities, AreInXdrByTheDevicesOwnNumber) {
+  const auto said =
+      quantities_of("WIXDR,C,25.1,C,0,C,31.0,C,1,H,40.5,P,0,P,1015.2,H,0,V,0.12,M,0,Z,10,s,0,R,2.3,M,0,V,9,M,1");
+  ASSERT_TRUE(said.has_value());
+  EXPECT_EQ(said->air_temperature_c, 25.1);
+  EXPECT_EQ(said->relative_humidity_percent, 40.5);
+  EXPECT_EQ(said->pressure_hpa, 1015.2);
+  EXPECT_EQ(said->rain_total_mm, 0.12);
+  EXPECT_EQ(said->rain_rate_mm_h, 2.3);
+  EXPECT_NEAR(quantities_of("WIXDR,P,1.0152,B,4", 4)->pressure_hpa.value_or(0.0), 1015.2, 1e-9);
+  EXPECT_NEAR(quantities_of("WIXDR,P,101520,P,4", 4)->pressure_hpa.value_or(0.0), 1015.2, 1e-9);
+}
+
+TEST(NmeaQuantities, AreNoneInAnythingElse) {
+  for (const std::string_view body :
+       {"WIMWV,214.8,R,10.0,M,A", "IIXDR,C,90.0,C,ENGINE", "WIXDR,C,75.0,F,0", "WIXDR,C,nan,C,0", "WIXDR,C,,C,0",
+        "WIMDA,,I,,B,,C", "WIXDR,V,0.01,I,0", "WIXDR"}) {
+    EXPECT_FALSE(quantities_of(body).has_value()) << body;
+  }
+  EXPECT_FALSE(text::decode_nmea_quantities(kStrict, "$WIXDR,C,25.1,C,0*00").has_value());
+  EXPECT_FALSE(text::decode_nmea_quantities(kStrict, "$WIXDR,C,25.1,C,0").has_value());
+  EXPECT_FALSE(text::decode_nmea_quantities(kStrict, "").has_value());
+}
+
 TEST(NmeaVectors, OfTheSharedCollectionDecodeAsTheySay) {
   const auto vectors = shared_json("vectors/nmea_vectors.json");
   if (vectors.is_null()) GTEST_SKIP() << "../shared/data/vectors/nmea_vectors.json is not here";

@@ -172,6 +172,34 @@ TEST(FineOffsetRecord, IsRefusedInGrades) {
                                   Refusal::kImplausible));
 }
 
+TEST(FineOffsetRecord, HasTheWeatherBesides) {
+  auto record = fineoffset_record(10, 20, 0, 4, 0);
+  record[13] = 0x02;
+  record[14] = 0x01;
+  auto said = hid::decode_fineoffset_quantities(record);
+  ASSERT_TRUE(said.has_value());
+  EXPECT_EQ(said->relative_humidity_percent, 58.0);
+  EXPECT_EQ(said->air_temperature_c, 12.0);
+  EXPECT_EQ(said->pressure_hpa, 1014.8);
+  EXPECT_NEAR(said->rain_total_mm.value_or(0.0), 258 * 0.3, 1e-9);
+  EXPECT_FALSE(said->rain_rate_mm_h.has_value());
+
+  // Frost, and values that are not there.
+  record[5] = 0x37;
+  record[6] = 0x80;
+  EXPECT_EQ(hid::decode_fineoffset_quantities(record)->air_temperature_c, -5.5);
+  for (const std::size_t at : {4U, 5U, 6U, 7U, 8U}) record[at] = 0xFF;
+  said = hid::decode_fineoffset_quantities(record);
+  EXPECT_FALSE(said->relative_humidity_percent || said->air_temperature_c || said->pressure_hpa);
+
+  // Without contact the console itself still measures the pressure.
+  said = hid::decode_fineoffset_quantities(fineoffset_record(10, 20, 0, 4, 0x40));
+  EXPECT_EQ(said->pressure_hpa, 1014.8);
+  EXPECT_FALSE(said->air_temperature_c || said->relative_humidity_percent || said->rain_total_mm);
+  EXPECT_FALSE(hid::decode_fineoffset_quantities(StationBytes(16, 0)).has_value());
+  EXPECT_FALSE(hid::decode_fineoffset_quantities(StationBytes(15, 1)).has_value());
+}
+
 TEST(FineOffsetFixedBlock, SaysWhereTheCurrentRecordStands) {
   StationBytes block(32);
   block[0] = 0x55;

@@ -237,6 +237,18 @@ TEST(FineOffsetStation, ReadsEachMeasurementOnce) {
   EXPECT_NEAR(static_cast<double>(bench.readings()), 2.0 * kHour_s / 48.0, 4.0);
 }
 
+TEST(FineOffsetStation, HandsOnTheWeatherWithEachReading) {
+  HidBench bench("fineoffset");
+  bench.run_for(kHour_s);
+  ASSERT_EQ(bench.sink.station_quantities.size(), bench.readings());
+  for (const wind::StationQuantities& said : bench.sink.station_quantities) {
+    EXPECT_EQ(said.air_temperature_c, 12.0);
+    EXPECT_EQ(said.pressure_hpa, 1014.8);
+    EXPECT_EQ(said.relative_humidity_percent, 58.0);
+  }
+  EXPECT_EQ(bench.sink.station_quantities.back().time.mono, bench.sink.readings.back().time.mono);
+}
+
 TEST(FineOffsetStation, IsNotAskedMoreOftenThanItMeasures) {
   const auto readings_at = [](Nanoseconds interval) {
     HidBench bench("fineoffset", {.pace = 1.0, .poll_interval = interval});

@@ -179,6 +179,50 @@ INSTANTIATE_TEST_SUITE_P(Every, ModbusFaultTest,
                                                kPatient_s, wind::LinkState::kConnected}),
                          [](const auto& test) { return test.param.name; });
 
+/// How often a device that answers like this is asked in a minute.
+int requests_in_a_minute(const std::function<Bytes(const Bytes&)>& reply) {
+  std::atomic<int> requests = 0;
+  const ScriptedServer server([&](const Bytes& request) {
+    ++requests;
+    return reply(request);
+  });
+  const auto sensor = open_tcp(server.port(), "renke-rs-fsjt-n01");
+  Bench bench;
+  const MonoTime end = bench.clock.now().mono + 60s;
+  while (bench.due < end) bench.poll(*sensor);
+  EXPECT_TRUE(bench.sink.readings.empty());
+  return requests;
+}
+
+TEST(ModbusDriver, AsksADeviceLessAndLessOftenThatAnswersWithWhatIsNoReply) {
+  const auto implausible = [](const Bytes& request) {
+    Bytes reply = right_reply(request);
+    reply[9] = 0x7F;
+    return reply;
+  };
+  EXPECT_EQ(requests_in_a_minute(implausible), 5 * 60) << "a valid reply: the profile's pace is kept";
+
+  const auto text = [](const Bytes&) {
+    const std::string greeting = "login: user unknown";
+    return Bytes(greeting.begin(), greeting.end());
+  };
+  const auto other_function = [](const Bytes& request) {
+    Bytes reply = right_reply(request);
+    reply[7] = 4;
+    return reply;
+  };
+  const auto exception = [](const Bytes& request) {
+    return Bytes{request[0], request[1], 0, 0, 0, 3, request[6], 0x83, 4};
+  };
+  for (const std::function<Bytes(const Bytes&)>& reply :
+       {std::function<Bytes(const Bytes&)>(text), std::function<Bytes(const Bytes&)>(other_function),
+        std::function<Bytes(const Bytes&)>(exception)}) {
+    const int requests = requests_in_a_minute(reply);
+    EXPECT_GE(requests, 6);
+    EXPECT_LE(requests, 15) << "waits double up to 10 s";
+  }
+}
+
 TEST(ModbusDriver, NeverTakesTheAnswerToAnEarlierRequestForTheNextOne) {
   // The device answers each request only when the next one comes: every answer is one too late.
   Bytes held;

@@ -1,6 +1,7 @@
 // The driver as the daemon opens it and runs it, with Debian's own broker and its own publisher.
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <stdexcept>
@@ -21,7 +22,9 @@ namespace yuragi::drivers::mqtt {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::ThrowsMessage;
 
 std::unique_ptr<sensor::Sensor> open_mqtt_sensor(const ParameterValues::Map& given) {
@@ -296,6 +299,107 @@ TEST(MqttDriver, RefusesWhatCannotWork) {
         open_mqtt_sensor({{"topic", std::string("a")}, {"speed_path", std::string("x")}});
       },
       ThrowsMessage<std::runtime_error>(HasSubstr("speed_path")));
+}
+
+/// Memory of this process, MiB: "VmRSS" now, "VmHWM" at most since forget_the_most().
+double memory_mib(const std::string& which) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(which + ":")) return std::stod(line.substr(which.size() + 1)) / 1024.0;
+  }
+  throw std::runtime_error("no " + which);
+}
+void forget_the_most() {
+  std::ofstream("/proc/self/clear_refs") << "5";
+}
+
+TEST(MqttDriver, TakesTwiceTheLengthOfAHugeMessageAndGivesItBackAtOnce) {
+  constexpr double kHuge_mib = 64.0;
+  constexpr double kOthers_mib = 16.0;
+  const MosquittoBroker broker;
+  broker.retain("garden/speed", std::string(static_cast<std::size_t>(kHuge_mib) << 20U, '7'));
+  forget_the_most();
+  const double before_mib = memory_mib("VmRSS");
+  MqttRun run(broker, {});
+  ASSERT_TRUE(run.has_refused(decode::Refusal::kMalformed));
+  EXPECT_LE(memory_mib("VmHWM") - before_mib, 2.0 * kHuge_mib + kOthers_mib);
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4"); }));
+  EXPECT_LE(memory_mib("VmRSS") - before_mib, kOthers_mib);
+}
+
+/// The message of the refusal.
+std::string refusal_of(const ParameterValues::Map& given) {
+  try {
+    ParameterValues::Map all = given;
+    all.try_emplace("topic", std::string("garden/speed"));
+    open_mqtt_sensor(all);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "it was opened";
+}
+
+/// A broker that lets in only the user "garden" with the password "right".
+class GuardedBroker {
+ public:
+  GuardedBroker() : broker_(configuration(folder_ / "passwords")) {}
+  bool lets_in(ParameterValues::Map given) {
+    given.insert_or_assign("user", std::string("garden"));
+    MqttRun run(broker_, std::move(given));
+    return run.reads_after([this] { broker_.publish("garden/speed", "4", {"-u", "garden", "-P", "right"}); });
+  }
+
+ private:
+  static std::string configuration(const std::string& passwords) {
+    std::ofstream(passwords) << "";
+    run_program({"mosquitto_passwd", "-b", passwords, "garden", "right"});
+    return "allow_anonymous false\npassword_file " + passwords + "\n";
+  }
+
+  test::TemporaryFolder folder_;
+  MosquittoBroker broker_;
+};
+
+TEST(MqttDriver, TakesThePasswordFromTheConfigurationAFileOrTheEnvironment) {
+  GuardedBroker broker;
+  EXPECT_TRUE(broker.lets_in({{"password", std::string("right")}}));
+  const test::TemporaryFolder folder;
+  for (const char* text : {"right", "right\n", "right\r\n"}) {
+    std::ofstream(folder / "password") << text;
+    EXPECT_TRUE(broker.lets_in({{"password_file", (folder / "password").string()}})) << text;
+  }
+  // No other thread is running.
+  ASSERT_EQ(setenv("YURAGI_TEST_PASSWORD", "right", 1), 0);  // NOLINT(concurrency-mt-unsafe)
+  EXPECT_TRUE(broker.lets_in({{"password_env", std::string("YURAGI_TEST_PASSWORD")}}));
+  unsetenv("YURAGI_TEST_PASSWORD");  // NOLINT(concurrency-mt-unsafe)
+}
+
+TEST(MqttDriver, RefusesAPasswordThatIsNotThereOrGivenTwice) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "password";
+  const auto refusal_of_file = [&] { return refusal_of({{"password_file", file}}); };
+  EXPECT_THAT(refusal_of_file(), AllOf(HasSubstr("password_file: "), HasSubstr(file), HasSubstr("does not exist")));
+  std::ofstream(file) << "\n";
+  EXPECT_THAT(refusal_of_file(), HasSubstr("is empty"));
+  std::ofstream(file) << "hunter2\nhunter3\n";
+  EXPECT_THAT(refusal_of_file(), AllOf(HasSubstr("has more than one line"), Not(HasSubstr("hunter"))));
+  std::ofstream(file) << std::string("hunter\0two", 10);
+  EXPECT_THAT(refusal_of_file(), HasSubstr("has a zero byte"));
+  std::ofstream(file) << std::string(4096, 'x');
+  EXPECT_EQ(refusal_of_file(), "it was opened");
+  std::ofstream(file) << std::string(4097, 'x');
+  EXPECT_THAT(refusal_of_file(), HasSubstr("is too long; allowed: 4096 bytes"));
+  EXPECT_THAT(refusal_of({{"password_file", folder.path().string()}}), HasSubstr("is not a regular file"));
+
+  EXPECT_THAT(refusal_of({{"password_env", std::string("YURAGI_TEST_NONE")}}),
+              HasSubstr("password_env: the environment variable \"YURAGI_TEST_NONE\" is not set"));
+  EXPECT_THAT(refusal_of({{"password", std::string("(secret)")}}), HasSubstr("password: is \"(secret)\""));
+  for (const ParameterValues::Map& twice :
+       {ParameterValues::Map{{"password", std::string("hunter2")}, {"password_file", file}},
+        ParameterValues::Map{{"password", std::string("hunter2")}, {"password_env", std::string("HOME")}},
+        ParameterValues::Map{{"password_file", file}, {"password_env", std::string("HOME")}}}) {
+    EXPECT_THAT(refusal_of(twice), AllOf(HasSubstr("password: is given more than once"), Not(HasSubstr("hunter2"))));
+  }
 }
 
 TEST(MqttFault, Silence) {

@@ -1,6 +1,7 @@
 // The driver as the daemon opens it and runs it, with messages from liblo's own oscsend, and datagrams that are none.
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <random>
 #include <stdexcept>
 
@@ -10,6 +11,7 @@
 #include "drivers/bus/osc_message.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/descriptor.hpp"
 #include "tests/support/driver_named.hpp"
 #include "tests/support/free_port.hpp"
 #include "tests/support/running_sensor.hpp"
@@ -57,14 +59,15 @@ class OscRun {
     program.rest();
     ASSERT_EQ(program.wait(), 0);
   }
-  /// Any bytes as one datagram.
-  void send_bytes(const std::string& bytes) const {
+  /// Any bytes as one datagram, from an address of the loopback.
+  void send_bytes(const std::string& bytes) const { send_bytes_from(from_.descriptor(), bytes); }
+  void send_bytes_from(int socket, const std::string& bytes) const {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     address.sin_port = htons(port_);
-    const auto sent = sendto(from_.descriptor(), bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&address),
-                             sizeof address);
+    const auto sent =
+        sendto(socket, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&address), sizeof address);
     ASSERT_EQ(sent, std::ssize(bytes));
   }
   /// Sends when the driver listens, and waits for the reading.
@@ -84,6 +87,31 @@ class OscRun {
   }
   bool reads_wind() {
     return reads_after([this] { send_bytes(kWindOf5From90); });
+  }
+  /// Sends again for as long as it is told to be too frequent.
+  bool reads_wind_when_the_limit_lets_it() {
+    for (const std::size_t before = count(); count() == before;) {
+      const auto times = count(decode::Refusal::kTooFrequent);
+      send_bytes(kWindOf5From90);
+      const bool is_answered = sensor_.wait_until([&](const RecordingSink& sink) {
+        return sink.readings.size() > before || sink.count(decode::Refusal::kTooFrequent) > times;
+      });
+      if (!is_answered) return false;
+    }
+    return true;
+  }
+  /// Messages that were read or refused.
+  std::ptrdiff_t handled() {
+    return sensor_.look(
+        [](const RecordingSink& sink) { return std::ssize(sink.readings) + std::ssize(sink.refusals); });
+  }
+  bool has_handled(std::ptrdiff_t messages) {
+    return sensor_.wait_until([messages](const RecordingSink& sink) {
+      return std::ssize(sink.readings) + std::ssize(sink.refusals) >= messages;
+    });
+  }
+  std::ptrdiff_t count(decode::Refusal why) {
+    return sensor_.look([why](const RecordingSink& sink) { return sink.count(why); });
   }
   bool has_refused(decode::Refusal why, std::ptrdiff_t times = 1) {
     return sensor_.wait_until([&](const RecordingSink& sink) { return sink.count(why) >= times; });
@@ -116,7 +144,7 @@ class OscRun {
   /// A datagram is refused for this reason, and is no reading; then the wind is read again.
   void expect_refused(const std::string& bytes, decode::Refusal why) {
     const std::size_t before = count();
-    const auto times = sensor_.look([why](const RecordingSink& sink) { return sink.count(why); });
+    const auto times = count(why);
     send_bytes(bytes);
     EXPECT_TRUE(has_refused(why, times + 1));
     EXPECT_EQ(count(), before);
@@ -127,7 +155,6 @@ class OscRun {
  private:
   static std::unique_ptr<sensor::Sensor> make(std::uint16_t port, ParameterValues::Map given) {
     given.try_emplace("port", std::int64_t{port});
-    given.try_emplace("host", std::string("127.0.0.1"));
     return open_osc_sensor(given);
   }
 
@@ -199,21 +226,102 @@ TEST(OscDriver, StandsAnyDatagram) {
   std::string nested = kWindOf5From90;
   while (nested.size() < 60'000) nested = bundle_of(nested);
   run.send_bytes(nested);
-  EXPECT_TRUE(run.reads_wind());
+  EXPECT_TRUE(run.reads_wind_when_the_limit_lets_it());
   for (const wind::WindReading& reading : run.all().readings) EXPECT_TRUE(wind::is_plausible(reading));
 }
 
-TEST(OscDriver, TakesNoMessageOfAnotherSender) {
-  OscRun run({{"sender", std::string("127.0.0.9")}});
-  run.send_when_it_listens(kWindOf5From90);
-  EXPECT_TRUE(run.has_refused(decode::Refusal::kNotMine));
+/// A socket bound to an address of the loopback; nothing where somebody else has that port there.
+std::optional<Descriptor> socket_at(const char* address, std::uint16_t port = 0) {
+  Descriptor bound(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_port = htons(port);
+  inet_pton(AF_INET, address, &at.sin_addr);
+  if (bind(bound.get(), reinterpret_cast<sockaddr*>(&at), sizeof at) != 0) return std::nullopt;
+  return bound;
+}
+
+TEST(OscDriver, HearsThisMachineAloneUnlessItIsToldOtherwise) {
+  OscRun run;
+  ASSERT_TRUE(run.reports("waits for"));
+  EXPECT_TRUE(socket_at("127.0.0.2", run.port())) << "it has not taken the port on every address";
+  OscRun open({{"host", std::string("0.0.0.0")}, {"from", std::string("127.0.0.0/8")}});
+  ASSERT_TRUE(open.reports("waits for"));
+  EXPECT_FALSE(socket_at("127.0.0.2", open.port()));
+}
+
+TEST(OscDriver, TakesTheSendersThatItIsToldAndNamesTheFirstOfTheOthersOnce) {
+  OscRun run({{"host", std::string("0.0.0.0")}, {"from", std::string("127.0.0.8, 127.2.0.0/16")}});
+  const auto stranger = socket_at("127.0.0.9");
+  const auto other_stranger = socket_at("127.0.0.10");
+  const auto roof = socket_at("127.2.3.4");
+  ASSERT_TRUE(stranger && other_stranger && roof);
+  ASSERT_TRUE(run.reports("waits for"));
+  for (int i = 0; i < 50; ++i) {
+    run.send_bytes_from(stranger->get(), kWindOf5From90);
+    run.send_bytes_from(other_stranger->get(), kWindOf5From90);
+  }
+  EXPECT_TRUE(run.has_refused(decode::Refusal::kNotMine, 100));
   EXPECT_EQ(run.count(), 0U);
+  EXPECT_TRUE(run.reports("; refuses 127.0.0.9, which is not in `from`"));
+  EXPECT_EQ(run.all().links.size(), 2U) << "without it, and with it";
+  EXPECT_TRUE(run.reads_after([&] { run.send_bytes_from(roof->get(), kWindOf5From90); }));
+}
+
+TEST(OscDriver, TakesOfAFloodNoMoreReadingsThanTheLimitAndCountsTheOthers) {
+  OscRun run;
+  ASSERT_TRUE(run.reads_wind());
+  std::ptrdiff_t sent = 1;
+  for (; sent < 5000; ++sent) run.send_bytes(kWindOf5From90);
+  // What the kernel dropped is told with the next datagram that it keeps.
+  while (run.handled() != sent) {
+    const auto before = run.handled();
+    run.send_bytes(kWindOf5From90);
+    ++sent;
+    ASSERT_TRUE(run.has_handled(before + 1)) << "each is accounted for";
+  }
+  const RecordingSink sink = run.all();
+  const auto taken = std::ssize(sink.readings);
+  const double duration_s = seconds(sink.readings.back().time.mono - sink.readings.front().time.mono);
+  EXPECT_LE(static_cast<double>(taken), 100.0 * duration_s + 101.0);
+  EXPECT_GT(sink.count(decode::Refusal::kTooFrequent), 0);
+}
+
+TEST(OscDriver, CountsEachMessageOfABundleAgainstTheLimit) {
+  OscRun run;
+  ASSERT_TRUE(run.reads_wind());
+  const std::string one = bundle_of(kWindOf5From90);
+  std::string thousand = one;
+  for (int i = 1; i < 1000; ++i) thousand += one.substr(16);  // the element alone
+  run.send_bytes(thousand);
+  EXPECT_TRUE(run.has_refused(decode::Refusal::kTooFrequent, 850));
 }
 
 TEST(OscDriver, IsInterruptedWhileItWaits) {
   OscRun run;
   ASSERT_TRUE(run.reads_wind());
   EXPECT_EQ(run.end(), "interrupted");
+}
+
+TEST(OscDriver, WantsToKnowWhoMaySendWhereOthersCan) {
+  const auto refusal_of = [](const std::string& host, const std::string& from) -> std::string {
+    try {
+      open_osc_sensor({{"host", host}, {"from", from}});
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_EQ(refusal_of("127.0.0.1", ""), "none");
+  EXPECT_EQ(refusal_of("::1", ""), "none");
+  EXPECT_EQ(refusal_of("0.0.0.0", "192.168.1.20"), "none");
+  EXPECT_EQ(refusal_of("0.0.0.0", "0.0.0.0/0"), "none");
+  for (const char* host : {"0.0.0.0", "::", "192.168.1.2", "239.1.2.3"}) {
+    EXPECT_THAT(refusal_of(host, ""), HasSubstr("from: is missing"));
+  }
+  EXPECT_THAT(refusal_of("", ""), HasSubstr("host: \"\" is not an address"));
+  EXPECT_THAT(refusal_of("localhost", ""), HasSubstr("host: \"localhost\" is not an address"));
+  EXPECT_THAT(refusal_of("127.0.0.1", "roof"), HasSubstr("from: \"roof\" is neither an address"));
 }
 
 TEST(OscDriver, RefusesAnAddressThatIsNone) {

@@ -78,6 +78,17 @@ TEST_F(LineSensorTest, DoubtsTheLineInWhoseMiddleItBegan) {
   EXPECT_EQ(sink.readings.size(), 2U);
 }
 
+TEST_F(LineSensorTest, TakesOfAFloodOfDatagramsNoMoreThanTheLimit) {
+  make_line({{"transport", std::string("udp")}});
+  for (int i = 0; i < 1000; ++i) far_end.incoming.push_back({bus::ByteStatus::kBytes, "12.5,180", true});
+  const MonoTime begin = clock.now().mono;
+  while (!far_end.incoming.empty()) clock.advance_to(sensor->poll(clock, sink));
+  const auto most = static_cast<std::size_t>(100.0 * seconds(clock.now().mono - begin) + 100.0);
+  EXPECT_GT(sink.readings.size(), 0U);
+  EXPECT_LE(sink.readings.size(), most);
+  EXPECT_EQ(std::ssize(sink.readings) + sink.count(decode::Refusal::kTooFrequent), 1000);
+}
+
 TEST_F(LineSensorTest, RefusesALineOfAnotherShapeUntilItComesAgain) {
   make_line();
   receive_line("4.2,270");

@@ -59,6 +59,20 @@ TEST_F(NmeaSensorTest, ReadsEachFormatByItsLook) {
   }
 }
 
+TEST_F(NmeaSensorTest, HandsOnWhatAStationSaysBesidesTheWind) {
+  make_nmea({{"talker", std::string("WI")}});
+  receive(nmea_line("WIMDA,29.9,I,1.013,B,12.5,C,,,55.0,,3.7,C,123.0,T,,M,13.61,N,7.00,M"));
+  receive(nmea_line("WIXDR,C,12.7,C,0"));
+  receive(nmea_line("IIXDR,C,40.0,C,0"));
+  receive("$WIXDR,C,99.0,C,0*00\r\n");
+  ASSERT_EQ(sink.station_quantities.size(), 2U);
+  EXPECT_EQ(sink.station_quantities[0].air_temperature_c, 12.5);
+  EXPECT_EQ(sink.station_quantities[0].relative_humidity_percent, 55.0);
+  EXPECT_EQ(sink.station_quantities[1].air_temperature_c, 12.7);
+  EXPECT_EQ(sink.station_quantities[0].time.mono, sink.readings.front().time.mono);
+  EXPECT_EQ(sink.readings.size(), 1U);
+}
+
 TEST_F(NmeaSensorTest, PublishesOneWindOfABurstOnceAndPrefersNorth) {
   make_nmea();
   for (int second = 0; second < 10; ++second) {

@@ -131,7 +131,7 @@ TEST(WindlogPlayback, OfReadingsAtOneMomentMovesOnWhenItLoops) {
   WindlogPlayback playback = playback_of(folder / "a.windlog", {.loop = true});
   double last_s = 0.0;
   for (int i = 0; i < 2000; ++i) last_s = playback.next().value()->log_time_s;
-  EXPECT_NEAR(last_s, 0.999, 1e-6);
+  EXPECT_NEAR(last_s, 0.999, 1e-5);  // one of two at one moment is moved by a nanosecond
 }
 
 TEST(WindlogPlayback, RefusesWhatHasNothingToPlay) {

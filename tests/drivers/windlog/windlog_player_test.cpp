@@ -357,6 +357,55 @@ double place_of(const std::vector<LoggedSession>& sessions, double wanted_h, dou
   return place ? seconds(*place) / 3600.0 : -1.0;
 }
 
+/// When a player of one sensor says a speed, after its beginning.
+double told_after_s(const std::filesystem::path& file, const std::string& sensor, bool stays_with_others,
+                    double speed_m_s) {
+  ManualClock clock;
+  const MonoTime begin = clock.now().mono;
+  auto player =
+      WindlogPlayer::open(file, {.playback = {.sensor = sensor}, .stays_with_others = stays_with_others}, clock.now())
+          .value();
+  double told_s = 0.0;
+  while (!player.is_finished() && told_s == 0.0) {
+    const MonoTime next = player
+                              .play(clock.now(),
+                                    [&](const wind::WindReading& reading) {
+                                      if (reading.speed_m_s == speed_m_s) told_s = seconds(reading.time.mono - begin);
+                                    })
+                              .value();
+    clock.advance_to(next);
+  }
+  return told_s;
+}
+
+TEST(WindlogPlayer, PlayersOfSeveralSensorsStayTogetherOverDaysWithoutASession) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  constexpr std::int64_t kHour_ms = 3'600'000;
+  {
+    auto writer = WindlogWriter::open(file).value();
+    ASSERT_TRUE(writer.begin_session({test::at_ms(0, kSampleUtc_ms), "yuragi test", ""}));
+    const auto mast = writer.add_sensor("mast", "line", "").value();
+    const auto yard = writer.add_sensor("yard", "line", "").value();
+    ASSERT_TRUE(writer.append(yard, reading_at(0, 1.0)));
+    for (int minute = 0; minute <= 60; ++minute) ASSERT_TRUE(writer.append(mast, reading_at(60'000 * minute, 2.0)));
+    // A gap of 47.5 hours for the mast, and of 48.5 hours for the yard.
+    const std::int64_t later_ms = kHour_ms + 47 * kHour_ms + kHour_ms / 2;
+    ASSERT_TRUE(writer.begin_session({test::at_ms(0, kSampleUtc_ms + later_ms), "yuragi test", ""}));
+    for (const char* const name : {"mast", "yard"}) {
+      const auto id = writer.add_sensor(name, "line", "").value();
+      wind::WindReading reading = reading_at(0, 9.0);
+      reading.time.utc += std::chrono::milliseconds(later_ms);
+      ASSERT_TRUE(writer.append(id, reading));
+    }
+    ASSERT_TRUE(writer.close());
+  }
+  const double together_s = told_after_s(file, "mast", true, 9.0);
+  EXPECT_DOUBLE_EQ(together_s, 3600.0 * (1.0 + 23.5));
+  EXPECT_DOUBLE_EQ(told_after_s(file, "yard", true, 9.0), together_s);
+  EXPECT_DOUBLE_EQ(told_after_s(file, "yard", false, 9.0), 3600.0 * 0.5) << "by itself it leaves out two days";
+}
+
 TEST(TimeOfDay, IsFoundInTheFirstDayThatHasItAndOverMidnight) {
   const auto week = sessions_of({{14.0, 14.0 + 7 * 24.0}});
   EXPECT_NEAR(place_of(week, 15.0), 1.0, 1e-9);

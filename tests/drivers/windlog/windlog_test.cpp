@@ -1,4 +1,6 @@
 // Writing and reading back recordings that are as they should be.
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <random>
 
@@ -122,7 +124,7 @@ TEST(Windlog, KeepsSessionsApartAndCountsTheGapInUtc) {
   later.time.utc = UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms + 561'000));
   test::write_session(folder / "a.windlog", {later});
 
-  // The third one's clock was set back by a day: no gap at all.
+  // The third one's clock was set back by a day: it follows at once.
   wind::WindReading earlier = test::reading_at(9000, 4.0);
   earlier.time.utc -= 24h;
   test::write_session(folder / "a.windlog", {earlier});
@@ -131,7 +133,7 @@ TEST(Windlog, KeepsSessionsApartAndCountsTheGapInUtc) {
   ASSERT_EQ(logged.size(), 4U);
   EXPECT_EQ(logged[1].log_time, 1s);
   EXPECT_EQ(logged[2].log_time, 61s);
-  EXPECT_EQ(logged[3].log_time, 61s);
+  EXPECT_EQ(logged[3].log_time, 61s + 1ns);
 }
 
 TEST(Windlog, FollowsTheMonotonicClockWhenUtcJumps) {
@@ -163,6 +165,151 @@ TEST(Windlog, SeeksByLogTimeAndByUtc) {
   EXPECT_EQ(reader->log_time_of(begin)->value(), 0s);
   EXPECT_EQ(reader->log_time_of(begin + 11s)->value(), 10s);
   EXPECT_FALSE(reader->log_time_of(begin + 1h)->has_value());
+}
+
+/// Two sensors: one with a reading every 10 ms, and one with a reading 5 ms after every thousandth of them.
+void write_two_sensors(const std::filesystem::path& file, int count) {
+  auto writer = WindlogWriter::open(file);
+  ASSERT_TRUE(writer->begin_session({test::at_ms(0, test::kSampleUtc_ms), "yuragi test", ""}));
+  const auto often = writer->add_sensor("often", "synthetic", "");
+  const auto seldom = writer->add_sensor("seldom", "synthetic", "");
+  for (int i = 0; i < count; ++i) {
+    ASSERT_TRUE(writer->append(*often, test::reading_at(10 * i, 1.0)));
+    if (i % 1000 != 0) continue;
+    ASSERT_TRUE(writer->append(*seldom, test::reading_at(10 * i + 5, 2.0)));
+  }
+  ASSERT_TRUE(writer->close());
+}
+
+TEST(Windlog, MergesSensorsByTimeFromAnyPlaceOn) {
+  const test::TemporaryFolder folder;
+  write_two_sensors(folder / "a.windlog", 3000);
+  const auto all = test::read_all(folder / "a.windlog");
+  ASSERT_EQ(all.size(), 3003U);
+  EXPECT_TRUE(std::ranges::is_sorted(all, {}, &LoggedReading::log_time));
+
+  auto reader = WindlogReader::open(folder / "a.windlog");
+  for (const Nanoseconds from : {0ms, 5ms, 9'999ms, 10'005ms, 20'006ms}) {
+    reader->seek(from);
+    const auto expected = std::ranges::lower_bound(all, from, {}, &LoggedReading::log_time);
+    for (auto at = expected; at != all.end(); ++at) {
+      const auto next = reader->next();
+      ASSERT_TRUE(next && *next);
+      ASSERT_EQ((*next)->log_time, at->log_time);
+      ASSERT_EQ((*next)->sensor, at->sensor);
+    }
+    EXPECT_FALSE(reader->next()->has_value());
+  }
+}
+
+TEST(Windlog, GivesTheReadingsOfChosenSensorsOnly) {
+  const test::TemporaryFolder folder;
+  write_two_sensors(folder / "a.windlog", 3000);
+  auto reader = WindlogReader::open(folder / "a.windlog");
+  ASSERT_TRUE(reader->choose({false, true}));
+  for (const Nanoseconds expected : {5ms, 10'005ms, 20'005ms}) EXPECT_EQ(reader->next()->value().log_time, expected);
+  EXPECT_FALSE(reader->next()->has_value());
+  EXPECT_EQ(reader->last_log_time({false, true})->value(), 20'005ms);
+  EXPECT_EQ(reader->last_log_time({true, false})->value(), 29'990ms);
+}
+
+TEST(Windlog, AMomentIsFoundInTheSeriesOfEachSensor) {
+  const test::TemporaryFolder folder;
+  write_two_sensors(folder / "a.windlog", 3000);
+  auto reader = WindlogReader::open(folder / "a.windlog");
+  const UtcTime begin{std::chrono::milliseconds(test::kSampleUtc_ms)};
+  for (const Nanoseconds at : {0ms, 3ms, 5ms, 7ms, 10'001ms, 29'989ms}) {
+    reader->seek(at);
+    EXPECT_EQ(reader->log_time_of(begin + at)->value(), reader->next()->value().log_time);
+  }
+}
+
+TEST(Windlog, ReadsOnAsReadingsOfSeveralSensorsComeAndInOrder) {
+  const test::TemporaryFolder folder;
+  auto writer = WindlogWriter::open(folder / "a.windlog");
+  ASSERT_TRUE(writer->begin_session({test::at_ms(0, 0), "yuragi test", ""}));
+  const auto a = writer->add_sensor("a", "synthetic", "");
+  const auto b = writer->add_sensor("b", "synthetic", "");
+  ASSERT_TRUE(writer->append(*a, test::reading_at(0, 1.0)));
+  ASSERT_TRUE(writer->commit());
+  auto reader = WindlogReader::open(folder / "a.windlog");
+  Nanoseconds last{-1};
+  std::size_t count = 0;
+  for (int i = 1; i < 200; ++i) {
+    ASSERT_TRUE(writer->append(i % 7 == 0 ? *b : *a, test::reading_at(i, 1.0)));
+    if (i % 20 != 0) continue;
+    ASSERT_TRUE(writer->commit());
+    while (const auto logged = reader->next().value()) {
+      EXPECT_GT(logged->log_time, last);
+      last = logged->log_time;
+      ++count;
+    }
+  }
+  EXPECT_EQ(count, 181U);
+}
+
+TEST(Windlog, ASessionThatBeginsWhileItIsReadIsLeftOut) {
+  const test::TemporaryFolder folder;
+  test::write_session(folder / "a.windlog", test::numbered_readings(5));
+  auto reader = WindlogReader::open(folder / "a.windlog");
+  test::write_session(folder / "a.windlog", test::numbered_readings(5));
+  std::size_t count = 0;
+  while (reader->next()->has_value()) ++count;
+  EXPECT_EQ(count, 5U);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 10U);
+}
+
+TEST(Windlog, OfOneSensorAtOneTimeKeepsEveryReading) {
+  const test::TemporaryFolder folder;
+  std::vector<wind::WindReading> readings;
+  for (int i = 0; i < 100; ++i) readings.push_back(test::reading_at(i % 3 == 0 ? 2000 : 1000, i));
+  readings.insert(readings.begin(), test::reading_at(1000, 100.0));
+  test::write_session(folder / "a.windlog", readings);
+  const auto all = test::read_all(folder / "a.windlog");
+  EXPECT_EQ(all.size(), readings.size());
+  for (const auto& logged : all) EXPECT_LT(logged.log_time % 1s, 1us);
+}
+
+TEST(Windlog, TakesAsManyBytesAReadingAsItsFormatSays) {
+  const test::TemporaryFolder folder;
+  for (const bool has_gust : {false, true}) {
+    const auto file = folder / (has_gust ? "gust.windlog" : "plain.windlog");
+    auto writer = WindlogWriter::open(file);
+    ASSERT_TRUE(writer->begin_session({test::at_ms(0, test::kSampleUtc_ms), "yuragi test", ""}));
+    constexpr int kCount = 20'000;
+    const std::array<std::int64_t, 2> sensors = {*writer->add_sensor("a", "", ""), *writer->add_sensor("b", "", "")};
+    for (int i = 0; i < kCount; ++i) {
+      wind::WindReading reading = test::reading_at(500'000LL * i, 0.1 * (i % 77));  // over months
+      reading.time.utc += std::chrono::nanoseconds(i % 50'000);  // the two clocks read one after the other
+      reading.direction_deg = 0.3 * (i % 1000);
+      if (has_gust) reading.gust_m_s = reading.speed_m_s + 0.7;
+      ASSERT_TRUE(writer->append(sensors[static_cast<std::size_t>(i % 2)], reading));
+      if (i % 100 != 0) continue;
+      ASSERT_TRUE(writer->commit());
+    }
+    ASSERT_TRUE(writer->close());
+    const double bytes = static_cast<double>(std::filesystem::file_size(file)) / kCount;
+    EXPECT_LE(bytes, has_gust ? 48.0 : 40.0);
+  }
+}
+
+TEST(Windlog, CanBeAskedInSqlAsOneTable) {
+  const test::TemporaryFolder folder;
+  write_two_sensors(folder / "a.windlog", 2000);
+  sqlite3* connection = nullptr;
+  ASSERT_EQ(sqlite3_open((folder / "a.windlog").c_str(), &connection), SQLITE_OK);
+  const auto number = [&](const char* sql) {
+    sqlite3_stmt* statement = nullptr;
+    EXPECT_EQ(sqlite3_prepare_v2(connection, sql, -1, &statement, nullptr), SQLITE_OK) << sqlite3_errmsg(connection);
+    sqlite3_step(statement);
+    const std::int64_t value = sqlite3_column_int64(statement, 0);
+    sqlite3_finalize(statement);
+    return value;
+  };
+  EXPECT_EQ(number("SELECT count(*) FROM reading"), 2002);
+  EXPECT_EQ(number("SELECT utc_ns / 1000000 FROM reading WHERE sensor = 'seldom' ORDER BY utc_ns DESC"),
+            test::kSampleUtc_ms + 10'005);
+  sqlite3_close(connection);
 }
 
 TEST(Windlog, RemembersWhatMadeIt) {
@@ -232,14 +379,14 @@ TEST(Windlog, ANewerFormatIsRefusedByWriterAndReader) {
   test::write_session(folder / "a.windlog", test::numbered_readings(1));
   {
     auto database = sqlite::Database::open(folder / "a.windlog", sqlite::Access::kReadWrite);
-    ASSERT_TRUE(database->run("PRAGMA user_version = 2"));
+    ASSERT_TRUE(database->run("PRAGMA user_version = 3"));
   }
   const auto writer = WindlogWriter::open(folder / "a.windlog");
   ASSERT_FALSE(writer);
   EXPECT_NE(writer.error().message.find("newer"), std::string::npos);
   const auto reader = WindlogReader::open(folder / "a.windlog");
   ASSERT_FALSE(reader);
-  EXPECT_NE(reader.error().message.find("format 2"), std::string::npos);
+  EXPECT_NE(reader.error().message.find("format 3"), std::string::npos);
 }
 
 TEST(Windlog, WriterSaysWhereItCannotWrite) {

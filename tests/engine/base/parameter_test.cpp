@@ -2,8 +2,10 @@
 
 #include <array>
 #include <limits>
+#include <ostream>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +14,9 @@ namespace yuragi {
 namespace {
 
 using namespace std::string_literals;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr std::array<std::string_view, 2> kModels{"fixed", "turbulent"};
 
@@ -152,6 +156,66 @@ TEST(ParameterValues, AnUncheckedRefusalThrowsWithItsNameAndReason) {
     FAIL() << "should have thrown";
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("speed: is -1; allowed: number from 0 to 40 m/s"));
+  }
+}
+
+template <class T>
+concept IsPrintable = requires(std::ostream& out, const T& value) {
+  out << value;
+};
+
+const std::array kAccount{
+    Parameter{.name = "user", .unit = "", .default_value = ""s, .help = "Who"},
+    Parameter{.name = "password", .unit = "", .default_value = Secret(), .help = "Said by whom"},
+    Parameter{.name = "host", .unit = "", .default_value = ""s, .help = "Where"},
+};
+
+Result<ParameterValues, ParameterError> account(const ParameterValues::Map& given) {
+  return ParameterValues::resolve(kAccount, given);
+}
+
+TEST(ASecret, IsTakenFromATextAndShownToNobody) {
+  const ParameterValues values = account({{"password", "hunter2"s}}).value();
+  EXPECT_EQ(values.secret("password").reveal(), "hunter2");
+  EXPECT_EQ(printable(values.all().at("password")), PrintableValue("(secret)"s));
+  EXPECT_EQ(printable(account({})->all().at("password")), PrintableValue(""s)) << "there is none";
+  EXPECT_EQ(printable(ParameterValue(2.5)), PrintableValue(2.5));
+  EXPECT_THROW(static_cast<void>(values.text("password")), std::bad_variant_access);
+  EXPECT_EQ(describe_allowed(kAccount[1]), "text that is never printed or recorded, default \"\"");
+
+  static_assert(!std::is_convertible_v<Secret, std::string> && !std::is_convertible_v<Secret, std::string_view>);
+  static_assert(!std::is_convertible_v<std::string, Secret>);
+  static_assert(IsPrintable<std::string> && !IsPrintable<Secret>);
+}
+
+TEST(ASecret, IsNotShownWhereItIsRefused) {
+  for (const ParameterValue& value : {ParameterValue(std::int64_t{271828}), ParameterValue(271828.0)}) {
+    const auto refused = account({{"password", value}});
+    ASSERT_TRUE(refused.has_error());
+    EXPECT_EQ(refused.error().name, "password");
+    EXPECT_THAT(refused.error().message, Not(HasSubstr("2718")));
+  }
+}
+
+TEST(ASecret, ThatWasWithheldIsNotUsedAsOne) {
+  const ParameterValues values = account({{"password", "(secret)"s}}).value();
+  EXPECT_THAT([&] { static_cast<void>(values.secret("password")); },
+              testing::ThrowsMessage<std::runtime_error>(HasSubstr("password: is \"(secret)\", which stands for it")));
+  EXPECT_EQ(printable(values.all().at("password")), PrintableValue("(secret)"s));
+}
+
+TEST(ASecret, IsRefusedInATextThatIsPrinted) {
+  for (const char* host :
+       {"mqtt://garden:hunter2@broker:1883/wind", "mqtt://garden:hunter2@broker", "mqtts://:hunter2@broker",
+        "garden:hunter2@broker", "garden:hunt@er2@broker:1883", "http://a:hunter2@[::1]/"}) {
+    const auto refused = account({{"host", std::string(host)}});
+    ASSERT_TRUE(refused.has_error()) << host;
+    EXPECT_EQ(refused.error().name, "host");
+    EXPECT_THAT(refused.error().message, AllOf(HasSubstr("user's name and password"), Not(HasSubstr("hunt")))) << host;
+  }
+  for (const char* host : {"broker", "[::1]:1883", "garden@broker", "mqtt://garden@broker:1883", "http://host:80/a@b:c",
+                           "tele/a:b@c/wind", "see a: b@c", "0:0 5:5.5", "@DEFAULT_SOURCE@"}) {
+    EXPECT_TRUE(account({{"host", std::string(host)}})) << host;
   }
 }
 

@@ -278,6 +278,7 @@ TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
       [](auto& s) { s.shaping.mean_m_s = 1e9; },
       [](auto& s) { s.shaping.gusts = std::nan(""); },
       [](auto& s) { s.shaping.gusts = -0.5; },
+      [](auto& s) { s.shaping.openness = 1.5; },
       [](auto& s) { s.wind.upwind_m = std::nan(""); },
       [](auto& s) { s.wind.upwind_m = -1e7; },
       [](auto& s) { s.wind.to_middle_s = -1.0; },
@@ -485,6 +486,7 @@ TEST(OlderServer, AWindWithoutAPlaceIsInTheMiddleAndGustsAreTheRealOnes) {
     EXPECT_FALSE(state.is_place_configured);
   }
   EXPECT_EQ(std::get<Sensors>(sensors.value()).shaping.gusts, 1.0);
+  EXPECT_EQ(std::get<Sensors>(sensors.value()).shaping.openness, 1.0);
 }
 
 TEST(NewerServer, ABodyOfAnUnknownKindIsToldApartFromABadOne) {

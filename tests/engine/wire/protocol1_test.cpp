@@ -241,6 +241,17 @@ TEST(Protocol1, ItsStreamIsUnderstoodTodayAsItWasThen) {
   EXPECT_EQ(hash, 0x3fc317f37de23c3aU);  // written by the decoder and the kinematics of then
 }
 
+TEST(Protocol1, WhatItsServerDoesNotTellIsNotKnownToday) {
+  MessageReader reader;
+  reader.feed(first_stream());
+  Sensors sensors = samples::sensors();
+  while (auto message = reader.next()) {
+    if (const auto* some = std::get_if<Sensors>(&message->value())) sensors = *some;
+  }
+  EXPECT_FALSE(sensors.io_lateness || sensors.tick_lateness || sensors.recorder);
+  EXPECT_EQ(sensors.refused_clients + sensors.stuck_clients + sensors.idle_clients, 0U);
+}
+
 TEST(Protocol1, ItsClientsRequestsAreUnderstoodToday) {
   flatbuffers::FlatBufferBuilder builder;
   const auto name = builder.CreateString("a wall");
@@ -250,6 +261,7 @@ TEST(Protocol1, ItsClientsRequestsAreUnderstoodToday) {
   const auto subscribe = std::get<Subscribe>(decode(samples::body(bytes)).value());
   EXPECT_TRUE(subscribe.poses);
   EXPECT_EQ(subscribe.client, "a wall");
+  EXPECT_FALSE(subscribe.takes_new_scenes) << "it would take other scenes for a mistake";
 }
 
 }  // namespace

@@ -34,7 +34,9 @@ TEST(WireRoundTrip, SubscribeComesBackAsItWas) {
   EXPECT_EQ(subscribe.client, "a wall in Morioka");
   EXPECT_TRUE(subscribe.raw);
   EXPECT_EQ(subscribe.raw_sensor, "roof");
+  EXPECT_TRUE(subscribe.takes_new_scenes);
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.client = ""})).raw) << "only where it is asked for";
+  EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.client = ""})).takes_new_scenes);
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.poses = false, .client = ""})).poses);
 }
 
@@ -193,6 +195,29 @@ TEST(WireRoundTrip, ControlAndItsReplyComeBackAsTheyWere) {
   EXPECT_FALSE(reply.scenes[1].shown);
 }
 
+TEST(WireRoundTrip, AReloadAndWhatCameOfItComeBackAsTheyWere) {
+  EXPECT_FALSE(decoded<Control>(encode(samples::control())).reload.has_value());
+  EXPECT_FALSE(decoded<ControlReply>(encode(samples::control_reply())).reload.has_value());
+  const Control control = decoded<Control>(encode(Control{.scene = "", .reload = ReloadCommand{"/etc/wall.toml"}}));
+  ASSERT_TRUE(control.reload.has_value());
+  EXPECT_EQ(control.reload->file, "/etc/wall.toml");
+
+  const ControlReply sent = samples::reload_reply();
+  const ControlReply reply = decoded<ControlReply>(encode(sent));
+  ASSERT_TRUE(reply.reload.has_value());
+  EXPECT_EQ(reply.reload->outcome, ReloadOutcome::kMistake);
+  EXPECT_EQ(reply.reload->applied, sent.reload->applied);
+  EXPECT_EQ(reply.reload->takes_restart, sent.reload->takes_restart);
+  EXPECT_EQ(reply.reload->mistakes, sent.reload->mistakes);
+
+  ControlReply much = sent;
+  much.reload->mistakes.assign(kMaxReloadItems + 5, std::string(kMaxTextBytes + 5, 'x'));
+  much.reload->outcome = static_cast<ReloadOutcome>(200);
+  const ControlReply cut = decoded<ControlReply>(encode(much));
+  EXPECT_EQ(cut.reload->mistakes, std::vector(kMaxReloadItems, std::string(kMaxTextBytes, 'x')));
+  EXPECT_EQ(cut.reload->outcome, ReloadOutcome::kFailed) << "of a newer server";
+}
+
 TEST(WireRoundTrip, WhatPlayersAreToDoAndHowTheyDoComesBackAsItWas) {
   EXPECT_FALSE(decoded<Control>(encode(samples::control())).player.has_value());
   const Control control = decoded<Control>(encode(samples::player_control()));
@@ -266,6 +291,43 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(sensors.clients, 2u);
 }
 
+TEST(WireRoundTrip, HowTheDaemonDoesComesBack) {
+  const Sensors sensors = decoded<Sensors>(encode(samples::sensors()));
+  EXPECT_EQ(sensors.refused_clients, 6U);
+  EXPECT_EQ(sensors.stuck_clients, 7U);
+  EXPECT_EQ(sensors.idle_clients, 8U);
+  ASSERT_TRUE(sensors.io_lateness && sensors.tick_lateness);
+  EXPECT_EQ(sensors.io_lateness->p50_s, 0.0625);
+  EXPECT_EQ(sensors.io_lateness->p99_s, 0.125);
+  EXPECT_EQ(sensors.io_lateness->max_s, 1.5);
+  EXPECT_EQ(sensors.tick_lateness->p50_s, 0.03125);
+  EXPECT_EQ(sensors.tick_lateness->p99_s, 0.25);
+  EXPECT_EQ(sensors.tick_lateness->max_s, 2.5);
+  ASSERT_TRUE(sensors.recorder);
+  EXPECT_EQ(sensors.recorder->state, RecorderState::kRetrying);
+  EXPECT_EQ(sensors.recorder->written, 9U);
+  EXPECT_EQ(sensors.recorder->waiting, 10U);
+  EXPECT_EQ(sensors.recorder->lost, 11U);
+  EXPECT_EQ(sensors.recorder->free_bytes, 0U);
+  EXPECT_EQ(sensors.recorder->error, "wall.windlog: the disk is full");
+  const Sensors none = decoded<Sensors>(encode(Sensors{}));
+  EXPECT_FALSE(none.io_lateness || none.tick_lateness || none.recorder) << "not known";
+  Sensors without_space;
+  without_space.recorder.emplace();
+  EXPECT_EQ(decoded<Sensors>(encode(without_space)).recorder->free_bytes, std::nullopt);
+}
+
+TEST(WireRoundTrip, ALatenessThatCannotBeIsRefused) {
+  for (const double wrong_s :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (double Lateness::*member : {&Lateness::p50_s, &Lateness::p99_s, &Lateness::max_s}) {
+      Sensors sensors = samples::sensors();
+      (*sensors.tick_lateness).*member = wrong_s;
+      EXPECT_EQ(decode(samples::body(encode(sensors))).error(), WireError::kInconsistent);
+    }
+  }
+}
+
 TEST(WireRoundTrip, EveryStateOfASensorComesBack) {
   Sensors sensors = samples::sensors();
   for (std::size_t number = 0; number < wind::judging::kSensorStateNames.size(); ++number) {
@@ -288,6 +350,7 @@ TEST(WireRoundTrip, WhatShapesTheWindComesBack) {
   EXPECT_EQ(shaping.site_known_s, 86400.0);
   EXPECT_EQ(shaping.text, "floor: raised 0.8 to 1.5 m/s");
   EXPECT_EQ(shaping.gusts, 2.25);
+  EXPECT_EQ(shaping.openness, 0.25);
 }
 
 TEST(WireRoundTrip, ARawTraceComesBackByteForByte) {
@@ -323,6 +386,10 @@ TEST(WireRoundTrip, ControlCharactersInATextAreDefused) {
       "a\x1b[31m\n\x7f\xc2\x9b"
       "b \xe3\x82\x86 \xc2\xa9";
   EXPECT_EQ(decoded<Subscribe>(encode(Subscribe{.client = text})).client, "a?[31m????b \xe3\x82\x86 \xc2\xa9");
+}
+
+TEST(WireRoundTrip, WhatIsNotUtf8InATextIsDefused) {
+  EXPECT_EQ(decoded<Subscribe>(encode(Subscribe{.client = "a\xff\xe3\x82 \xed\xa0\x80"})).client, "a??? ???");
 }
 
 TEST(WireRoundTrip, MessagesDecodeWhereverTheyLieInMemory) {

@@ -180,7 +180,12 @@ inline wire::Hello hello() {
 }
 
 inline wire::Subscribe subscribe() {
-  return {.poses = true, .sensors = true, .client = "a wall in Morioka", .raw = true, .raw_sensor = "roof"};
+  return {.poses = true,
+          .sensors = true,
+          .client = "a wall in Morioka",
+          .raw = true,
+          .raw_sensor = "roof",
+          .takes_new_scenes = true};
 }
 
 inline wire::Scenes scenes(std::size_t strand_count = 37) {
@@ -266,6 +271,17 @@ inline wire::ControlReply control_reply() {
                       {}}};
 }
 
+inline wire::ControlReply reload_reply() {
+  return {.done = true,
+          .message = "2 changes applied",
+          .scenes = {},
+          .players = {},
+          .reload = wire::ReloadReport{.outcome = wire::ReloadOutcome::kMistake,
+                                       .applied = {"[shaping] floor: 0.0 -> 1.5", "scene elm: is new"},
+                                       .takes_restart = {"seed: 1 -> 2"},
+                                       .mistakes = {"wall.toml:3:1: seed: is \"a\""}}};
+}
+
 inline wire::Sensors sensors() {
   wire::SensorStatus gauge;
   gauge.name = "roof";
@@ -298,8 +314,24 @@ inline wire::Sensors sensors() {
                               .site_strong_m_s = 3.5,
                               .site_known_s = 86400.0,
                               .text = "floor: raised 0.8 to 1.5 m/s",
-                              .gusts = 2.25};
-  return {.sensors = {gauge, {}}, .wind = wind(), .late_ticks = 5, .clients = 2, .shaping = shaping};
+                              .gusts = 2.25,
+                              .openness = 0.25};
+  return {.sensors = {gauge, {}},
+          .wind = wind(),
+          .late_ticks = 5,
+          .clients = 2,
+          .shaping = shaping,
+          .refused_clients = 6,
+          .stuck_clients = 7,
+          .idle_clients = 8,
+          .io_lateness = wire::Lateness{.p50_s = 0.0625, .p99_s = 0.125, .max_s = 1.5},
+          .tick_lateness = wire::Lateness{.p50_s = 0.03125, .p99_s = 0.25, .max_s = 2.5},
+          .recorder = wire::RecorderStatus{.state = wire::RecorderState::kRetrying,
+                                           .written = 9,
+                                           .waiting = 10,
+                                           .lost = 11,
+                                           .free_bytes = 0,
+                                           .error = "wall.windlog: the disk is full"}};
 }
 
 inline wire::RawTrace raw_trace() {

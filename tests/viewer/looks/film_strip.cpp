@@ -178,9 +178,10 @@ void make_strip(const StripOptions& options) {
   const daemon::tools::offline::UseTick take = [&](double time_s, const daemon::animation::Animation& animation) {
     if (taken == options.moments || time_s < first_s + taken * options.step_s - 0.5 * tick_s) return;
     if (taken == 0) {
-      stage.set_scenes(animation.describe().scenes);
-      moment = viewer::stream::rest_moment(stage.scenes());
-      if (options.is_lean_shown) lean.emplace(std::get<pose::StrandSkeleton>(stage.scenes()[0].skeleton));
+      const std::vector<wire::SceneModel> scenes = animation.describe().scenes;
+      stage.set_scenes(scenes);
+      moment = viewer::stream::rest_moment(scenes);
+      if (options.is_lean_shown) lean.emplace(std::get<pose::StrandSkeleton>(stage.scenes()[0]->skeleton));
     }
     for (std::size_t scene = 0; scene < moment.poses.size(); ++scene) moment.poses[scene] = *animation.poses()[scene];
     for (std::size_t i = 0; i < cameras.size(); ++i) {

@@ -2,7 +2,9 @@
 // should be, and does it move and fade?
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 
@@ -11,6 +13,7 @@
 #include "tests/viewer/test_models.hpp"
 #include "tests/viewer/virtual_screen.hpp"
 #include "viewer/looks/stage.hpp"
+#include "viewer/stream/scene_timeline.hpp"
 #include "viewer/window.hpp"
 
 namespace yuragi::viewer::looks {
@@ -168,6 +171,104 @@ TEST_F(StageTest, ShowsAndFramesOneSceneAlone) {
   }
   stage_->show_next();
   EXPECT_EQ(stage_->home(1.5).distance_m, all_m);
+}
+
+/// How many names of each kind of OpenGL object are in use.
+std::array<std::size_t, 4> gl_objects() {
+  std::array<std::size_t, 4> count{};
+  for (GLuint name = 1; name < 4096; ++name) {
+    if (glIsBuffer(name) == GL_TRUE) ++count[0];
+    if (glIsTexture(name) == GL_TRUE) ++count[1];
+    if (glIsVertexArray(name) == GL_TRUE) ++count[2];
+    if (glIsProgram(name) == GL_TRUE) ++count[3];
+  }
+  return count;
+}
+
+TEST_F(StageTest, ExchangedScenesLeaveNothingOnTheGpu) {
+  const std::vector<wire::SceneModel> garden = test_garden();
+  show(garden);
+  draw(0.5, 1.0F);
+  const auto before = gl_objects();
+  EXPECT_GT(before[0], 0U);
+  for (int round = 0; round < 20; ++round) {
+    show({test_model("curtain", {.east_m = round + 1.0}), garden[0], test_model("flame")});
+    draw(0.5, 1.0F);
+    show(garden);
+    draw(0.5, 1.0F);
+    ASSERT_EQ(gl_objects(), before) << round;
+  }
+}
+
+TEST_F(StageTest, AfterAnExchangeThePictureIsAsIfTheScenesHadAlwaysBeenThere) {
+  const std::vector<wire::SceneModel> garden = test_garden();
+  show({garden[2], garden[0], garden[1]});
+  draw(0.5, 1.0F);
+  show({garden[0], garden[2], test_model("flag", {.east_m = 2.0})});
+  const Pixels exchanged = draw(0.7, 1.0F);
+  stage_ = std::make_unique<Stage>();
+  show(models_);
+  EXPECT_EQ(draw(0.7, 1.0F), exchanged);
+}
+
+TEST_F(StageTest, WhereTheSceneThatAloneWasDrawnIsGoneAllAreDrawn) {
+  const std::vector<wire::SceneModel> garden = test_garden();
+  show(garden);
+  stage_->show_only(garden[1].name);
+  show({garden[1], garden[0]});
+  const Pixels alone = draw(0.5, 1.0F);
+  show({garden[0], garden[2]});
+  EXPECT_EQ(draw(0.5, {0.0F, 0.0F}).size(), alone.size());
+  EXPECT_GT(changed(draw(0.5, {1.0F, 1.0F}), draw(0.5, {0.0F, 0.0F})), 100U);
+}
+
+/// A flag on a lawn gives way to a curtain, as the daemon exchanges them: a picture of each frame. None differs from
+/// the one before by more than a cross-fade moves.
+TEST_F(StageTest, ScenesThatAreExchangedFadeWithoutAFlicker) {
+  const wire::SceneModel lawn = test_model("grass", {.east_m = -2.0});
+  const wire::SceneModel flag = test_model("flag");
+  const wire::SceneModel curtain = test_model("curtain");
+  stream::SceneTimeline timeline;
+  double time_s = 0.0;
+  Pixels before;
+  std::size_t most_changed = 0;
+  const auto show_now = [&](double now_s) {
+    const stream::PoseMoment& moment = timeline.advance(now_s);
+    if (auto scenes = timeline.take_new_scenes()) {
+      const bool is_first = stage_->scenes().empty();
+      stage_->set_scenes(std::move(*scenes));
+      if (is_first) camera_.frame(stage_->home(1.33));
+    }
+    stage_->draw(moment, camera_, *target_);
+    Pixels now = target_->read_rgb();
+    if (!before.empty()) most_changed = std::max(most_changed, changed(before, now));
+    before = std::move(now);
+  };
+  const auto run = [&](const std::vector<wire::SceneModel>& models, int frames, const auto& opacities) {
+    timeline.set_scenes({models});
+    if (!before.empty()) show_now(time_s + 0.005);  // the scenes have come, and no frame of them yet
+    for (int i = 0; i < frames; ++i) {
+      wire::Frame frame;
+      frame.info.time_s = time_s += 1.0 / 60.0;
+      for (const wire::SceneModel& model : models) frame.poses.push_back(test_pose(model, 0.05 * time_s, 0.3));
+      frame.opacities = opacities(static_cast<double>(i + 1) / frames);
+      EXPECT_TRUE(timeline.accept(frame, time_s));
+      show_now(time_s);
+    }
+  };
+  run({lawn, flag}, 20, [](double) { return std::vector{1.0F, 1.0F}; });
+  const std::size_t most_at_rest = most_changed;
+  const Pixels with_flag = before;
+  run({lawn, curtain, flag}, 60, [](double share) {
+    const auto smooth = static_cast<float>(share * share * (3.0 - 2.0 * share));
+    return std::vector{1.0F, smooth, 1.0F - smooth};
+  });
+  run({lawn, curtain}, 20, [](double) { return std::vector{1.0F, 1.0F}; });
+  const std::size_t whole = changed(with_flag, before);
+  std::printf("changed pixels: %zu in all, %zu at most from a picture to the next, %zu while nothing was exchanged\n",
+              whole, most_changed, most_at_rest);
+  EXPECT_GT(whole, 2000U);
+  EXPECT_LT(most_changed, most_at_rest + whole / 20);
 }
 
 TEST_F(StageTest, OpensTheGroundOverWater) {

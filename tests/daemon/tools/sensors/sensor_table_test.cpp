@@ -47,6 +47,30 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   EXPECT_THAT(table, HasSubstr("connecting")) << "a sensor that never spoke shows what its link does";
 }
 
+TEST(SensorTable, ShowsHowTheDaemonDoesInOneLine) {
+  wire::Sensors sensors;
+  EXPECT_THAT(sensor_table(sensors), Not(HasSubstr("since the start"))) << "without a daemon, or by an old one";
+  sensors.refused_clients = 2;
+  sensors.stuck_clients = 1;
+  sensors.io_lateness = wire::Lateness{.p50_s = 6e-5, .p99_s = 2e-4, .max_s = 0.0125};
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("  since the start: clients refused 2, stuck 1, idle 0; "
+                                               "late (p50, p99, most): I/O 0.06, 0.20, 12.50 ms\n"));
+  sensors.tick_lateness = wire::Lateness{.p50_s = 1e-4, .p99_s = 3e-4, .max_s = 2.9e-4};
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("; ticks 0.10, 0.29, 0.29 ms\n"));
+}
+
+TEST(SensorTable, ShowsHowTheRecordingDoes) {
+  wire::Sensors sensors;
+  EXPECT_THAT(sensor_table(sensors), Not(HasSubstr("recorded")));
+  sensors.recorder = wire::RecorderStatus{.written = 1200, .waiting = 3, .free_bytes = 2'340'000'000};
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("recorded 1200 readings, waiting 3, lost 0; 2.3 GB free\n"));
+  sensors.recorder =
+      wire::RecorderStatus{.state = wire::RecorderState::kHanging, .error = "a.windlog: the disk does not answer"};
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("HANGS: a.windlog: the disk does not answer\n"));
+  sensors.recorder->state = wire::RecorderState::kRetrying;
+  EXPECT_THAT(sensor_table(sensors), HasSubstr("CANNOT WRITE, trying again: a.windlog"));
+}
+
 TEST(SensorTable, NobodyTakesAReplayForTheWindOfNow) {
   wire::SensorStatus log;
   log.name = "storm";

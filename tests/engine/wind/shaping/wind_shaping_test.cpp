@@ -87,6 +87,21 @@ TEST(WindShaping, WhatIsOffLeavesEveryWindAsItIsBitForBit) {
   }
 }
 
+TEST(WindShaping, WhatIsOffAfterAChangeLeavesEveryWindAsItIsBitForBit) {
+  WindShaping shaping({.gusts = 2.0, .ceiling = {.from_m_s = 17.0, .most_m_s = 25.0}}, shared_gusts());
+  std::mt19937 random(7);
+  double time_s = 0.0;
+  for (int tick = 0; tick < 3000; ++tick) {
+    if (tick == 500) shaping.change({});
+    const ground::DrivingWind real = hostile_wind(random, time_s += kTick_s);
+    ground::DrivingWind shaped = real;
+    shaping.shape(shaped, true);
+    EXPECT_TRUE(std::isfinite(speed_of(shaped.state.wind)));
+    if (tick > 500 + static_cast<int>(6.0 * WindShaping::kChangeOver_s / kTick_s)) expect_same_bits(shaped, real);
+    if (HasFailure()) return;
+  }
+}
+
 TEST(WindShaping, TheCeilingAloneTouchesStormsOnly) {
   ShapedWind wind({.ceiling = {.from_m_s = 17.0, .most_m_s = 25.0}});
   for (const double speed_m_s : {0.0, 3.0, 16.99}) {
@@ -213,6 +228,19 @@ TEST(WindShaping, AFadeIsDoneInItsTimeAndEndsExactly) {
 TEST(WindShaping, BeginsClosedWhereItIsClosed) {
   ShapedWind wind({.closed_level = 0.25});
   EXPECT_EQ(speed_of(wind.after(8.0, kTick_s, false).state.wind), 2.0);
+  EXPECT_EQ(wind.shaping.report().openness, 0.0);
+}
+
+TEST(WindShaping, HowOpenItIsDoesNotDependOnTheWindThatIsLeftWhenClosed) {
+  for (const double closed_level : {0.0, 0.4, 1.0}) {
+    ShapedWind wind({.closed_level = closed_level, .fade_s = 30.0});
+    wind.after(8.0, kTick_s);
+    EXPECT_EQ(wind.shaping.report().openness, 1.0);
+    wind.after_long(8.0, 30.0, false);
+    EXPECT_NEAR(wind.shaping.report().openness, 0.05, 0.02);
+    wind.after_long(8.0, 300.0, false);
+    EXPECT_EQ(wind.shaping.report().openness, 0.0);
+  }
 }
 
 /// Two days of a site in steps of half a minute; every ten minutes another wind, from 0.2 to 2.2 m/s.

@@ -1,0 +1,48 @@
+# The Debian package: what is installed besides the programs, and what dpkg is told (config/package.sh builds it).
+set(maintainer "The Yuragi authors <yuragi@example.org>")
+set(package_folder ${PROJECT_SOURCE_DIR}/config/package)
+set(units_folder ${PROJECT_SOURCE_DIR}/config/systemd)
+
+install(FILES ${units_folder}/yuragi.service ${units_folder}/yuragi-viewer@.service ${units_folder}/yuragi-report.service
+  ${units_folder}/yuragi-report.timer DESTINATION /lib/systemd/system)
+install(PROGRAMS ${units_folder}/daily-report DESTINATION lib/yuragi)
+install(FILES ${units_folder}/yuragi.sysusers DESTINATION lib/sysusers.d RENAME yuragi.conf)
+install(FILES ${units_folder}/yuragi.toml DESTINATION /etc/yuragi)
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${package_folder}/copyright DESTINATION share/doc/yuragi)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/examples DESTINATION share/doc/yuragi PATTERN "*.log" EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/config/garden.toml DESTINATION share/doc/yuragi/examples)
+
+# Made of what the programs say of themselves, when they are there.
+set(programs ${PROJECT_BINARY_DIR}/bin/yuragi ${PROJECT_BINARY_DIR}/bin/yuragi-sim)
+if(YURAGI_VIEWER)
+  list(APPEND programs ${PROJECT_BINARY_DIR}/bin/yuragi-viewer)
+endif()
+install(CODE "execute_process(COMMAND ${PYTHON3_PROGRAM} -B ${package_folder}/documents.py ${PROJECT_SOURCE_DIR}
+  \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\" ${PROJECT_VERSION} \"${maintainer}\" ${programs} COMMAND_ERROR_IS_FATAL ANY)")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_SET_DESTDIR ON)
+set(CPACK_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/package)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_PACKAGE_CONTACT ${maintainer})
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION misc)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "systemd, tzdata, gnuplot-nox | gnuplot-qt | gnuplot-x11")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "xinit, xserver-xorg-core, xserver-xorg-input-libinput, libgl1-mesa-dri, libpam-systemd")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "animation of grass, cloth, trees and flames by the real wind")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Yuragi reads anemometers, follows the wind with a noise-driven animation
+method, and streams moving skeletons to a viewer, for months, with nobody
+there. Without a sensor it replays recorded winds, and makes up its own.
+.
+This package has the daemon, the viewer, simulated sensors, and units of
+systemd for the daemon, for a wall at boot and for a daily report. It starts
+none of them by itself.")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${package_folder}/postinst ${package_folder}/prerm ${package_folder}/postrm
+  ${package_folder}/conffiles)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+include(CPack)

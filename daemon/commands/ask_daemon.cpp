@@ -1,0 +1,76 @@
+#include "daemon/commands/ask_daemon.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "daemon/stream/stream_client.hpp"
+
+namespace yuragi::daemon::commands {
+namespace {
+
+constexpr auto kAskConnectTimeout = std::chrono::seconds(2);
+constexpr auto kAskTimeout = std::chrono::seconds(5);
+
+/// Takes the daemon's messages until all that was asked for has come.
+class StatusCollector {
+ public:
+  explicit StatusCollector(const std::string& address) { status_.address = address; }
+
+  void take(wire::Message& message) {
+    if (const auto* hello = std::get_if<wire::Hello>(&message)) {
+      status_.software = hello->software;
+      status_.tick_rate_hz = hello->tick_rate_hz;
+    } else if (const auto* frame = std::get_if<wire::Frame>(&message)) {
+      status_.running_s = frame->info.time_s;
+    } else if (auto* sensors = std::get_if<wire::Sensors>(&message)) {
+      status_.sensors = std::move(*sensors);
+      has_sensors_ = true;
+    } else if (auto* reply = std::get_if<wire::ControlReply>(&message)) {
+      // They come in the order of the questions: scenes, players.
+      if (replies_ == 0) status_.scenes = std::move(reply->scenes);
+      if (replies_ == 1) status_.players = std::move(reply->players);
+      ++replies_;
+    }
+  }
+
+  /// A daemon without scenes sends no frames.
+  bool has_all() const {
+    return has_sensors_ && replies_ >= 2 && (status_.running_s.has_value() || status_.scenes.empty());
+  }
+  bool has_answered() const { return has_sensors_; }
+
+  tools::sensors::DaemonStatus& status() { return status_; }
+
+ private:
+  tools::sensors::DaemonStatus status_;
+  bool has_sensors_ = false;
+  int replies_ = 0;
+};
+
+}  // namespace
+
+Result<tools::sensors::DaemonStatus, Failure> ask_daemon(const std::string& address, const std::string& client) {
+  auto stream = stream::StreamClient::connect(address, kAskConnectTimeout);
+  if (!stream) return Failure{stream.error().message + ". Is `yuragi run` running?", FailureKind::kUnavailable};
+  // Where the daemon has closed the connection, its Hello, which is still to be read, says why.
+  if (stream->subscribe({.poses = true, .sensors = true, .client = client})) {
+    stream->send(wire::Control{});
+    stream->send(wire::Control{.scene = "", .player = wire::PlayerCommand{}});
+  }
+  StatusCollector collector(address);
+  const auto deadline = std::chrono::steady_clock::now() + kAskTimeout;
+  while (!collector.has_all()) {
+    const auto left = deadline - std::chrono::steady_clock::now();
+    auto message = stream->receive(std::max<Nanoseconds>(left, Nanoseconds{0}));
+    if (!message) {
+      if (message.error() == stream::StreamEnd::kTimeout && collector.has_answered()) break;
+      return stream::connection_lost(address, message.error());
+    }
+    if (const auto refusal = stream::refusal_in(*message, address)) return *refusal;
+    collector.take(*message);
+    if (left < Nanoseconds{0} && collector.has_answered()) break;
+  }
+  return std::move(collector.status());
+}
+
+}  // namespace yuragi::daemon::commands

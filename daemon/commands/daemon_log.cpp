@@ -1,0 +1,94 @@
+#include "daemon/commands/daemon_log.hpp"
+
+#include <string>
+#include <utility>
+
+#include <poll.h>
+#include <spdlog/async.h>
+#include <spdlog/spdlog.h>
+
+#include "engine/base/count_text.hpp"
+
+namespace yuragi::daemon::commands {
+namespace {
+
+constexpr const char* kPattern = "%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v";
+
+}  // namespace
+
+BoundedLogSink::BoundedLogSink(std::FILE* stream)
+    : ansicolor_sink(stream, spdlog::color_mode::automatic), stream_(stream) {}
+
+void BoundedLogSink::log(const spdlog::details::log_msg& message) {
+  const std::lock_guard lock(writing_);
+  is_stuck_ = !takes_a_line();
+  take_overruns();
+  if (is_stuck_) {
+    ++lost_;
+    return;
+  }
+  if (const std::uint64_t lost = std::exchange(lost_, 0); lost > 0) {
+    const std::string text = count_text(lost, "line") + " of the log lost: nobody read it";
+    write({message.logger_name, spdlog::level::warn, text});
+    is_stuck_ = !takes_a_line();
+    if (is_stuck_) {
+      ++lost_;
+      return;
+    }
+  }
+  write(message);
+}
+
+/// Counts what the pool had to drop since the last look.
+void BoundedLogSink::take_overruns() {
+  const auto pool = pool_.lock();
+  if (!pool) return;
+  const std::uint64_t overruns = pool->overrun_counter();
+  lost_ += overruns - overruns_;
+  overruns_ = overruns;
+}
+
+void BoundedLogSink::write(const spdlog::details::log_msg& message) {
+  spdlog::details::log_msg cut = message;
+  if (cut.payload.size() > kMaxTextBytes) cut.payload = {cut.payload.data(), kMaxTextBytes};
+  ansicolor_sink::log(cut);
+}
+
+/// A pipe that is ready takes PIPE_BUF bytes without waiting; a file always does.
+bool BoundedLogSink::takes_a_line() {
+  pollfd stream{.fd = fileno(stream_), .events = POLLOUT, .revents = 0};
+  return poll(&stream, 1, is_stuck_ ? 0 : kPatience_ms) == 1 && (stream.revents & (POLLERR | POLLNVAL)) == 0;
+}
+
+DaemonLog::DaemonLog(bool verbose) : verbose_(verbose), sink_(std::make_shared<BoundedLogSink>(stderr)) {
+  writer_ = std::make_shared<spdlog::details::thread_pool>(kMostWaiting, 1);
+  sink_->count_overruns_of(writer_);
+  const auto logger =
+      std::make_shared<spdlog::async_logger>("yuragi", sink_, writer_, spdlog::async_overflow_policy::overrun_oldest);
+  spdlog::set_default_logger(logger);
+  spdlog::set_pattern(kPattern);
+  spdlog::set_level(verbose ? spdlog::level::debug : spdlog::level::info);
+}
+
+void DaemonLog::set_level(settings::LogLevel level) const {
+  switch (verbose_ ? settings::LogLevel::kDebug : level) {
+    case settings::LogLevel::kDebug:
+      return spdlog::set_level(spdlog::level::debug);
+    case settings::LogLevel::kInfo:
+      return spdlog::set_level(spdlog::level::info);
+    case settings::LogLevel::kWarning:
+      return spdlog::set_level(spdlog::level::warn);
+    case settings::LogLevel::kError:
+      return spdlog::set_level(spdlog::level::err);
+  }
+}
+
+DaemonLog::~DaemonLog() {
+  // What is still said is written by who says it.
+  const auto level = spdlog::get_level();
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>("yuragi", sink_));
+  spdlog::set_level(level);
+  writer_.reset();
+}
+
+}  // namespace yuragi::daemon::commands

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include <spdlog/sinks/ansicolor_sink.h>
+
+#include "daemon/settings/log_config.hpp"
+
+namespace spdlog::details {
+class thread_pool;
+}
+
+namespace yuragi::daemon::commands {
+
+/// Writes lines of the log to a stream (standard error), and never waits for long for whoever reads it: a line that the
+/// stream does not take within kPatience, or at once where the one before was not taken either, is dropped and counted.
+/// The next line that is taken follows one that says how many were lost. Long lines are cut.
+/// Thread-safe: as spdlog's sinks are.
+class BoundedLogSink final : public spdlog::sinks::ansicolor_sink<spdlog::details::console_mutex> {
+ public:
+  static constexpr int kPatience_ms = 200;
+  /// What a pipe takes at once where it takes anything (POSIX: PIPE_BUF is 512 at least, 4096 on Linux), less what
+  /// stands before the text.
+  static constexpr std::size_t kMaxTextBytes = 3800;
+
+  explicit BoundedLogSink(std::FILE* stream);
+
+  void log(const spdlog::details::log_msg& message) override;
+
+  /// Counts the lines that this pool had to drop, too.
+  void count_overruns_of(std::weak_ptr<spdlog::details::thread_pool> pool) { pool_ = std::move(pool); }
+
+ private:
+  void take_overruns();
+  bool takes_a_line();
+  void write(const spdlog::details::log_msg& message);
+
+  std::FILE* stream_;
+  std::mutex writing_;
+  bool is_stuck_ = false;
+  std::weak_ptr<spdlog::details::thread_pool> pool_;
+  std::uint64_t overruns_ = 0;  ///< of the pool, as of the last look
+  std::uint64_t lost_ = 0;
+};
+
+/// The log of a command that is the daemon or a client of it, on standard error while this object lives. Lines are
+/// written by a thread of its own: a terminal that is stopped, or a pipe that nobody reads, delays nobody. At most
+/// kMostWaiting lines wait; further ones replace the oldest and are counted.
+class DaemonLog {
+ public:
+  static constexpr std::size_t kMostWaiting = 1024;
+
+  /// `verbose`: debug messages, too.
+  explicit DaemonLog(bool verbose);
+
+  /// Writes lines of this level and above from now on; with `verbose` all.
+  void set_level(settings::LogLevel level) const;
+
+  ~DaemonLog();  ///< writes what waits, as far as it is taken
+  DaemonLog(const DaemonLog&) = delete;
+  DaemonLog& operator=(const DaemonLog&) = delete;
+
+ private:
+  bool verbose_;
+  std::shared_ptr<BoundedLogSink> sink_;
+  std::shared_ptr<spdlog::details::thread_pool> writer_;
+};
+
+}  // namespace yuragi::daemon::commands

@@ -1,0 +1,101 @@
+// `yuragi reload`: has a running daemon read its configuration again.
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include <fmt/core.h>
+
+#include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
+#include "daemon/commands/json_output.hpp"
+#include "daemon/commands/run_options.hpp"
+#include "daemon/settings/config.hpp"
+#include "daemon/settings/config_file.hpp"
+#include "daemon/stream/control_client.hpp"
+
+namespace yuragi::daemon::commands {
+namespace {
+
+constexpr const char* kReloadFooter =
+    "The daemon reads the file that it was started with, and applies what can change while it runs: scenes,\n"
+    "[sensor.calibration] except for heights, [sensor.judge], [shaping], [log], who may connect and control, how much "
+    "is\n"
+    "recorded, and the rate of recordings that play. What else has changed is named: it takes a restart. A mistake\n"
+    "changes nothing. SIGHUP does the same; then the log says what was done.\n"
+    "  yuragi reload                            the daemon at 127.0.0.1:7410\n"
+    "  yuragi reload --config wall.toml         the one that was started with this file, where this file says\n"
+    "Exit code 0: done; 64: the daemon has no such file; 69: no daemon answers; 70: it failed, and the daemon says\n"
+    "why; 77: the daemon does not allow it from here (see `yuragi describe`, [stream] control); 78: the file has a\n"
+    "mistake.\n"
+    "--json: outcome (\"done\", \"mistake\", \"not allowed\", \"no file\" or \"failed\"), and lists of texts: "
+    "applied,\n"
+    "takes_restart, mistakes.";
+
+struct ReloadOptions {
+  std::optional<std::string> connect;
+  std::optional<std::filesystem::path> config_file;
+  bool as_json = false;
+};
+
+constexpr std::array<std::string_view, 5> kOutcomeNames = {"done", "mistake", "not allowed", "no file", "failed"};
+
+int exit_code_of(wire::ReloadOutcome outcome) {
+  switch (outcome) {
+    case wire::ReloadOutcome::kDone:
+      return 0;
+    case wire::ReloadOutcome::kMistake:
+      return kExitConfig;
+    case wire::ReloadOutcome::kNotAllowed:
+      return kExitNoPermission;
+    case wire::ReloadOutcome::kNoFile:
+      return kExitUsage;
+    case wire::ReloadOutcome::kFailed:
+      break;
+  }
+  return kExitSoftware;
+}
+
+void reload(const ReloadOptions& options) {
+  std::string address = fmt::format("127.0.0.1:{}", wire::kDefaultPort);
+  std::string file;
+  if (options.config_file) {
+    address = settings::load_config(*options.config_file).stream.listen;
+    file = settings::absolute_path(*options.config_file);
+  }
+  const wire::ReloadReport report = stream::ask_to_reload(options.connect.value_or(address), file).value();
+  if (options.as_json) {
+    print_json({{"outcome", kOutcomeNames.at(static_cast<std::size_t>(report.outcome))},
+                {"applied", report.applied},
+                {"takes_restart", report.takes_restart},
+                {"mistakes", report.mistakes}});
+    if (report.outcome != wire::ReloadOutcome::kDone) throw ExitError(exit_code_of(report.outcome), "");
+    return;
+  }
+  const std::string text = stream::reload_text(report);
+  if (report.outcome == wire::ReloadOutcome::kDone) {
+    fmt::print("{}", text);
+    return;
+  }
+  if (report.outcome == wire::ReloadOutcome::kMistake) throw settings::ConfigError(text + "nothing was changed");
+  throw ExitError(exit_code_of(report.outcome), text + "nothing was changed");
+}
+
+void add_reload(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("reload", "have a running daemon read its configuration again");
+  command->footer(kReloadFooter);
+  auto options = std::make_shared<ReloadOptions>();
+  command->add_option("--connect", options->connect, "where the daemon listens")->type_name("HOST:PORT");
+  command->add_option("--config,-c", options->config_file, "the file that the daemon was started with")
+      ->type_name("FILE");
+  add_json(*command, options->as_json);
+  command->callback([options] { reload(*options); });
+}
+
+}  // namespace
+
+extern const Command kReloadCommand;
+const Command kReloadCommand{add_reload};
+
+}  // namespace yuragi::daemon::commands

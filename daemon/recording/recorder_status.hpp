@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace yuragi::daemon::recording {
+
+enum class RecorderState : std::uint8_t {
+  kWriting,   ///< all is well
+  kRetrying,  ///< writing failed, and is tried again at growing intervals
+  kHanging,   ///< the disk has not answered for RecorderLimits::hang_after
+};
+
+struct RecorderStatus {
+  RecorderState state = RecorderState::kWriting;
+  std::uint64_t written = 0;                ///< readings committed to the disk
+  std::uint64_t waiting = 0;                ///< readings that are not yet written
+  std::uint64_t lost = 0;                   ///< readings that were dropped
+  std::string error;                        ///< why it cannot write at present; empty while it can
+  std::optional<std::uint64_t> free_bytes;  ///< on the recording's disk, for this user; nothing where it is not known
+};
+
+}  // namespace yuragi::daemon::recording

@@ -1,0 +1,423 @@
+#include "daemon/recording/recorder_worker.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include "daemon/recording/private_file.hpp"
+#include "daemon/recording/retention.hpp"
+#include "drivers/windlog/older_recording.hpp"
+#include "drivers/windlog/recording_files.hpp"
+#include "drivers/windlog/recording_parts.hpp"
+#include "engine/base/count_text.hpp"
+
+namespace yuragi::daemon::recording {
+namespace {
+
+// Room for the readings between two commits, at tens of thousands a second.
+constexpr std::size_t kRingCapacity = 16'384;
+// What stations say besides the wind waits in the ring, and as much again behind it: minutes of a sensor.
+constexpr std::size_t kQuantitiesCapacity = 1024;
+/// Parts that began in the same second have the names of the seconds that follow.
+constexpr int kMostPartNames = 1000;
+constexpr Nanoseconds kFirstBackOff = std::chrono::milliseconds(500);
+constexpr Nanoseconds kMaxBackOff = std::chrono::seconds(10);
+
+/// 0 where it cannot be known.
+std::uint64_t size_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto bytes = std::filesystem::file_size(file, error);
+  return error ? 0 : bytes;
+}
+
+std::string megabytes(std::uint64_t bytes) {
+  return std::to_string(bytes / 1'000'000) + " MB";
+}
+
+/// Keeps since when something waits for the disk.
+class AtTheDisk {
+ public:
+  using Since = std::optional<std::chrono::steady_clock::time_point>;
+
+  AtTheDisk(std::mutex& mutex, Since& since) : mutex_(mutex), since_(since) {
+    const std::lock_guard lock(mutex_);
+    since_ = std::chrono::steady_clock::now();
+  }
+  ~AtTheDisk() {
+    const std::lock_guard lock(mutex_);
+    since_.reset();
+  }
+  AtTheDisk(const AtTheDisk&) = delete;
+  AtTheDisk& operator=(const AtTheDisk&) = delete;
+
+ private:
+  std::mutex& mutex_;
+  Since& since_;
+};
+
+}  // namespace
+
+RecorderWorker::RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules,
+                               RecordingInfo info, RecorderReport report, const RecorderLimits& limits)
+    : file_(file),
+      rules_(rules),
+      info_(std::move(info)),
+      limits_(limits),
+      ring_(kRingCapacity),
+      quantities_ring_(kQuantitiesCapacity),
+      report_(std::move(report)) {
+  auto opened = open_session(info_.started);
+  if (opened) opened = commit();
+  if (!opened) throw FailureError({"cannot record: " + opened.error().message, FailureKind::kCannotCreate});
+  measure_free_space();
+}
+
+bool RecorderWorker::push(std::size_t sensor, const wind::WindReading& reading) noexcept {
+  push_marks();
+  const bool taken =
+      sensor < info_.sensors.size() && drivers::windlog::is_recordable(reading) && ring_.push({sensor, reading});
+  (taken ? pushed_ : lost_).fetch_add(1, std::memory_order_relaxed);
+  return taken;
+}
+
+bool RecorderWorker::push(std::size_t sensor, const wind::StationQuantities& quantities) noexcept {
+  const bool taken = sensor < info_.sensors.size() && quantities_ring_.push({sensor, quantities});
+  if (!taken) lost_quantities_.fetch_add(1, std::memory_order_relaxed);
+  return taken;
+}
+
+void RecorderWorker::begin_session(RecordingInfo info, const settings::RecordingConfig& rules) {
+  {
+    const std::lock_guard lock(sessions_mutex_);
+    next_sessions_.push_back(std::move(info));
+    next_rules_ = rules;
+  }
+  ++marks_due_;
+  push_marks();
+}
+
+/// Where the ring is full they follow with the next reading that is taken: what is dropped meanwhile is in no session.
+void RecorderWorker::push_marks() noexcept {
+  while (marks_due_ > 0 && ring_.push({kNextSession, {}})) --marks_due_;
+}
+
+/// The next reading belongs to the next session.
+void RecorderWorker::take_next_session() {
+  const std::lock_guard lock(sessions_mutex_);
+  info_ = std::move(next_sessions_.front());
+  next_sessions_.pop_front();
+  is_session_due_ = true;
+}
+
+/// At once, not with the session: readings may wait because of the present rules.
+void RecorderWorker::take_rules() {
+  const std::lock_guard lock(sessions_mutex_);
+  if (next_rules_) rules_ = *std::exchange(next_rules_, std::nullopt);
+}
+
+RecorderStatus RecorderWorker::status() const {
+  const std::lock_guard lock(status_mutex_);
+  return locked_status();
+}
+
+RecorderStatus RecorderWorker::locked_status() const {
+  RecorderStatus status{.state = error_.empty() ? RecorderState::kWriting : RecorderState::kRetrying,
+                        .written = written_.load(std::memory_order_relaxed),
+                        .waiting = 0,
+                        .lost = lost_.load(std::memory_order_relaxed) + given_up_.load(std::memory_order_relaxed),
+                        .error = error_,
+                        .free_bytes = free_bytes_};
+  const std::uint64_t done = status.written + given_up_.load(std::memory_order_relaxed);
+  status.waiting = std::max(pushed_.load(std::memory_order_relaxed), done) - done;
+  if (writing_since_ && std::chrono::steady_clock::now() - *writing_since_ >= limits_.hang_after) {
+    status.state = RecorderState::kHanging;
+    status.error = file_.string() + ": the disk does not answer";
+  }
+  return status;
+}
+
+bool RecorderWorker::wait_until(const std::function<bool(const RecorderStatus&)>& is_so, Nanoseconds at_most) const {
+  std::unique_lock lock(status_mutex_);
+  return status_changed_.wait_for(lock, at_most, [&] { return is_so(locked_status()); });
+}
+
+bool RecorderWorker::wait_for_end(Nanoseconds at_most) const {
+  std::unique_lock lock(status_mutex_);
+  return status_changed_.wait_for(lock, at_most, [this] { return has_ended_; });
+}
+
+void RecorderWorker::report(std::string_view sentence) {
+  const std::lock_guard lock(report_mutex_);
+  if (report_) report_(sentence);
+}
+
+void RecorderWorker::report_at_last(std::string_view sentence) {
+  const std::lock_guard lock(report_mutex_);
+  if (report_) std::exchange(report_, {})(sentence);
+}
+
+void RecorderWorker::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    std::unique_lock lock(wake_mutex_);
+    wake_.wait_for(lock, stop, limits_.commit_every, [] { return false; });
+    lock.unlock();
+    flush();
+  }
+  finish();
+  {
+    const std::lock_guard lock(status_mutex_);
+    has_ended_ = true;
+  }
+  status_changed_.notify_all();
+}
+
+/// A last attempt, without a pause: for what is pending, then for what is left in the ring. Nothing is pushed any more.
+void RecorderWorker::finish() {
+  retry_at_ = {};
+  flush();
+  flush();
+  if (writer_) {
+    const AtTheDisk at_the_disk(status_mutex_, writing_since_);
+    const auto closed = writer_->close();
+    if (!closed) set_status(closed.error().message);
+  }
+  ring_.drain([this](const Entry& entry) { pending_.push_back(entry); });
+  const auto given_up = static_cast<std::size_t>(
+      std::ranges::count_if(pending_, [](const Entry& entry) { return entry.sensor != kNextSession; }));
+  given_up_.fetch_add(given_up, std::memory_order_relaxed);
+  if (given_up > 0) report("ended with " + count_text(given_up, "reading") + " that could not be written");
+  quantities_ring_.drain([this](const QuantitiesEntry& entry) { pending_quantities_.push_back(entry); });
+  const std::uint64_t lost = lost_quantities_.load(std::memory_order_relaxed) + pending_quantities_.size();
+  if (lost > 0) report(count_text(lost, "message") + " of stations, besides the wind, could not be recorded");
+}
+
+/// Writes what was pushed to the disk; while that fails, keeps it for the next attempt.
+void RecorderWorker::flush() {
+  take_rules();
+  Entry entry;
+  while (pending_.size() < kMaxPending && ring_.pop(entry)) pending_.push_back(entry);
+  QuantitiesEntry quantities;
+  while (pending_quantities_.size() < kQuantitiesCapacity && quantities_ring_.pop(quantities)) {
+    pending_quantities_.push_back(quantities);
+  }
+  const bool is_idle = pending_.empty() && pending_quantities_.empty();
+  if (is_idle || std::chrono::steady_clock::now() < retry_at_) return;
+
+  const AtTheDisk at_the_disk(status_mutex_, writing_since_);
+  if (const auto done = try_to_write(); !done) {
+    writer_.reset();  // what it committed is complete in its file, wherever that has been moved
+    back_off_ = std::clamp(2 * back_off_, kFirstBackOff, kMaxBackOff);
+    retry_at_ = std::chrono::steady_clock::now() + back_off_;
+    set_status(done.error().message);
+    return;
+  }
+  back_off_ = Nanoseconds{0};
+  set_status("");
+}
+
+std::optional<std::uint64_t> RecorderWorker::measure_free_space() {
+  std::error_code error;
+  const std::filesystem::path folder = file_.has_parent_path() ? file_.parent_path() : ".";
+  const auto space = std::filesystem::space(folder, error);
+  const std::lock_guard lock(status_mutex_);
+  free_bytes_.reset();
+  if (!error) free_bytes_ = space.available;
+  return free_bytes_;
+}
+
+Result<void, Failure> RecorderWorker::try_to_write() {
+  try {
+    return write_pending();
+  } catch (const std::exception& error) {
+    return Failure{file_.string() + ": " + error.what()};
+  }
+}
+
+/// Writes session by session, and keeps what could not be written.
+Result<void, Failure> RecorderWorker::write_pending() {
+  while (!pending_.empty()) {
+    const auto mark = std::ranges::find(pending_, kNextSession, &Entry::sensor);
+    if (mark == pending_.begin()) {
+      take_next_session();
+      pending_.erase(mark);
+      continue;
+    }
+    const auto count = static_cast<std::size_t>(mark - pending_.begin());
+    if (auto written = write_readings(count); !written) return written;
+    pending_.erase(pending_.begin(), mark);
+    written_.fetch_add(count, std::memory_order_relaxed);
+  }
+  return write_quantities();
+}
+
+/// Writes what stations said besides the wind, where no readings took it with them.
+Result<void, Failure> RecorderWorker::write_quantities() {
+  if (pending_quantities_.empty()) return {};
+  const Instant first = pending_quantities_.front().quantities.time;
+  if (auto prepared = prepare_file(first, first); !prepared) return prepared;
+  if (auto appended = append_quantities(); !appended) return appended;
+  if (auto committed = commit(); !committed) return committed;
+  pending_quantities_.clear();
+  return {};
+}
+
+/// What the file has no place for is counted; the readings do not suffer from it.
+Result<void, Failure> RecorderWorker::append_quantities() {
+  for (auto entry = pending_quantities_.begin(); entry != pending_quantities_.end();) {
+    const auto is_added = writer_->append(sensor_ids_[entry->sensor], entry->quantities);
+    if (!is_added) return is_added.error();
+    if (*is_added) {
+      ++entry;
+    } else {
+      lost_quantities_.fetch_add(1, std::memory_order_relaxed);
+      entry = pending_quantities_.erase(entry);
+    }
+  }
+  return {};
+}
+
+/// Writes the first readings that are pending, which are of one session.
+Result<void, Failure> RecorderWorker::write_readings(std::size_t count) {
+  // Of several sensors the first reading need not be the earliest.
+  const auto earliest =
+      std::ranges::min_element(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(count), {},
+                               [](const Entry& entry) { return entry.reading.time.mono; });
+  if (auto prepared = prepare_file(pending_.front().reading.time, earliest->reading.time); !prepared) return prepared;
+  for (const Entry& entry : std::span(pending_).first(count)) {
+    if (auto appended = writer_->append(sensor_ids_[entry.sensor], entry.reading); !appended) return appended;
+  }
+  if (auto appended = append_quantities(); !appended) return appended;
+  if (auto committed = commit(); !committed) return committed;
+  pending_quantities_.clear();
+  if (began_) return {};
+  const auto began = writer_->began();
+  if (!began) return began.error();
+  began_ = *began;
+  return {};
+}
+
+/// Makes the file ready for what arrived at `first`: completes one, opens one, begins the session that is due at
+/// `earliest`.
+Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earliest) {
+  if (auto made = make_room(first.utc); !made) return made;
+  if (writer_) {
+    if (auto kept = check_name(); !kept) return kept;
+    if (began_ && is_complete(rules_, *began_, size_of(file_), first.utc)) {
+      if (auto completed = complete_file(); !completed) return completed;
+    }
+  }
+  if (!writer_) return open_session(first);
+  if (is_session_due_) return begin_session_at(earliest);
+  return {};
+}
+
+/// Commits; at first and then once a minute what is committed also comes into the file itself, so that a copy of it
+/// alone is a recording.
+Result<void, Failure> RecorderWorker::commit() {
+  if (auto committed = writer_->commit(); !committed) return committed;
+  if (commits_++ % kCommitsPerCheckpoint != 0) return {};
+  return writer_->checkpoint();
+}
+
+/// Closes the file and renames it to what a completed part is called; the next reading begins a new one.
+Result<void, Failure> RecorderWorker::complete_file() {
+  if (auto closed = writer_->close(); !closed) return closed;
+  writer_.reset();
+  UtcTime begin = *began_;
+  for (int tries = 0; tries < kMostPartNames; ++tries) {
+    if (drivers::windlog::is_free_name(drivers::windlog::part_name(file_, begin))) break;
+    begin += std::chrono::seconds(1);
+  }
+  const std::filesystem::path part = drivers::windlog::part_name(file_, begin);
+  // Where another program reads it, its newest readings may still lie beside it.
+  const std::error_code error = drivers::windlog::rename_recording(file_, part);
+  if (error) return Failure{file_.string() + ": cannot be renamed to " + part.string() + ": " + error.message()};
+  return {};
+}
+
+/// Deletes what is not to be kept. Fails where there is less space all the same than is to be left free.
+Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
+  const settings::RecordingConfig rules = with_room_to_grow(rules_);
+  auto free_bytes = measure_free_space();
+  const bool is_enough_free = !free_bytes || *free_bytes >= rules.least_free_bytes;
+  if (is_enough_free && rules.keep_days == 0 && rules.most_bytes == 0) return {};
+
+  std::vector<KeptPart> parts;
+  for (const auto& part : drivers::windlog::completed_parts(file_)) {
+    parts.push_back({part.file, part.begin, size_of(part.file)});
+  }
+  for (const auto& part :
+       parts_to_delete(rules, parts, size_of(file_), free_bytes.value_or(rules.least_free_bytes), now)) {
+    if (drivers::windlog::remove_recording(part)) report("deleted " + part.string() + ", which is not to be kept");
+  }
+  if (!parts.empty()) free_bytes = measure_free_space();
+  if (!free_bytes || *free_bytes >= rules.least_free_bytes) return {};
+  return Failure{file_.string() + ": " + megabytes(*free_bytes) + " are free on the disk, less than the " +
+                 megabytes(rules_.least_free_bytes) + " of [recording] min_free and what it grows by; free some space"};
+}
+
+/// Fails where the name has come to belong to another file or to none. SQLite does not report that.
+Result<void, Failure> RecorderWorker::check_name() const {
+  const auto named = identity_of(file_);
+  if (named && *named != identity_) return Failure{file_.string() + ": was replaced by another file"};
+  if (!named &&
+      (named.error() == std::errc::no_such_file_or_directory || named.error() == std::errc::not_a_directory)) {
+    return Failure{file_.string() + ": was removed or moved"};
+  }
+  return {};
+}
+
+Result<void, Failure> RecorderWorker::open_session(Instant started) {
+  drivers::windlog::finish_rename_to_part(file_);
+  const auto aside = drivers::windlog::set_older_recording_aside(file_);
+  if (!aside) return aside.error();
+  if (*aside) report(file_.string() + " was of an older format; it is kept as " + (*aside)->string());
+  create_private_file(file_);
+  auto opened = drivers::windlog::WindlogWriter::open(file_);
+  if (!opened) return opened.error();
+  const auto identity = identity_of(file_);
+  if (!identity) return Failure{file_.string() + ": " + identity.error().message()};
+  identity_ = *identity;
+  writer_.emplace(std::move(*opened));
+  commits_ = 0;
+  if (auto begun = begin_session_at(started); !begun) return begun;
+  const auto began = writer_->began();
+  if (!began) return began.error();
+  began_ = *began;
+  return {};
+}
+
+/// Begins a session in the file that is open.
+Result<void, Failure> RecorderWorker::begin_session_at(Instant started) {
+  if (auto begun = writer_->begin_session({started, info_.software, info_.configuration}); !begun) return begun;
+  sensor_ids_.clear();
+  for (const RecordedSensor& sensor : info_.sensors) {
+    const auto id = writer_->add_sensor(sensor.name, sensor.driver, sensor.options);
+    if (!id) return id.error();
+    sensor_ids_.push_back(*id);
+  }
+  is_session_due_ = false;
+  return {};
+}
+
+/// Sets why nothing can be written (empty: it can), reports a change once, and wakes those who wait for a status.
+void RecorderWorker::set_status(const std::string& error) {
+  bool changed = false;
+  {
+    const std::lock_guard lock(status_mutex_);
+    changed = error_.empty() != error.empty();
+    error_ = error;
+  }
+  status_changed_.notify_all();
+  if (!changed) return;
+  if (!error.empty()) {
+    report("interrupted, trying again: " + error);
+  } else {
+    report("resumed; " + count_text(status().lost, "reading") + " lost");
+  }
+}
+
+}  // namespace yuragi::daemon::recording

@@ -1,0 +1,162 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/recording/file_identity.hpp"
+#include "daemon/recording/recorder_status.hpp"
+#include "daemon/settings/recording_config.hpp"
+#include "drivers/windlog/windlog_writer.hpp"
+#include "engine/base/result.hpp"
+#include "engine/base/spsc_ring.hpp"
+#include "engine/base/time.hpp"
+#include "engine/wind/station_quantities.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi::daemon::recording {
+
+struct RecordedSensor {
+  std::string name;
+  std::string driver;
+  std::string options;  ///< TOML
+};
+
+/// What a recording says of the run that made it.
+struct RecordingInfo {
+  Instant started;
+  std::string software;       ///< "yuragi 0.1.0"
+  std::string configuration;  ///< TOML, as read
+  std::vector<RecordedSensor> sensors;
+};
+
+/// Called with a sentence when writing begins to fail and when it works again, and when an older recording was renamed.
+/// Must not throw.
+using RecorderReport = std::function<void(std::string_view)>;
+
+/// How long a Recorder waits, and for what.
+struct RecorderLimits {
+  Nanoseconds commit_every = std::chrono::seconds(1);
+  Nanoseconds hang_after = std::chrono::seconds(5);   ///< a disk that has not answered for so long hangs
+  Nanoseconds most_at_end = std::chrono::seconds(5);  ///< close() waits no longer
+};
+
+/// What a Recorder's thread does: takes readings from a ring, writes them to the recording, and begins a new file and
+/// deletes old ones as the rules say. Where the disk hangs
+/// the thread does, too, and nobody else: the other functions wait for no disk, but for the constructor's.
+class RecorderWorker {
+ public:
+  static constexpr std::size_t kMaxPending = 65'536;
+  static constexpr int kCommitsPerCheckpoint = 60;
+
+  /// Opens or creates the recording and begins its session. Throws FailureError (kCannotCreate) where it cannot.
+  RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules, RecordingInfo info,
+                 RecorderReport report, const RecorderLimits& limits);
+
+  /// Writes until `stop` is requested, then what is left, and closes the file.
+  void run(const std::stop_token& stop);
+
+  /// As Recorder::push(). Realtime-safe: yes; wait-free.
+  bool push(std::size_t sensor, const wind::WindReading& reading) noexcept;
+  bool push(std::size_t sensor, const wind::StationQuantities& quantities) noexcept;
+
+  /// As Recorder::begin_session().
+  void begin_session(RecordingInfo info, const settings::RecordingConfig& rules);
+
+  /// Thread-safe: yes. Realtime-safe: no.
+  RecorderStatus status() const;
+  bool wait_until(const std::function<bool(const RecorderStatus&)>& is_so, Nanoseconds at_most) const;
+  /// Waits until run() has come to its end; false if it does not within `at_most`.
+  bool wait_for_end(Nanoseconds at_most) const;
+  /// Nothing is reported any more, but for `sentence`, which is the last.
+  void report_at_last(std::string_view sentence);
+
+ private:
+  /// A reading; or, with kNextSession in place of a sensor, the place between two where the next session begins.
+  struct Entry {
+    std::size_t sensor = 0;
+    wind::WindReading reading;
+  };
+  struct QuantitiesEntry {
+    std::size_t sensor = 0;
+    wind::StationQuantities quantities;
+  };
+  static constexpr std::size_t kNextSession = ~std::size_t{0};
+  using SteadyTime = std::chrono::steady_clock::time_point;
+
+  void finish();
+  void flush();
+  Result<void, Failure> try_to_write();
+  Result<void, Failure> write_pending();
+  Result<void, Failure> write_readings(std::size_t count);
+  Result<void, Failure> write_quantities();
+  Result<void, Failure> append_quantities();
+  Result<void, Failure> prepare_file(Instant first, Instant earliest);
+  Result<void, Failure> begin_session_at(Instant started);
+  void take_next_session();
+  void take_rules();
+  void push_marks() noexcept;
+  Result<void, Failure> commit();
+  Result<void, Failure> check_name() const;
+  Result<void, Failure> open_session(Instant started);
+  Result<void, Failure> complete_file();
+  Result<void, Failure> make_room(UtcTime now);
+  std::optional<std::uint64_t> measure_free_space();
+  void report(std::string_view sentence);
+  void set_status(const std::string& error);
+  RecorderStatus locked_status() const;
+
+  std::filesystem::path file_;
+  settings::RecordingConfig rules_;
+  RecordingInfo info_;
+  RecorderLimits limits_;
+  SpscRing<Entry> ring_;
+  SpscRing<QuantitiesEntry> quantities_ring_;
+  std::atomic<std::uint64_t> pushed_{0};
+  std::atomic<std::uint64_t> written_{0};
+  std::atomic<std::uint64_t> lost_{0};
+  std::atomic<std::uint64_t> lost_quantities_{0};
+  std::atomic<std::uint64_t> given_up_{0};  ///< of those that were pushed, the lost ones
+
+  std::size_t marks_due_ = 0;  ///< of the thread that pushes: sessions whose place is not in the ring yet
+  std::mutex sessions_mutex_;
+  std::deque<RecordingInfo> next_sessions_;
+  std::optional<settings::RecordingConfig> next_rules_;
+
+  std::mutex report_mutex_;
+  RecorderReport report_;
+
+  mutable std::mutex status_mutex_;
+  mutable std::condition_variable status_changed_;
+  std::string error_;
+  std::optional<std::uint64_t> free_bytes_;
+  std::optional<SteadyTime> writing_since_;  ///< while it is at the disk
+  bool has_ended_ = false;
+
+  // The recorder's thread alone, once it runs.
+  std::vector<Entry> pending_;
+  std::vector<QuantitiesEntry> pending_quantities_;
+  std::optional<drivers::windlog::WindlogWriter> writer_;
+  FileIdentity identity_;         ///< of the file that writer_ writes
+  std::optional<UtcTime> began_;  ///< that file's first session, once it has readings
+  std::vector<std::int64_t> sensor_ids_;
+  bool is_session_due_ = false;  ///< the next reading begins one
+  int commits_ = 0;              ///< since the file was opened
+  Nanoseconds back_off_{0};
+  SteadyTime retry_at_{};
+
+  std::mutex wake_mutex_;
+  std::condition_variable_any wake_;
+};
+
+}  // namespace yuragi::daemon::recording

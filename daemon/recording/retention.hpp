@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "daemon/settings/recording_config.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi::daemon::recording {
+
+// How much of a recording is kept. Pure.
+
+/// Is a file that began at a moment, and is so large, to be completed, so that a new one is begun?
+bool is_complete(const settings::RecordingConfig& rules, UtcTime begin, std::uint64_t bytes, UtcTime now);
+
+/// What a recording may grow by between two looks at its size: SQLite's log beside the file (1000 pages of 4 KiB until
+/// they are moved into it) and the file itself, with room to spare.
+inline constexpr std::uint64_t kGrowthBetweenLooks_bytes = 8'000'000;
+
+/// The same rules with their limits tightened by kGrowthBetweenLooks_bytes, so that the limits hold until the next
+/// look, too; a total size by a quarter of itself at most.
+settings::RecordingConfig with_room_to_grow(settings::RecordingConfig rules);
+
+/// A completed file of a recording.
+struct KeptPart {
+  std::filesystem::path file;
+  UtcTime begin;
+  std::uint64_t bytes = 0;
+};
+
+/// Those of the completed files (given oldest first) that are to be deleted, oldest first: too old, or more than the
+/// limits of size and free space allow. `written_bytes`: of the file that is being written, which is never deleted.
+std::vector<std::filesystem::path> parts_to_delete(const settings::RecordingConfig& rules,
+                                                   std::span<const KeptPart> parts, std::uint64_t written_bytes,
+                                                   std::uint64_t free_bytes, UtcTime now);
+
+}  // namespace yuragi::daemon::recording

@@ -1,0 +1,156 @@
+#include "daemon/sensing/recorded_installation.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "drivers/recording/recording_player.hpp"
+#include "drivers/windlog/log_moment.hpp"
+#include "drivers/windlog/windlog_reader.hpp"
+#include "engine/base/version.hpp"
+
+namespace yuragi::daemon::sensing {
+namespace {
+
+using drivers::windlog::LoggedSession;
+using drivers::windlog::WindlogReader;
+
+/// So many changes of the configuration are named in the log.
+constexpr std::size_t kMostChangesNamed = 5;
+
+/// A sensor of the installation of which the recording has no reading.
+class SilentSensor final : public drivers::sensor::Sensor {
+ public:
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+    if (!std::exchange(has_told_, true)) {
+      sink.link(wind::LinkState::kFinished, "the recording has no reading of it");
+    }
+    return clock.now().mono + std::chrono::hours(1);
+  }
+
+ private:
+  bool has_told_ = false;
+};
+
+/// A failure to read a recording is one of its data, whatever SQLite calls it.
+Failure of_recorded_data(const Failure& failure) {
+  return {failure.message, failure.kind == FailureKind::kOther ? FailureKind::kBadData : failure.kind};
+}
+
+Result<Nanoseconds, Failure> begin_in(WindlogReader& reader, const std::string& start) {
+  const auto moment = drivers::windlog::parse_log_moment(start);
+  if (!moment) return moment.error();
+  const auto begin = drivers::windlog::log_time_of(reader, *moment);
+  if (!begin) return of_recorded_data(begin.error());
+  if (reader.sessions().empty()) {
+    return Failure{reader.file().string() + ": there is no reading in this recording", FailureKind::kBadData};
+  }
+  if (!*begin || **begin > reader.duration()) {
+    return Failure{reader.file().string() + ": ends before " + start, FailureKind::kBadData};
+  }
+  return **begin;
+}
+
+Result<settings::Config, Failure> configuration_of(const WindlogReader& reader, const LoggedSession& session) {
+  const std::string place = fmt::format("{}: configuration of session {}", reader.file().string(), session.id);
+  const auto text = reader.configuration(session.id);
+  if (!text) return of_recorded_data(text.error());
+  if (text->find_first_not_of(" \t\r\n") == std::string::npos) {
+    return Failure{place + ": is empty, as of a recording that was imported; replay it with --config FILE",
+                   FailureKind::kBadData};
+  }
+  try {
+    return settings::parse_config(*text, place);
+  } catch (const settings::ConfigError& error) {
+    throw settings::ConfigError(fmt::format(
+        "{}\n{}: was written by {}; this is {}. Save it in a file, change these keys, and replay with --config FILE",
+        error.what(), place, session.software, with_version("yuragi")));
+  }
+}
+
+/// Has this sensor a reading from a log time on?
+Result<bool, Failure> speaks_after(WindlogReader& reader, const std::string& sensor, Nanoseconds begin) {
+  std::vector<bool> is_it;
+  for (const auto& candidate : reader.sensors()) is_it.push_back(candidate.name == sensor);
+  if (std::ranges::find(is_it, true) == is_it.end()) return false;
+  const auto last = reader.last_log_time(is_it);
+  if (!last) return of_recorded_data(last.error());
+  return *last && **last >= begin;
+}
+
+/// A sentence where the recording comes to a configuration that is neither that of the first session nor the last one
+/// named.
+Result<std::vector<std::string>, Failure> changes_after(const WindlogReader& reader, const LoggedSession& first) {
+  const auto replayed = reader.configuration(first.id);
+  if (!replayed) return of_recorded_data(replayed.error());
+  std::vector<std::string> sentences;
+  std::string before = *replayed;
+  std::size_t count = 0;
+  for (const LoggedSession& session : reader.sessions()) {
+    if (session.log_begin <= first.log_begin) continue;
+    auto text = reader.configuration(session.id);
+    if (!text) return of_recorded_data(text.error());
+    if (*text != *replayed && *text != before && ++count <= kMostChangesNamed) {
+      sentences.push_back(fmt::format(
+          "from {:%Y-%m-%dT%H:%M:%S}Z on (session {}) it was recorded with another configuration; it is replayed with "
+          "that of session {}",
+          std::chrono::floor<std::chrono::seconds>(session.first.utc), session.id, first.id));
+    }
+    before = std::move(*text);
+  }
+  if (count > kMostChangesNamed) {
+    sentences.push_back(fmt::format("{} further changes of the configuration", count - kMostChangesNamed));
+  }
+  return sentences;
+}
+
+}  // namespace
+
+Result<RecordedInstallation, Failure> recorded_installation(const std::filesystem::path& recording,
+                                                            const drivers::windlog::PlayerOptions& options) {
+  auto reader = WindlogReader::open(recording);
+  if (!reader) return reader.error();
+  const auto begin = begin_in(*reader, options.playback.start);
+  if (!begin) return begin.error();
+  const auto sessions = reader->sessions();
+  const auto session = std::ranges::find_if(sessions, [&](const auto& each) { return each.log_end() >= *begin; });
+
+  auto config = configuration_of(*reader, *session);
+  if (!config) return config.error();
+  RecordedInstallation installation{
+      .config = std::move(*config), .begin = session->first.utc + (*begin - session->log_begin), .remarks = {}};
+  installation.config.wind.fallback.reset();
+  installation.config.shaping.site_file.clear();
+
+  bool is_any_played = false;
+  for (settings::SensorConfig& sensor : installation.config.sensors) {
+    const auto speaks = speaks_after(*reader, sensor.name, *begin);
+    if (!speaks) return speaks.error();
+    is_any_played = is_any_played || *speaks;
+    if (!*speaks) installation.remarks.push_back(fmt::format("sensor {} has no reading, and is silent", sensor.name));
+    drivers::windlog::PlayerOptions of_sensor = options;
+    of_sensor.playback.sensor = sensor.name;
+    of_sensor.stays_with_others = true;
+    sensor.stand_in = settings::StandIn{
+        .recording = recording,
+        .open = [recording, of_sensor, speaks = *speaks]() -> std::unique_ptr<drivers::sensor::Sensor> {
+          if (!speaks) return std::make_unique<SilentSensor>();
+          return drivers::recording::play_recording(recording, of_sensor);
+        }};
+  }
+  if (!is_any_played) {
+    return Failure{
+        recording.string() + ": has no reading of a sensor of its configuration; replay it with --config FILE",
+        FailureKind::kBadData};
+  }
+  auto changes = changes_after(*reader, *session);
+  if (!changes) return changes.error();
+  std::ranges::move(*changes, std::back_inserter(installation.remarks));
+  return installation;
+}
+
+}  // namespace yuragi::daemon::sensing

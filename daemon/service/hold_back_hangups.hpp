@@ -1,0 +1,9 @@
+#pragma once
+
+namespace yuragi::daemon::service {
+
+/// Holds SIGHUP back until a Service takes it, so that none is lost. To be called before the configuration is read, and
+/// before there are threads.
+void hold_back_hangups();
+
+}  // namespace yuragi::daemon::service

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/settings/config.hpp"
+#include "daemon/settings/reload_plan.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::daemon::service {
+
+/// What a Reload needs of the daemon.
+struct ReloadParts {
+  /// Carries out a function on the I/O thread, soon. To be called on any thread.
+  std::function<void(std::function<void()>)> post;
+
+  /// The absolute path of the configuration, and how it is read: on the reload's thread, which a disk may hold up for
+  /// ever; so it owns all that it uses. Throws ConfigError. Empty: there is no file.
+  std::string file;
+  std::function<settings::Config()> read;
+
+  /// Makes the scenes of a configuration, on the reload's thread. What it returns brings them to the animation, on the
+  /// I/O thread, and cannot fail. Throws ConfigError or FailureError where they cannot be made; `is_given_up` tells it
+  /// to return early, with anything. Empty: other scenes take a restart.
+  using Adopt = std::function<void()>;
+  std::function<Adopt(const settings::Config& next, const std::function<bool()>& is_given_up)> make_scenes;
+
+  /// Applies all but the scenes, on the I/O thread. Cannot fail.
+  std::function<void(const settings::ReloadPlan& plan)> apply;
+
+  /// Is the last reload still being carried out, by scenes that fade? The next begins after that (go_on()). Empty:
+  /// never.
+  std::function<bool()> is_settling = {};
+};
+
+/// Reads the configuration again while the daemon runs, and applies what can change: file, check and scenes on a thread
+/// of its own, and then, when nothing can fail any more, everything at once on the I/O thread. A mistake changes
+/// nothing. What was done is logged and told to the clients who asked.
+///
+/// Requests that come while a reload is under way are answered by one more after it. Belongs to the I/O thread.
+class Reload {
+ public:
+  using Reply = std::function<void(const wire::ReloadReport&)>;
+
+  /// At most so many clients wait for a reload; further ones are told to try again.
+  static constexpr std::size_t kMostWaiting = 64;
+
+  /// `running`: the configuration that the daemon began with.
+  Reload(const settings::Config& running, ReloadParts parts);
+
+  /// Gives up what is under way: waits for scenes that are being made, but not for a disk that hangs.
+  ~Reload();
+  Reload(const Reload&) = delete;
+  Reload& operator=(const Reload&) = delete;
+
+  /// Reads the configuration again. `expected_file`: the client's, as wire::ReloadCommand::file. `reply` is called
+  /// once, with what came of it; not where the daemon ends before.
+  void request(const std::string& expected_file = {}, Reply reply = {});
+
+  /// Begins the reload that waits, if one does. To be called whenever the last one may have been carried out.
+  void go_on();
+
+  /// Has the configuration been asked for, and not been dealt with yet?
+  bool is_under_way() const noexcept { return task_ != nullptr || is_due_; }
+
+ private:
+  struct Task;
+
+  void begin();
+  void finish();
+
+  ReloadParts parts_;
+  std::shared_ptr<const settings::Config> running_;
+  std::shared_ptr<Task> task_;      ///< shared with its thread, which may outlive this
+  std::vector<Reply> asked_;        ///< those whom the present reload answers
+  std::vector<Reply> asked_since_;  ///< and the next
+  bool is_due_ = false;             ///< another one has been asked for
+};
+
+}  // namespace yuragi::daemon::service

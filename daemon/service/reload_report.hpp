@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::daemon::service {
+
+/// One line for clients that show the message of a reply only.
+std::string summary_of(const wire::ReloadReport& report);
+
+/// The same without the folders of the absolute paths in its texts: for clients of other machines.
+wire::ReloadReport without_folders(wire::ReloadReport report);
+
+}  // namespace yuragi::daemon::service

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "daemon/service/watchdog_feed.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::daemon::service {
+
+/// What systemd is told of the daemon: that it is ready, a line on how it does, that it ends, and that it is alive.
+/// Where nothing listens (NOTIFY_SOCKET is not set) every call does nothing. Never waits: what a service manager that
+/// hangs does not take is said again later. For the I/O thread.
+///
+/// Source: sd_notify(3) of systemd 252, whose protocol is declared stable. Its own function is not used: it waits while
+/// the manager's queue is full.
+class ServiceManager {
+ public:
+  /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. `with_animation`: the watchdog watches the animation, too.
+  explicit ServiceManager(bool with_animation);
+  ~ServiceManager();
+  ServiceManager(const ServiceManager&) = delete;
+  ServiceManager& operator=(const ServiceManager&) = delete;
+
+  /// READY=1, until it is taken.
+  void say_ready();
+
+  /// RELOADING=1, which the next READY=1 ends.
+  void say_reloading();
+
+  /// STATUS=: one plain line, of the status that clients get. Sent where it is not the line sent last.
+  void say_status(const wire::Sensors& status);
+
+  /// STOPPING=1.
+  void say_stopping(const std::string& why);
+
+  /// The I/O thread has gone round, and the animation has made so many ticks. Feeds the watchdog where that is due.
+  void went_round(MonoTime now, std::uint64_t animation_ticks);
+
+ private:
+  /// Sends a message. False where it is not taken now.
+  bool notify(const std::string& message) const;
+
+  std::string socket_name_;  ///< a path, or a name in Linux's abstract namespace after '@'; empty: none
+  int socket_ = -1;
+  std::optional<WatchdogFeed> watchdog_;
+  bool is_ready_ = false;
+  std::string status_;
+};
+
+}  // namespace yuragi::daemon::service

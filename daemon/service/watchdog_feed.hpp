@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/base/time.hpp"
+
+namespace yuragi::daemon::service {
+
+/// Decides when a service manager's watchdog is fed: at most every quarter of its time-out, and only when both the I/O
+/// thread and the animation have gone round since it was fed last. What else may hang (a disk, a device) is a state
+/// that the stream tells, and does not keep the watchdog from being fed. Pure; for one thread.
+class WatchdogFeed {
+ public:
+  /// `timeout`: the service manager restarts a program that has not fed its watchdog for so long. Without an animation
+  /// the I/O thread alone has to go round.
+  WatchdogFeed(Nanoseconds timeout, bool with_animation) : interval_(timeout / 4), with_animation_(with_animation) {}
+
+  /// The I/O thread has gone round once more.
+  void io_went_round() { io_has_ = true; }
+
+  /// How many ticks the animation has made until now.
+  void animation_has_made(std::uint64_t ticks) {
+    animation_has_ = animation_has_ || ticks != ticks_;
+    ticks_ = ticks;
+  }
+
+  /// Is it to be fed at `now`? Where it is, everybody has to go round anew.
+  bool take(MonoTime now) {
+    if (!io_has_ || (with_animation_ && !animation_has_)) return false;
+    if (has_fed_ && now - fed_ < interval_) return false;
+    has_fed_ = true;
+    fed_ = now;
+    io_has_ = animation_has_ = false;
+    return true;
+  }
+
+ private:
+  Nanoseconds interval_;
+  bool with_animation_;
+  bool io_has_ = false, animation_has_ = false, has_fed_ = false;
+  std::uint64_t ticks_ = 0;
+  MonoTime fed_{};
+};
+
+}  // namespace yuragi::daemon::service

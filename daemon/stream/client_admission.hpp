@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace yuragi::daemon::stream {
+
+/// How many clients may be connected at once.
+struct AdmissionLimits {
+  std::size_t max_clients = 32;
+  std::size_t max_clients_per_address = 8;  ///< of each other machine; this machine has no such limit
+};
+
+/// Where a client is.
+struct Peer {
+  std::string address;  ///< without the port
+  bool is_local = false;
+};
+
+/// The number of places that only clients of this machine get, so that a technician on it can always see what is wrong:
+/// the last 4, or half of them where there are fewer than 8.
+std::size_t places_kept_for_this_machine(const AdmissionLimits& limits);
+
+/// Why `newcomer` may not connect besides those who are connected; nothing where it may. Pure.
+std::optional<std::string> admission_refusal(const AdmissionLimits& limits, std::span<const Peer> connected,
+                                             const Peer& newcomer);
+
+}  // namespace yuragi::daemon::stream

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "engine/base/time.hpp"
+
+namespace yuragi::daemon::stream {
+
+/// How many lines others may cause in the log: a token bucket. `burst` lines at once, and `per_s` in the long run; what
+/// is left out is counted. Pure: time is a parameter. Thread-safe: no. Realtime-safe: yes.
+class LogAllowance {
+ public:
+  struct Settings {
+    double burst = 60.0;  ///< lines
+    double per_s = 1.0;   ///< lines per second
+    Nanoseconds told_every = std::chrono::seconds(10);
+  };
+
+  LogAllowance(const Settings& settings, MonoTime now)
+      : settings_(settings), tokens_(settings.burst), filled_(now), told_(now) {}
+
+  /// May a line be written at `now`? Where not, it is counted.
+  bool take(MonoTime now) noexcept {
+    tokens_ = std::min(settings_.burst, tokens_ + settings_.per_s * seconds(now - filled_));
+    filled_ = now;
+    if (tokens_ < 1.0) {
+      ++left_out_;
+      return false;
+    }
+    tokens_ -= 1.0;
+    return true;
+  }
+
+  /// How many lines were left out since it was last told; 0 where none, or where it was told less than told_every ago.
+  std::uint64_t tell_left_out(MonoTime now) noexcept {
+    if (left_out_ == 0 || now - told_ < settings_.told_every) return 0;
+    told_ = now;
+    const std::uint64_t count = left_out_;
+    left_out_ = 0;
+    return count;
+  }
+
+ private:
+  Settings settings_;
+  double tokens_;
+  MonoTime filled_, told_;
+  std::uint64_t left_out_ = 0;
+};
+
+}  // namespace yuragi::daemon::stream

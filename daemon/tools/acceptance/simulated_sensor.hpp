@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/settings/sensor_config.hpp"
+#include "daemon/tools/acceptance/acceptance.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi::daemon::tools::acceptance {
+
+// The wind that is simulated, without turbulence: values that every device can say exactly, also one that knows eight
+// points of the compass.
+inline constexpr double kSimulatedSpeed_m_s = 8.0;
+inline constexpr double kSimulatedDirection_deg = 225.0;
+
+/// How a configured sensor is simulated.
+struct SimulationPlan {
+  std::vector<std::string> arguments;  ///< of yuragi-sim, which listens at a free port of 127.0.0.1
+  settings::SensorConfig sensor;       ///< the configured one, but for the way to its device; without its port
+  ExpectedWind expected;               ///< of its calibrated readings
+};
+
+/// Plans the simulation of a sensor. Fails, in words for the technician, where yuragi-sim cannot play it without
+/// special rights: a driver of USB, sound or messages; slave ids or lines that it does not play. A Modbus device has
+/// its factory slave ids, or those that the sensor's entry sets, never those of the profile: a profile with wrong ones
+/// is to show. Pure.
+Result<SimulationPlan, Failure> plan_simulation(const settings::SensorConfig& sensor);
+
+/// The same sensor with its device at this port.
+settings::SensorConfig at_port(settings::SensorConfig sensor, std::uint16_t port);
+
+/// The port in the first line of a simulator ("listening on 127.0.0.1:4001"). None: it says none, or not yet whole.
+std::optional<std::uint16_t> simulator_port(std::string_view output);
+
+}  // namespace yuragi::daemon::tools::acceptance

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdio>
+
+#include "daemon/tools/csv/csv_export.hpp"
+
+namespace yuragi::daemon::tools::csv {
+
+/// Writes what stations said besides the wind as CSV: time_utc (the beginning of the second, in ISO 8601), sensor, and
+/// a column for each of wind::kStationQuantities, empty where it was not told. `CsvExportReport::skipped` counts rows
+/// that cannot be such. `out` is not closed. Fails as the reader does, or where `out` cannot be written to.
+/// Thread-safe: yes, with separate readers.
+Result<CsvExportReport, Failure> export_quantities_csv(const drivers::windlog::WindlogReader& reader,
+                                                       const CsvExportRange& range, std::FILE* out);
+
+}  // namespace yuragi::daemon::tools::csv

@@ -1,0 +1,77 @@
+#include "daemon/tools/doctor/doctor.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "daemon/settings/secret_exposure.hpp"
+#include "daemon/tools/doctor/judgements.hpp"
+#include "daemon/tools/doctor/machine_probe.hpp"
+#include "daemon/tools/doctor/sensor_probe.hpp"
+
+namespace yuragi::daemon::tools::doctor {
+namespace {
+
+constexpr auto kNetworkTimeout = std::chrono::seconds(2);
+
+void append(std::vector<Finding>& all, std::vector<Finding> more) {
+  for (Finding& finding : more) all.push_back(std::move(finding));
+}
+
+/// As the running daemon measures it, else one reading a second from each sensor.
+double readings_per_s(const settings::Config& config, const std::optional<wire::Sensors>& running) {
+  double rate_hz = 0.0;
+  if (running) {
+    for (const wire::SensorStatus& sensor : running->sensors)
+      rate_hz += sensor.interval_s > 0.0 ? 1.0 / sensor.interval_s : 0.0;
+  }
+  return rate_hz > 0.0 ? rate_hz : static_cast<double>(config.sensors.size());
+}
+
+/// What is plugged in and cannot be opened, although no sensor of the configuration names it.
+void add_other_devices(std::vector<Finding>& all, std::span<const sensors::DeviceFinding> plugged) {
+  std::vector<std::string> told;
+  told.reserve(all.size());
+  for (const Finding& finding : all) told.push_back(finding.text);
+  for (const sensors::DeviceFinding& found : plugged) {
+    if (found.device.trouble.empty()) continue;
+    const bool is_told = std::ranges::any_of(
+        told, [&](const std::string& text) { return text.find(found.device.what) != std::string::npos; });
+    if (is_told) continue;
+    told.push_back(found.device.what);
+    all.push_back({Verdict::kWarning, "device", found.device.what + ": " + found.device.trouble, found.device.remedy});
+  }
+}
+
+}  // namespace
+
+std::vector<Finding> examine(const Examination& examination) {
+  std::vector<Finding> all;
+  ConfigFacts config_facts{.file = examination.config_file ? examination.config_file->string() : std::string(),
+                           .error = examination.config_error};
+  if (examination.config && examination.config_file)
+    config_facts.exposed = settings::exposed_secrets(*examination.config, *examination.config_file);
+  append(all, judge(config_facts));
+
+  const settings::Config config = examination.config ? *examination.config : settings::default_config();
+  std::optional<wire::Sensors> running;
+  if (examination.daemon) running = examination.daemon->sensors;
+  const auto plugged = sensors::find_devices(drivers::sensor::driver_table());
+  if (examination.config) {
+    for (const DeviceFacts& device : probe_devices(config, plugged, running, kNetworkTimeout))
+      all.push_back(judge(device));
+  }
+  add_other_devices(all, plugged);
+  append(all, judge(probe_groups(needed_groups(config))));
+  all.push_back(judge(probe_clock()));
+  if (config.recording.file) all.push_back(judge(probe_disk(config.recording, readings_per_s(config, running))));
+
+  const std::string daemon = examination.daemon ? examination.daemon->software : std::string();
+  all.push_back(judge(probe_port(config.stream.listen, daemon)));
+  const DisplayFacts display = probe_display();
+  append(all, judge(display));
+  append(all, judge(probe_versions(daemon, display.viewer)));
+  append(all, judge(probe_limits(config)));
+  return all;
+}
+
+}  // namespace yuragi::daemon::tools::doctor

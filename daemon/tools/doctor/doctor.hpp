@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/settings/config.hpp"
+#include "daemon/tools/doctor/finding.hpp"
+#include "daemon/tools/sensors/daemon_status.hpp"
+
+namespace yuragi::daemon::tools::doctor {
+
+/// What is to be examined.
+struct Examination {
+  std::optional<std::filesystem::path> config_file;  ///< none: the built-in configuration
+  std::optional<settings::Config> config;            ///< none: it has errors
+  std::string config_error;                          ///< those, a line for each
+  std::optional<sensors::DaemonStatus> daemon;       ///< the one that runs, where one does
+};
+
+/// Looks at the devices that the configuration names, permissions, clock, disk, ports, graphics, versions and limits of
+/// this machine, and judges each. Changes nothing, and opens no device for longer than a driver's search does. Takes
+/// some seconds: 2 s for each network device that does not answer.
+std::vector<Finding> examine(const Examination& examination);
+
+}  // namespace yuragi::daemon::tools::doctor

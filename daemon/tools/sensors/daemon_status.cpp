@@ -1,0 +1,44 @@
+#include "daemon/tools/sensors/daemon_status.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/settings/duration_text.hpp"
+#include "daemon/tools/sensors/attention.hpp"
+#include "daemon/tools/sensors/player_text.hpp"
+#include "daemon/tools/sensors/sensor_json.hpp"
+#include "daemon/tools/sensors/sensor_table.hpp"
+
+namespace yuragi::daemon::tools::sensors {
+
+std::string status_text(const DaemonStatus& status) {
+  const std::vector<std::string> attention = needs_attention(status.sensors);
+  std::string text = fmt::format("{} at {}", status.software, status.address);
+  if (status.running_s) text += fmt::format(", running for {}", settings::duration_text(*status.running_s));
+  text += attention.empty() ? ": all is well\n" : ": needs attention\n";
+  for (const std::string& sentence : attention) text += fmt::format("  - {}\n", sentence);
+  text += "\n" + sensor_table(status.sensors);
+  if (!status.scenes.empty()) text += '\n';
+  for (const wire::SceneState& scene : status.scenes)
+    text += fmt::format("scene {} ({}): {}\n", scene.name, scene.kind, scene.shown ? "shown" : "hidden");
+  if (!status.players.empty()) text += '\n';
+  for (const wire::PlayerState& player : status.players) text += "recording " + player_text(player);
+  return text;
+}
+
+nlohmann::ordered_json status_json(const DaemonStatus& status) {
+  const std::vector<std::string> attention = needs_attention(status.sensors);
+  nlohmann::ordered_json json = {{"verdict", attention.empty() ? "well" : "attention"},
+                                 {"attention", attention},
+                                 {"address", status.address},
+                                 {"software", status.software},
+                                 {"tick_rate_hz", status.tick_rate_hz},
+                                 {"running_s", nullptr}};
+  if (status.running_s) json["running_s"] = *status.running_s;
+  json.update(sensors_json(status.sensors));
+  json["scenes"] = scenes_json(status.scenes);
+  json["players"] = players_json(status.players);
+  return json;
+}
+
+}  // namespace yuragi::daemon::tools::sensors

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+namespace yuragi::daemon::tools::sensors {
+
+/// A value as JSON, null where there is none.
+template <class Value>
+nlohmann::ordered_json json_or_null(const std::optional<Value>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+}  // namespace yuragi::daemon::tools::sensors

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::daemon::tools::sensors {
+
+/// How a recording that is played does, on one line for a person.
+std::string player_text(const wire::PlayerState& player);
+
+}  // namespace yuragi::daemon::tools::sensors

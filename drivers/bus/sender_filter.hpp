@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/ip/network_v4.hpp>
+#include <boost/asio/ip/network_v6.hpp>
+
+#include "engine/base/result.hpp"
+
+namespace yuragi::drivers::bus {
+
+/// Whose datagrams are taken. An address that a sender claims can be forged by whoever shares its network: this keeps
+/// mistakes and strangers away, and does not replace a firewall.
+///
+/// Thread-safe: its const functions are.
+class SenderFilter {
+ public:
+  /// From addresses and nets separated by commas: "192.168.1.20, 10.0.0.0/8, fd00::/8". Empty: takes any sender. The
+  /// failure's text: which is neither an address nor a net.
+  static Result<SenderFilter, Failure> parse(const std::string& senders);
+
+  /// An IPv4 address that came through an IPv6 socket counts as IPv4.
+  bool takes(const boost::asio::ip::address& sender) const;
+
+ private:
+  std::vector<boost::asio::ip::network_v4> v4_;
+  std::vector<boost::asio::ip::network_v6> v6_;
+};
+
+/// IPv4 addresses that came through an IPv6 socket look like it; people write them as they are.
+boost::asio::ip::address plain_address(const boost::asio::ip::address& address);
+
+/// Can only programs of this machine send to it? Fails where it is no address.
+Result<bool, Failure> is_loopback(const std::string& address);
+
+}  // namespace yuragi::drivers::bus

@@ -1,0 +1,42 @@
+#include "drivers/sensor/secret_source.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+
+namespace yuragi::drivers::sensor {
+
+Result<Secret, Failure> secret_in_file(const std::filesystem::path& file) {
+  const auto fail = [&file](const std::string& why) { return Failure{"\"" + file.string() + "\" " + why}; };
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found) return fail("does not exist");
+  if (error) return fail("cannot be read: " + error.message());
+  if (!std::filesystem::is_regular_file(status)) return fail("is not a regular file");  // a pipe would be waited for
+
+  std::ifstream input(file, std::ios::binary);
+  if (!input) return fail("cannot be read; allow it to the user that this program runs as");
+  std::string text(kLongestSecretFile + 1, '\0');
+  input.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (input.bad()) return fail("cannot be read");
+  text.resize(static_cast<std::size_t>(input.gcount()));
+  if (text.size() > kLongestSecretFile) {
+    return fail("is too long; allowed: " + std::to_string(kLongestSecretFile) + " bytes");
+  }
+
+  if (text.ends_with('\n')) text.pop_back();
+  if (text.ends_with('\r')) text.pop_back();
+  if (text.empty()) return fail("is empty");
+  if (text.find('\n') != std::string::npos) return fail("has more than one line");
+  if (text.find('\0') != std::string::npos) return fail("has a zero byte in it");
+  return Secret(std::move(text));
+}
+
+Result<Secret, Failure> secret_in_environment(const std::string& variable) {
+  const char* const value = std::getenv(variable.c_str());  // NOLINT(concurrency-mt-unsafe): nobody changes it
+  if (value == nullptr) return Failure{"the environment variable \"" + variable + "\" is not set"};
+  if (*value == '\0') return Failure{"the environment variable \"" + variable + "\" is empty"};
+  return Secret(value);
+}
+
+}  // namespace yuragi::drivers::sensor

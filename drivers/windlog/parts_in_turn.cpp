@@ -1,0 +1,251 @@
+#include "drivers/windlog/parts_in_turn.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <ctime>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "drivers/windlog/contents.hpp"
+#include "drivers/windlog/merged_readings.hpp"
+#include "drivers/windlog/recording_parts.hpp"
+
+namespace yuragi::drivers::windlog {
+namespace {
+
+std::string utc_text(UtcTime moment) {
+  const std::time_t time_s = std::chrono::floor<std::chrono::seconds>(moment).time_since_epoch().count();
+  std::tm utc{};
+  gmtime_r(&time_s, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
+
+/// The moment in the name of a part; the last file of a series is named as the whole.
+std::optional<UtcTime> begin_by_name(const std::vector<std::filesystem::path>& files, std::size_t index) {
+  constexpr std::size_t kMomentLength = std::string_view("-20261123T000000Z").size();
+  std::filesystem::path whole = files[index];
+  const std::string stem = whole.stem().string();
+  if (stem.size() <= kMomentLength) return std::nullopt;
+  whole.replace_filename(stem.substr(0, stem.size() - kMomentLength) + whole.extension().string());
+  return begin_of_part(whole, files[index]);
+}
+
+/// " from ... to ...", by the moments in the names of a file and the next.
+std::string span_by_names(const std::vector<std::filesystem::path>& files, std::size_t index) {
+  const auto begin = begin_by_name(files, index);
+  const auto end = index + 1 < files.size() ? begin_by_name(files, index + 1) : std::nullopt;
+  std::string span;
+  if (begin) span += " from " + utc_text(*begin) + (end ? "" : " on");
+  if (end) span += " up to " + utc_text(*end);
+  return span;
+}
+
+/// One part after the other, of which one is open.
+class BlocksInTurn final : public ReadingBlocks {
+ public:
+  BlocksInTurn(const PartsInTurn& contents, std::vector<bool> of_sensors)
+      : contents_(contents), of_sensors_(std::move(of_sensors)) {}
+
+  void seek(Nanoseconds log_time) override {
+    part_ = 0;
+    while (part_ + 1 < contents_.parts().size() && contents_.parts()[part_].log_end < log_time) ++part_;
+    from_ = log_time;
+    readings_.reset();
+    read_to_.reset();
+  }
+
+  Result<void, Failure> read(std::vector<LoggedReading>& block, std::size_t& skipped) override {
+    block.clear();
+    while (part_ < contents_.parts().size()) {
+      if (!readings_) {
+        if (auto opened = open(); !opened) return opened;
+      }
+      const std::size_t skipped_before = readings_->skipped();
+      while (block.size() < static_cast<std::size_t>(kBlockRows)) {
+        const auto next = readings_->next();
+        if (!next && block.empty() && !contents_.leave_out_rest(contents_.parts()[part_], read_to_, next.error())) {
+          return next.error();
+        }
+        if (!next || !*next) break;
+        read_to_ = (*next)->reading.time.utc;
+        block.push_back(**next);
+        block.back().log_time += contents_.parts()[part_].log_begin;
+        block.back().sensor += contents_.parts()[part_].first_sensor;
+      }
+      skipped += readings_->skipped() - skipped_before;
+      // The last one may still grow.
+      if (!block.empty() || part_ + 1 == contents_.parts().size()) return {};
+      ++part_;
+      readings_.reset();
+      read_to_.reset();
+    }
+    return {};
+  }
+
+ private:
+  Result<void, Failure> open() {
+    const PartsInTurn::Part& part = contents_.parts()[part_];
+    auto file = contents_.open_part(part);
+    if (!file) return file.error();
+    auto blocks = file->readings->blocks(PartsInTurn::flags_of(part, of_sensors_));
+    if (!blocks) return blocks.error();
+    file_ = std::move(*file);
+    readings_.emplace(file_.database.get(), std::move(*blocks));
+    readings_->seek(from_ - part.log_begin);
+    return {};
+  }
+
+  const PartsInTurn& contents_;
+  std::vector<bool> of_sensors_;
+  std::size_t part_ = 0;
+  Nanoseconds from_{0};
+  std::optional<UtcTime> read_to_;  ///< in this part
+  StoredFile file_;
+  std::optional<MergedReadings> readings_;  ///< of file_
+};
+
+}  // namespace
+
+Result<std::unique_ptr<PartsInTurn>, Failure> PartsInTurn::open(const std::vector<std::filesystem::path>& files,
+                                                                const std::stop_token& stop) {
+  auto series = std::make_unique<PartsInTurn>();
+  series->stop_ = stop;
+  std::optional<Failure> first;
+  std::size_t readable = 0;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto added = series->add(files[i]);
+    if (added) {
+      ++readable;
+      continue;
+    }
+    if (stop.stop_requested()) return added.error();
+    if (!first) first = added.error();
+    series->leave_out(files[i], span_by_names(files, i), added.error());
+  }
+  if (first && readable == 0) return *first;
+  return series;
+}
+
+void PartsInTurn::leave_out(const std::filesystem::path& file, const std::string& span, const Failure& failure) const {
+  if (!damaged_files_.insert(file).second) return;
+  damage_.push_back(failure.message + "; its readings" + span + " are left out");
+}
+
+bool PartsInTurn::leave_out_rest(const Part& part, const std::optional<UtcTime>& read_to,
+                                 const Failure& failure) const {
+  if (stop_.stop_requested() || failure.kind != FailureKind::kBadData) return false;
+  leave_out(part.file, (read_to ? " after " + utc_text(*read_to) : "") + " up to " + utc_text(part.last), failure);
+  return true;
+}
+
+Result<void, Failure> PartsInTurn::add(const std::filesystem::path& file) {
+  auto opened = open_stored_file(file, stop_);
+  if (!opened && is_blank_file(file)) return {};
+  if (!opened) return opened.error();
+  const StoredReadings& own = *opened->readings;
+  if (own.sessions.empty()) return {};
+
+  Part part{.file = file, .first_sensor = sensors.size(), .sensor_count = own.sensors.size()};
+  if (!sessions.empty()) {
+    const Nanoseconds gap = own.sessions.front().first.utc - sessions.back().last.utc;
+    part.log_begin = sessions.back().log_end() + std::max(gap, Nanoseconds{0});
+  }
+  std::map<std::int64_t, std::int64_t> number_of;  // of a session, by its id in the file
+  for (LoggedSession session : own.sessions) {
+    session_places_.emplace_back(parts_.size(), session.id);
+    number_of[session.id] = static_cast<std::int64_t>(session_places_.size());
+    session.id = static_cast<std::int64_t>(session_places_.size());
+    session.log_begin += part.log_begin;
+    sessions.push_back(std::move(session));
+  }
+  for (LoggedSensor sensor : own.sensors) {
+    const auto number = number_of.find(sensor.session);
+    sensor.session = number == number_of.end() ? 0 : number->second;  // 0: of a session without readings
+    sensors.push_back(std::move(sensor));
+  }
+  part.log_end = sessions.back().log_end();
+  part.last = sessions.back().last.utc;
+  parts_.push_back(std::move(part));
+  return {};
+}
+
+std::vector<bool> PartsInTurn::flags_of(const Part& part, const std::vector<bool>& of_sensors) {
+  const auto begin = of_sensors.begin() + static_cast<std::ptrdiff_t>(part.first_sensor);
+  return {begin, begin + static_cast<std::ptrdiff_t>(part.sensor_count)};
+}
+
+Result<std::vector<std::unique_ptr<ReadingBlocks>>, Failure> PartsInTurn::blocks(
+    const std::vector<bool>& of_sensors) const {
+  std::vector<std::unique_ptr<ReadingBlocks>> all;
+  all.push_back(std::make_unique<BlocksInTurn>(*this, of_sensors));
+  return all;
+}
+
+Result<std::optional<Nanoseconds>, Failure> PartsInTurn::log_time_of(UtcTime moment) const {
+  for (const Part& part : parts_) {
+    auto file = open_part(part);
+    if (!file) return file.error();
+    const auto found = file->readings->log_time_of(moment);
+    if (!found && leave_out_rest(part, std::nullopt, found.error())) continue;
+    if (!found) return found.error();
+    if (*found) return std::optional(part.log_begin + **found);
+  }
+  return std::optional<Nanoseconds>{};
+}
+
+Result<std::optional<Nanoseconds>, Failure> PartsInTurn::last_log_time(const std::vector<bool>& of_sensors) const {
+  for (std::size_t back = 0; back < parts_.size(); ++back) {
+    const Part& part = parts_[parts_.size() - 1 - back];
+    const std::vector<bool> flags = flags_of(part, of_sensors);
+    if (std::ranges::find(flags, true) == flags.end()) continue;
+    auto file = open_part(part);
+    if (!file) return file.error();
+    const auto found = file->readings->last_log_time(flags);
+    if (!found && leave_out_rest(part, std::nullopt, found.error())) continue;
+    if (!found) return found.error();
+    if (*found) return std::optional(part.log_begin + **found);
+  }
+  return std::optional<Nanoseconds>{};
+}
+
+Result<std::size_t, Failure> PartsInTurn::each_quantities(Nanoseconds from, Nanoseconds to,
+                                                          const UseQuantities& use) const {
+  std::size_t skipped = 0;
+  for (std::size_t index = 0; index < parts_.size(); ++index) {
+    const Part& part = parts_[index];
+    const bool is_last = index + 1 == parts_.size();
+    if (part.log_begin >= to) break;
+    if (!is_last && parts_[index + 1].log_begin <= from) continue;
+    auto file = open_part(part);
+    if (!file) return file.error();
+    const auto passed = file->readings->each_quantities(
+        from - part.log_begin, to == Nanoseconds::max() ? to : to - part.log_begin, [&](LoggedQuantities logged) {
+          logged.log_time += part.log_begin;
+          logged.sensor += part.first_sensor;
+          use(logged);
+        });
+    if (passed) {
+      skipped += *passed;
+    } else if (!leave_out_rest(part, std::nullopt, passed.error())) {
+      return passed.error();
+    }
+  }
+  return skipped;
+}
+
+Result<std::string, Failure> PartsInTurn::configuration(std::int64_t session) const {
+  if (session < 1 || session > static_cast<std::int64_t>(session_places_.size())) {
+    return Failure{"there is no session " + std::to_string(session)};
+  }
+  const auto& [part, id] = session_places_[static_cast<std::size_t>(session - 1)];
+  auto file = open_part(parts_[part]);
+  if (!file) return file.error();
+  return file->readings->configuration(id);
+}
+
+}  // namespace yuragi::drivers::windlog

@@ -1,0 +1,81 @@
+#include "daemon/sensing/sensor_runner.hpp"
+
+#include <memory>
+#include <semaphore>
+#include <thread>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/manual_clock.hpp"
+
+namespace yuragi::daemon::sensing {
+namespace {
+
+/// A poll of it waits for `go_on`, whatever interrupts it, as a read from a disk that hangs does.
+class HangingSensor final : public drivers::sensor::Sensor {
+ public:
+  struct Gates {
+    std::binary_semaphore has_begun{0};
+    std::binary_semaphore go_on{0};
+  };
+
+  explicit HangingSensor(std::shared_ptr<Gates> gates) : gates_(std::move(gates)) {}
+
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink&) override {
+    gates_->has_begun.release();
+    gates_->go_on.acquire();
+    return clock.now().mono;
+  }
+
+ private:
+  std::shared_ptr<Gates> gates_;
+};
+
+TEST(SensorRunner, IsEndedWithoutWaitingForAPollThatHangs) {
+  const ManualClock clock;
+  const auto gates = std::make_shared<HangingSensor::Gates>();
+  SensorRunner runner(std::make_unique<HangingSensor>(gates), clock);
+  gates->has_begun.acquire();
+  runner.end();
+  EXPECT_FALSE(runner.has_ended());
+  gates->go_on.release();
+  while (!runner.has_ended()) std::this_thread::yield();
+}
+
+/// Says a temperature so many times in one poll.
+class TalkativeStation final : public drivers::sensor::Sensor {
+ public:
+  explicit TalkativeStation(int times) : times_(times) {}
+
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+    for (int i = 0; i < times_; ++i) {
+      wind::StationQuantities quantities;
+      quantities.time = clock.now();
+      quantities.air_temperature_c = i == 0 ? 1000.0 : 20.0;
+      sink.quantities(quantities);
+    }
+    return MonoTime::max();
+  }
+
+ private:
+  int times_;
+};
+
+TEST(SensorRunner, PassesOnPlausibleQuantitiesAndCountsWhatHasNoRoom) {
+  ManualClock clock;
+  SensorRunner runner(std::make_unique<TalkativeStation>(1001), clock, SensorThread::kOfCaller);
+  runner.drain([](const wind::WindReading&) { FAIL() << "it has no wind"; });
+  std::uint64_t passed = 0;
+  runner.drain_quantities([&](const wind::StationQuantities& quantities) {
+    EXPECT_EQ(quantities.air_temperature_c, 20.0);
+    ++passed;
+  });
+  EXPECT_GT(passed, 100U);
+  EXPECT_GT(runner.lost_quantities_count(), 0U);
+  EXPECT_EQ(passed + runner.lost_quantities_count(), 1000U);
+  EXPECT_EQ(runner.refused_count(drivers::decode::Refusal::kImplausible), 0U);
+}
+
+}  // namespace
+}  // namespace yuragi::daemon::sensing

@@ -1,0 +1,225 @@
+#include "daemon/settings/reload_plan.hpp"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "daemon/settings/sensor_blend.hpp"
+#include "daemon/settings/shaping_parameters.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace yuragi::daemon::settings {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+/// A value of the same key that is allowed, and another one.
+ParameterValue another_value(const Parameter& parameter, const ParameterValue& present) {
+  if (const auto* flag = std::get_if<bool>(&present)) return !*flag;
+  if (const auto* whole = std::get_if<std::int64_t>(&present)) {
+    return static_cast<double>(*whole + 1) <= parameter.max ? *whole + 1 : *whole - 1;
+  }
+  if (const auto* number = std::get_if<double>(&present)) {
+    return *number < parameter.max ? std::min(parameter.max, *number + 0.125) : *number - 0.125;
+  }
+  if (std::holds_alternative<Secret>(present)) return Secret("another");
+  for (const std::string_view choice : parameter.choices) {
+    if (choice != std::get<std::string>(present)) return std::string(choice);
+  }
+  return std::get<std::string>(present) + "1";
+}
+
+/// A configuration in which much is set, with a sensor that says this in its tables.
+Config wall(const std::string& more = "") {
+  return parse_config("[shaping]\nfloor = 1.5\n" + more, "wall.toml");
+}
+
+constexpr const char* kTwoSensors =
+    "[[sensor]]\ndriver = \"synthetic\"\nname = \"roof\"\n[sensor.calibration]\ngain = 1.5\n"
+    "[[sensor]]\ndriver = \"windlog\"\nname = \"tape\"\nfile = \"a.windlog\"\n"
+    "[[scene]]\nkind = \"grass\"\n[[scene]]\nkind = \"flag\"\n";
+
+TEST(ReloadPlan, KnowsEveryKey) {
+  for (const ConfigTable& table : config_tables()) {
+    for (const Parameter& parameter : table.parameters) {
+      EXPECT_TRUE(change_of(table.name, parameter.name)) << table.name << " " << parameter.name;
+    }
+  }
+  const auto check = [](const char* table, std::span<const Parameter> parameters) {
+    for (const Parameter& parameter : parameters) {
+      EXPECT_TRUE(change_of(table, parameter.name)) << table << " " << parameter.name;
+    }
+  };
+  check("sensor.calibration", calibration_parameters());
+  check("sensor.judge", judge_parameters());
+  check("sensor.blend", sensor_blend_parameters());
+  EXPECT_FALSE(change_of("shaping", "no such key"));
+}
+
+/// Changes each key of a table alone: it is noted once, where its class says, and taken over only where it is applied.
+void expect_each_key_to_follow_its_class(const char* table, std::span<const Parameter> parameters,
+                                         ParameterValues Config::ByName::*values) {
+  for (const Parameter& parameter : parameters) {
+    const Config running = wall();
+    Config wanted = running;
+    const ParameterValue before = (running.by_name.*values).all().find(parameter.name)->second;
+    const ParameterValue after = another_value(parameter, before);
+    (wanted.by_name.*values).set(parameter.name, after);
+
+    const ReloadPlan plan = plan_reload(running, wanted, true);
+    const bool is_applied = change_of(table, parameter.name) == KeyChange::kApplied;
+    const std::string where = "[" + std::string(table) + "] " + std::string(parameter.name) + ": ";
+    EXPECT_THAT(plan.applied,
+                is_applied ? ::testing::Matcher<std::vector<std::string>>(ElementsAre(StartsWith(where))) : IsEmpty())
+        << where;
+    EXPECT_EQ(plan.takes_restart.size(), is_applied ? 0U : 1U) << where;
+    EXPECT_EQ((plan.next.by_name.*values).all().find(parameter.name)->second, is_applied ? after : before) << where;
+  }
+}
+
+TEST(ReloadPlan, NotesEachKeyOnceAndTakesOverWhatIsApplied) {
+  expect_each_key_to_follow_its_class("stream", stream_parameters(), &Config::ByName::stream);
+  expect_each_key_to_follow_its_class("recording", recording_parameters(), &Config::ByName::recording);
+  expect_each_key_to_follow_its_class("animation", animation_parameters(), &Config::ByName::animation);
+  expect_each_key_to_follow_its_class("wind", wind_parameters(), &Config::ByName::wind);
+  expect_each_key_to_follow_its_class("log", log_parameters(), &Config::ByName::log);
+}
+
+TEST(ReloadPlan, OfTheSameConfigurationIsEmpty) {
+  const Config config = wall(kTwoSensors);
+  const ReloadPlan plan = plan_reload(config, wall(kTwoSensors), true);
+  EXPECT_TRUE(plan.is_empty());
+  EXPECT_FALSE(plan.changes_scenes);
+  EXPECT_FALSE(plan.changes_shaping);
+  EXPECT_EQ(to_toml(plan.next), to_toml(config));
+}
+
+TEST(ReloadPlan, AppliesShapingWithItsHours) {
+  const Config wanted = parse_config("[shaping]\nfloor = 2\nhours = \"10:00-18:00\"\nsite_file = \"b.json\"\n", "b");
+  const ReloadPlan plan = plan_reload(wall(), wanted, true);
+  EXPECT_THAT(plan.applied, ElementsAre("[shaping] floor: 1.5 -> 2.0", "[shaping] hours: \"\" -> \"10:00-18:00\""));
+  EXPECT_THAT(plan.takes_restart, ElementsAre("[shaping] site_file: \"\" -> \"b.json\""));
+  EXPECT_TRUE(plan.changes_shaping);
+  EXPECT_EQ(plan.next.shaping.settings.floor_m_s, 2.0);
+  EXPECT_FALSE(plan.next.shaping.hours.is_always_open());
+  EXPECT_TRUE(plan.next.shaping.site_file.empty());
+}
+
+TEST(ReloadPlan, AppliesCalibrationAndJudgingAndTheRateOfARecording) {
+  const Config running = wall(kTwoSensors);
+  const Config wanted = wall(
+      "[[sensor]]\ndriver = \"synthetic\"\nname = \"roof\"\nspeed = 7.0\n[sensor.calibration]\ngain = 2\nheight = 4\n"
+      "[sensor.judge]\nfrozen = 99\n[sensor.blend]\nx = 3\n"
+      "[[sensor]]\ndriver = \"windlog\"\nname = \"tape\"\nfile = \"b.windlog\"\nrate = 4\n"
+      "[[scene]]\nkind = \"grass\"\n[[scene]]\nkind = \"flag\"\n");
+  const ReloadPlan plan = plan_reload(running, wanted, true);
+  EXPECT_THAT(plan.applied,
+              ElementsAre("sensor roof: [sensor.calibration] gain: 1.5 -> 2.0",
+                          "sensor roof: [sensor.judge] frozen: 30.0 -> 99.0", "sensor tape: rate: 1.0 -> 4.0"));
+  EXPECT_THAT(plan.takes_restart,
+              ElementsAre(StartsWith("sensor roof: speed: "), "sensor roof: [sensor.calibration] height: 0.0 -> 4.0",
+                          "sensor roof: [sensor.blend] x: left out -> 3.0",
+                          "sensor tape: file: \"a.windlog\" -> \"b.windlog\""));
+  const SensorConfig& roof = plan.next.sensors[0];
+  EXPECT_EQ(roof.calibration.gain, 2.0);
+  EXPECT_EQ(roof.calibration.height_factor, 1.0) << "as it was until the restart";
+  EXPECT_EQ(roof.judge->frozen_s, 99.0);
+  EXPECT_FALSE(roof.blend.has_place);
+  EXPECT_EQ(roof.values.all(), running.sensors[0].values.all());
+  EXPECT_EQ(plan.next.sensors[1].values.text("file"), "a.windlog");
+  EXPECT_EQ(plan.next.sensors[1].values.number("rate"), 4.0);
+
+  // What takes a restart is named again, until there was one.
+  const ReloadPlan again = plan_reload(plan.next, wanted, true);
+  EXPECT_THAT(again.applied, IsEmpty());
+  EXPECT_EQ(again.takes_restart, plan.takes_restart);
+}
+
+TEST(ReloadPlan, NamesSensorsThatComeGoAndChangePlaces) {
+  const Config running = wall(kTwoSensors);
+  const Config wanted = wall(
+      "[[sensor]]\ndriver = \"windlog\"\nname = \"tape\"\nfile = \"a.windlog\"\n"
+      "[[sensor]]\ndriver = \"osc\"\nname = \"roof\"\n"
+      "[[sensor]]\ndriver = \"synthetic\"\nname = \"yard\"\n"
+      "[[scene]]\nkind = \"grass\"\n[[scene]]\nkind = \"flag\"\n");
+  const ReloadPlan plan = plan_reload(running, wanted, true);
+  EXPECT_THAT(plan.applied, ElementsAre("sensor roof: [sensor.calibration] gain: 1.5 -> 1.0"));
+  EXPECT_THAT(plan.takes_restart, ElementsAre("sensor roof: driver: \"synthetic\" -> \"osc\"", "sensor yard: is new",
+                                              "the order of the sensors"));
+  ASSERT_EQ(plan.next.sensors.size(), 2U);
+  EXPECT_EQ(plan.next.sensors[0].driver->name, "synthetic");
+  EXPECT_THAT(plan_reload(wanted, running, true).takes_restart, ::testing::Contains("sensor yard: is gone"));
+}
+
+TEST(ReloadPlan, TakesScenesAsAWholeOrLeavesThem) {
+  const Config running = wall(kTwoSensors);
+  Config wanted = wall(
+      "[[sensor]]\ndriver = \"synthetic\"\nname = \"roof\"\n[sensor.calibration]\ngain = 1.5\n"
+      "[[sensor]]\ndriver = \"windlog\"\nname = \"tape\"\nfile = \"a.windlog\"\n"
+      "[[scene]]\nkind = \"flag\"\nx = 2\n[[scene]]\nkind = \"tree\"\nname = \"elm\"\n");
+  const ReloadPlan plan = plan_reload(running, wanted, true);
+  EXPECT_THAT(plan.applied, ElementsAre("scene flag: x: 0.0 -> 2.0", "scene elm: is new", "scene grass: is gone"));
+  EXPECT_THAT(plan.takes_restart, IsEmpty());
+  EXPECT_TRUE(plan.changes_scenes);
+  ASSERT_EQ(plan.next.scenes.size(), 2U);
+  EXPECT_EQ(plan.next.scenes[0].placement.x_m, 2.0);
+
+  const ReloadPlan later = plan_reload(running, wanted, false);
+  EXPECT_THAT(later.applied, IsEmpty());
+  EXPECT_EQ(later.takes_restart, plan.applied);
+  EXPECT_FALSE(later.changes_scenes);
+  EXPECT_EQ(to_toml(later.next), to_toml(running));
+}
+
+TEST(ReloadPlan, ShowsNoSecretAndNoLongValue) {
+  const char* broker =
+      "[[sensor]]\ndriver = \"mqtt\"\nname = \"roof\"\nhost = \"a\"\ntopic = \"wind\"\nuser = "
+      "\"anna\"\npassword = ";
+  const ReloadPlan plan = plan_reload(wall(std::string(broker) + "\"first secret\"\n"),
+                                      wall(std::string(broker) + "\"second secret\"\n"), true);
+  EXPECT_THAT(plan.takes_restart, ElementsAre("sensor roof: password: '(secret)' -> '(secret)'"));
+  const std::string hours = "Mon 10:00-18:00, Tue 10:00-18:00, Wed 10:00-18:00, Thu 10:00-18:00";
+  EXPECT_THAT(plan_reload(wall(), wall("hours = \"" + hours + "\"\n"), true).applied,
+              ElementsAre("[shaping] hours: \"\" -> ..."));
+}
+
+// ---- the file ----
+
+std::string mistake_of(const std::filesystem::path& file) {
+  try {
+    read_config_text(file);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ConfigText, IsReadFromARegularFileOfSensibleSizeOnly) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "wall.toml";
+  EXPECT_THAT(mistake_of(file), HasSubstr(":1:1: file: cannot be read; check its path"));
+  EXPECT_THAT(mistake_of(folder.path()), HasSubstr("no regular file"));
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_THAT(mistake_of(folder / "pipe"), HasSubstr("no regular file")) << "and nobody was waited for";
+
+  std::ofstream(file) << "seed = 3\n";
+  EXPECT_EQ(read_config_text(file), "seed = 3\n");
+  std::filesystem::resize_file(file, kLargestConfig_bytes);
+  EXPECT_EQ(read_config_text(file).size(), kLargestConfig_bytes);
+  std::filesystem::resize_file(file, 1'000'000'000);  // a sparse one
+  EXPECT_THAT(mistake_of(file), HasSubstr("is too large; allowed: up to 1 MB"));
+}
+
+TEST(LogConfig, HasALevel) {
+  EXPECT_EQ(parse_config("", "wall.toml").log.level, LogLevel::kInfo);
+  EXPECT_EQ(parse_config("[log]\nlevel = \"error\"\n", "wall.toml").log.level, LogLevel::kError);
+  EXPECT_THROW(parse_config("[log]\nlevel = \"loud\"\n", "wall.toml"), ConfigError);
+}
+
+}  // namespace
+}  // namespace yuragi::daemon::settings

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include "drivers/windlog/windlog_reader.hpp"
+
+namespace yuragi::test {
+
+/// Changes a recording behind its back, as the sqlite3 program would.
+inline void tamper(const std::filesystem::path& file, const std::string& sql) {
+  sqlite3* connection = nullptr;
+  ASSERT_EQ(sqlite3_open(file.c_str(), &connection), SQLITE_OK);
+  char* message = nullptr;
+  EXPECT_EQ(sqlite3_exec(connection, sql.c_str(), nullptr, nullptr, &message), SQLITE_OK) << message;
+  sqlite3_free(message);
+  sqlite3_close(connection);
+}
+
+/// Reads what can be read; whatever comes out is a reading, in order. Answers how many there were.
+inline std::size_t read_warily(const std::filesystem::path& file) {
+  auto reader = drivers::windlog::WindlogReader::open(file);
+  if (!reader) {
+    EXPECT_NE(reader.error().message.find(file.filename().string()), std::string::npos) << reader.error().message;
+    return 0;
+  }
+  std::size_t count = 0;
+  for (;;) {
+    const auto logged = reader->next();
+    if (!logged) {
+      EXPECT_NE(logged.error().message.find(file.filename().string()), std::string::npos) << logged.error().message;
+      break;
+    }
+    if (!*logged) break;
+    EXPECT_TRUE(wind::is_plausible((*logged)->reading));
+    EXPECT_GE((*logged)->log_time.count(), 0);
+    EXPECT_LT((*logged)->sensor, reader->sensors().size());
+    ++count;
+  }
+  return count;
+}
+
+}  // namespace yuragi::test

@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""`yuragi export`: --resample against the same means in plain Python; --quantities from a station's lines to the CSV.
+
+usage: export_command_test.py YURAGI
+"""
+import csv
+import datetime
+import io
+import math
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from programs import Program
+
+YURAGI = sys.argv.pop(1)
+BEGIN = datetime.datetime(2026, 5, 1, 11, 58, 13, tzinfo=datetime.timezone.utc)
+BLOCK_S = 30
+
+
+def yuragi(*arguments):
+    done = subprocess.run([YURAGI, *map(str, arguments)], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def utc_text(moment):
+    return moment.strftime("%Y-%m-%dT%H:%M:%S.%f") + "000Z"
+
+
+class Quantities(unittest.TestCase):
+    def test_a_station_s_weather_goes_from_its_lines_into_the_csv(self):
+        def line(body):
+            checksum = 0
+            for letter in body.encode():
+                checksum ^= letter
+            return f"${body}*{checksum:02X}\r\n"
+
+        with tempfile.TemporaryDirectory() as folder:
+            log = pathlib.Path(folder, "voyage.log")
+            log.write_bytes("".join(
+                line(f"WIMDA,,I,1.0132,B,{12 + i / 10:.1f},C,,,55.0,,3.7,C,230.6,T,,M,6.65,N,3.42,M")
+                + line("WIXDR,V,1.5,M,0,R,0.3,M,0") for i in range(30)).encode())
+            config = pathlib.Path(folder, "site.toml")
+            config.write_text(f'[[sensor]]\nname = "mast"\ndriver = "nmea"\ntransport = "file"\nfile = "{log}"\nplay_rate = 20.0\n')
+            wall, weather = pathlib.Path(folder, "wall.windlog"), pathlib.Path(folder, "weather.csv")
+            with Program(YURAGI, "run", "-c", config, "--record", wall, "--listen", "127.0.0.1:0") as daemon:
+                daemon.wait_for("sensor mast: finished")
+                self.assertEqual(daemon.end(), 0)
+            yuragi("export", wall, "--quantities", "-o", weather)
+            table = list(csv.DictReader(io.StringIO(weather.read_text(encoding="utf-8"))))
+            none = list(csv.DictReader(io.StringIO(yuragi("export", wall, "--quantities", "-o", "-", "--from", "3600"))))
+            readings = list(csv.DictReader(io.StringIO(yuragi("export", wall, "-o", "-"))))
+
+        self.assertEqual(list(table[0]), ["time_utc", "sensor", "vertical_speed_m_s", "air_temperature_c", "pressure_hpa",
+                                          "relative_humidity_percent", "rain_total_mm", "rain_rate_mm_h"])
+        self.assertEqual(len({row["time_utc"] for row in table}), len(table))
+        self.assertLessEqual(len(table), 6)  # one row a second
+        self.assertEqual({row["sensor"] for row in table}, {"mast"})
+        # A second may begin between two lines, so that its row has what the second of them says, and no more.
+        last = {name: next((row[name] for row in reversed(table) if row[name]), "") for name in table[0]}
+        self.assertEqual(float(last["air_temperature_c"]), 14.9)
+        self.assertAlmostEqual(float(last["pressure_hpa"]), 1013.2)
+        self.assertEqual((last["relative_humidity_percent"], last["rain_total_mm"], last["rain_rate_mm_h"],
+                          last["vertical_speed_m_s"]), ("55", "1.5", "0.3", ""))
+        self.assertEqual(none, [])
+        self.assertGreater(len(readings), 20)
+
+
+class Resample(unittest.TestCase):
+    def test_means_over_a_series_of_files_are_those_of_plain_arithmetic(self):
+        draw = random.Random(13)
+        readings = []  # (milliseconds since BEGIN, sensor, speed, direction or None, gust or None)
+        for part_begin_s in (0, 400, 3600):
+            for ms in range(0, 300_000, 250):
+                if 100_000 <= ms < 190_000:
+                    continue  # both are silent for three blocks
+                readings.append((1000 * part_begin_s + ms, "roof", draw.uniform(0, 12), draw.uniform(0, 360), None))
+                if ms % 1000 == 0:
+                    readings.append((1000 * part_begin_s + ms, "mast", draw.uniform(0, 9), None, draw.uniform(0, 15)))
+        with tempfile.TemporaryDirectory() as folder:
+            wall = pathlib.Path(folder, "wall.windlog")
+            names = [pathlib.Path(folder, "wall-20260501T115813Z.windlog"), pathlib.Path(folder, "wall-20260501T120453Z.windlog"), wall]
+            for begin_s, name in zip((0, 400, 3600), names):
+                self.write_part(name, [row for row in readings if 0 <= row[0] - 1000 * begin_s < 300_000])
+            table = list(csv.DictReader(io.StringIO(yuragi("export", wall, "-o", "-", "--resample", BLOCK_S))))
+
+        blocks = {}
+        for ms, sensor, *values in readings:
+            moment = BEGIN + datetime.timedelta(milliseconds=ms)
+            blocks.setdefault((int(moment.timestamp()) // BLOCK_S * BLOCK_S, sensor), []).append(values)
+        first, last = min(blocks)[0], max(blocks)[0]
+        expected = [(begin, sensor) for begin in range(first, last + 1, BLOCK_S) for sensor in ("roof", "mast")]
+        self.assertEqual(len(table), len(expected))
+        for row, key in zip(table, expected):
+            begin = datetime.datetime.fromtimestamp(key[0], datetime.timezone.utc)
+            self.assertEqual((row["utc"], row["sensor"]), (utc_text(begin), key[1]))
+            block = blocks.get(key, [])
+            self.assertEqual(int(row["count"]), len(block))
+            if not block:
+                self.assertEqual((row["speed_m_s"], row["direction_deg"], row["gust_m_s"]), ("", "", ""))
+                continue
+            self.assertAlmostEqual(float(row["speed_m_s"]), sum(speed for speed, _, _ in block) / len(block), places=9)
+            self.assertEqual(float(row["gust_m_s"]), max(max(speed, gust or 0) for speed, _, gust in block))
+            if key[1] == "mast":
+                self.assertEqual(row["direction_deg"], "")
+                continue
+            u = sum(speed * math.sin(math.radians(direction)) for speed, direction, _ in block)
+            v = sum(speed * math.cos(math.radians(direction)) for speed, direction, _ in block)
+            difference_deg = float(row["direction_deg"]) - math.degrees(math.atan2(u, v))
+            self.assertAlmostEqual(math.remainder(difference_deg, 360), 0, places=6)
+
+    def write_part(self, file, readings):
+        lines = ["utc,time_s,sensor,speed_m_s,direction_deg,gust_m_s,quality"]
+        for ms, sensor, speed, direction, gust in readings:
+            moment = BEGIN + datetime.timedelta(milliseconds=ms)
+            cells = [utc_text(moment), f"{(ms - readings[0][0]) / 1000:.9f}", sensor, repr(speed)]
+            cells += ["" if value is None else repr(value) for value in (direction, gust)]
+            lines.append(",".join([*cells, "good"]))
+        table = file.with_suffix(".csv")
+        table.write_text("\n".join(lines) + "\n", encoding="ascii")
+        yuragi("import", table, "-o", file)
+        table.unlink()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,203 @@
+#!/usr/bin/env python3
+"""The Debian package: made twice from programs that are built, looked at, installed, upgraded, rolled back, removed and purged.
+
+usage: package_test.py PROJECT_ROOT BUILD_FOLDER
+
+The tree into which it is installed is empty but for dpkg's own records: what it depends on is not there, and nothing of it is
+run. tests/package/by_hand.sh does that in a whole system.
+"""
+import hashlib
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tarfile
+import tempfile
+import unittest
+
+ROOT, BUILD = (pathlib.Path(word).resolve() for word in (sys.argv.pop(1), sys.argv.pop(1)))
+EPOCH_S = 1_700_000_000
+CONFIGURATION = "etc/yuragi/yuragi.toml"
+RECORDING = "var/lib/yuragi/wind.windlog"
+PROGRAMS = ["yuragi", "yuragi-sim", "yuragi-viewer"]
+CONTENTS = [
+    CONFIGURATION,
+    *[f"usr/bin/{name}" for name in PROGRAMS],
+    *[f"usr/share/man/man1/{name}.1.gz" for name in PROGRAMS],
+    *[f"usr/share/bash-completion/completions/{name}" for name in PROGRAMS],
+    *[f"lib/systemd/system/{name}" for name in ("yuragi.service", "yuragi-viewer@.service", "yuragi-report.service",
+                                                "yuragi-report.timer")],
+    "usr/lib/sysusers.d/yuragi.conf",
+    "usr/lib/udev/rules.d/70-yuragi.rules",
+    "usr/lib/yuragi/daily-report",
+    "usr/share/doc/yuragi/changelog.gz",
+    "usr/share/doc/yuragi/copyright",
+    "usr/share/yuragi/profiles/generic-rs485-cup.toml",
+]
+
+
+def run(*command, **options):
+    """What the command says; its failure is the test's."""
+    done = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          check=False, **options)
+    if done.returncode != 0:
+        raise AssertionError(f"{command} ended with {done.returncode}:\n{done.stdout}")
+    return done.stdout
+
+
+def make_package(folder):
+    run("cpack", "-G", "DEB", "-B", folder, cwd=BUILD, env={**os.environ, "SOURCE_DATE_EPOCH": str(EPOCH_S)})
+    return next(folder.glob("*.deb"))
+
+
+def files_below(folder):
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir() or path.is_symlink()}
+
+
+class PackageTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory(prefix="yuragi-package-")
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.package = make_package(cls.folder / "first")
+        cls.contents = cls.folder / "contents"
+        run("dpkg-deb", "-R", cls.package, cls.contents)
+        cls.version = run("dpkg-deb", "-f", cls.package, "Version").strip()
+
+    def test_two_builds_give_the_same_bytes(self):
+        second = make_package(self.folder / "second")
+        digests = {hashlib.sha256(path.read_bytes()).hexdigest() for path in (self.package, second)}
+        self.assertEqual(len(digests), 1)
+
+    def test_it_has_the_name_that_debian_gives_it(self):
+        architecture = run("dpkg", "--print-architecture").strip()
+        self.assertEqual(self.package.name, f"yuragi_{self.version}_{architecture}.deb")
+        project = re.search(r"project\(yuragi VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))
+        self.assertEqual(self.version, project.group(1))
+
+    def test_everything_is_in_it_and_belongs_to_root(self):
+        present = files_below(self.contents)
+        self.assertEqual([path for path in CONTENTS if path not in present], [])
+        with subprocess.Popen(["dpkg-deb", "--fsys-tarfile", self.package], stdout=subprocess.PIPE) as unpacked:
+            with tarfile.open(fileobj=unpacked.stdout, mode="r|") as archive:
+                for member in archive:
+                    self.assertEqual((member.uid, member.gid, member.mtime), (0, 0, EPOCH_S), member.name)
+                    self.assertFalse(member.mode & 0o022, f"{member.name} can be written by others")
+        self.assertEqual((self.contents / "DEBIAN/conffiles").read_text(encoding="utf-8"), f"/{CONFIGURATION}\n")
+
+    def test_it_depends_on_the_libraries_that_are_linked(self):
+        depends = run("dpkg-deb", "-f", self.package, "Depends")
+        for library in ("libc6", "libsqlite3-0", "libfftw3-double3", "libglfw3", "gnuplot-nox"):
+            self.assertIn(library, depends)
+
+    def test_each_unit_starts_what_is_in_it_or_is_recommended(self):
+        for unit in (self.contents / "lib/systemd/system").glob("*.service"):
+            text = unit.read_text(encoding="utf-8").replace("\\\n", " ")
+            for program in re.findall(r"(?:=|\s)(/usr/(?:bin|lib)/\S+)", text):
+                if program not in ("/usr/bin/xinit", "/usr/bin/Xorg"):
+                    self.assertTrue(os.access(self.contents / program[1:], os.X_OK), f"{unit.name}: {program}")
+
+    @unittest.skipUnless(shutil.which("man"), "man is not installed")
+    def test_the_manual_pages_are_read_without_a_warning(self):
+        for name in PROGRAMS:
+            page = self.contents / f"usr/share/man/man1/{name}.1.gz"
+            done = subprocess.run(["man", "--warnings", "-E", "UTF-8", "-l", str(page)], capture_output=True, text=True, check=False,
+                                  env={**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "80"})
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn("--help", done.stdout)
+        self.assertIn("calibrate span", run("man", "-E", "UTF-8", "-l", self.contents / "usr/share/man/man1/yuragi.1.gz",
+                                            env={**os.environ, "LC_ALL": "C.UTF-8"}))
+
+    def completions(self, *words):
+        """What bash would offer for the last word."""
+        script = self.contents / "usr/share/bash-completion/completions" / words[0]
+        function = "_" + words[0].replace("-", "_")
+        return run("bash", "-c", f'source "$0"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); {function}; echo "${{COMPREPLY[@]}}"',
+                   script, *words).split()
+
+    def test_bash_completes_subcommands_and_options(self):
+        self.assertEqual(self.completions("yuragi", "check"), ["check-config"])
+        self.assertEqual(self.completions("yuragi", "player", "st"), ["status", "step"])
+        self.assertIn("--config", self.completions("yuragi", "run", "--verbose", "--"))
+        self.assertEqual(self.completions("yuragi", "run", "--config", "gar"), [])  # left to the names of files
+        self.assertIn("--fullscreen", self.completions("yuragi-viewer", "--"))
+
+    def test_bash_completes_values_and_drivers(self):
+        self.assertEqual(self.completions("yuragi", "spectrum", "--model", "k"), ["kaimal"])
+        self.assertEqual(self.completions("yuragi", "spectrum", "--model", "kaimal", "--mod"), ["--model"])
+        self.assertEqual(self.completions("yuragi", "sensors", "describe", "mo"), ["modbus"])
+
+    @unittest.skipUnless(shutil.which("lintian"), "lintian is not installed")
+    def test_lintian_has_nothing_to_say(self):
+        done = subprocess.run(["lintian", "--allow-root", "--tag-display-limit", "0", self.package], check=False,
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.assertEqual((done.returncode, done.stdout), (0, ""))
+
+    def next_version(self):
+        """The same package with a higher version and another example configuration."""
+        tree = self.folder / "next"
+        shutil.copytree(self.contents, tree, symlinks=True)
+        control = tree / "DEBIAN/control"
+        control.write_text(re.sub(r"^Version: .*$", "Version: 99.0", control.read_text(encoding="utf-8"), flags=re.M),
+                           encoding="utf-8")
+        with open(tree / CONFIGURATION, "a", encoding="utf-8") as example:
+            example.write("# The next version's example says more.\n")
+        run("dpkg-deb", "--root-owner-group", "-b", tree, self.folder / "next.deb")
+        return self.folder / "next.deb"
+
+    @unittest.skipUnless(os.geteuid() == 0, "dpkg gives files to root: this needs to be root")
+    def test_it_installs_upgrades_rolls_back_and_leaves_no_trace_but_recordings(self):
+        tree = self.folder / "tree"
+        for folder in ("etc", "var/lib/dpkg/info", "var/lib/dpkg/updates", "var/lib/dpkg/triggers"):
+            (tree / folder).mkdir(parents=True)
+        (tree / "var/lib/dpkg/status").touch()
+        (tree / "var/lib/dpkg/available").touch()
+
+        def dpkg(*words):
+            return run("dpkg", f"--root={tree}", "--force-script-chrootless", "--force-depends", "--force-confold",
+                       "--log=/dev/null", *words)
+
+        def configuration():
+            return (tree / CONFIGURATION).read_text(encoding="utf-8")
+
+        dpkg("-i", self.package)
+        self.assertRegex((tree / "etc/passwd").read_text(encoding="utf-8"),
+                         r"^yuragi:x:\d+:\d+:Yuragi:/var/lib/yuragi:/usr/sbin/nologin\n")
+        self.assertFalse((tree / "etc/systemd").exists(), "it enables something by itself")
+
+        own = configuration() + "# ours\n"
+        (tree / CONFIGURATION).write_text(own, encoding="utf-8")
+        (tree / RECORDING).parent.mkdir(parents=True)
+        (tree / RECORDING).write_text("months", encoding="utf-8")
+        link = tree / "etc/systemd/system/multi-user.target.wants/yuragi.service"
+        link.parent.mkdir(parents=True)
+        link.symlink_to("/lib/systemd/system/yuragi.service")
+
+        dpkg("-i", self.next_version())
+        self.assertEqual(configuration(), own)
+        self.assertTrue(link.is_symlink())
+        dpkg("-i", self.package)  # back again
+        self.assertEqual(configuration(), own)
+        self.assertTrue(link.is_symlink())
+        self.assertEqual((tree / RECORDING).read_text(encoding="utf-8"), "months")
+
+        dpkg("-r", "yuragi")
+        self.assertFalse(link.is_symlink())
+        self.assertEqual(configuration(), own)
+        self.assertFalse((tree / "usr/bin/yuragi").exists())
+        said = dpkg("-P", "yuragi")
+        self.assertIn("recordings", said)
+        left = {path for path in files_below(tree) if not path.startswith("var/lib/dpkg/")}
+        self.assertEqual(left - {f"etc/{name}" for name in ("passwd", "group", "shadow", "gshadow", ".pwd.lock")}, {RECORDING})
+
+        dpkg("-i", self.package)
+        (tree / RECORDING).unlink()
+        dpkg("-P", "yuragi")
+        self.assertFalse((tree / RECORDING).parent.exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "viewer/gl/gl.hpp"
+
+namespace yuragi::viewer::gl {
+
+/// Darkens a whole picture. Needs a current context.
+class Dimmer {
+ public:
+  Dimmer();
+
+  /// Multiplies the colors (sRGB values) of the framebuffer that is bound by `brightness`, 0: black, to 1: unchanged.
+  void draw(float brightness);
+
+ private:
+  GlProgram program_;
+  GlVertexArray no_attributes_;
+};
+
+}  // namespace yuragi::viewer::gl
