@@ -10,17 +10,17 @@ namespace {
 
 /// Passes if a number was found there.
 testing::AssertionResult finds(std::string_view payload, const std::string& pointer, double expected) {
-  const auto number = number_in(payload, {pointer});
+  const auto number = Payload(payload).number_at(pointer);
   if (number && *number && **number == expected) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (number ? "another one, or none" : name_of(number.error()));
 }
 testing::AssertionResult finds_none(std::string_view payload, const std::string& pointer) {
-  const auto number = number_in(payload, {pointer});
+  const auto number = Payload(payload).number_at(pointer);
   if (number && !*number) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (number ? "a number" : name_of(number.error()));
 }
 testing::AssertionResult refuses(std::string_view payload, const std::string& pointer, decode::Refusal why) {
-  const auto number = number_in(payload, {pointer});
+  const auto number = Payload(payload).number_at(pointer);
   if (!number && number.error() == why) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (number ? "accepted" : name_of(number.error()));
 }
@@ -77,7 +77,7 @@ TEST(MqttPayload, StandsAnyBytes) {
     std::string payload(random() % 40, ' ');
     for (char& letter : payload) letter = alphabet[random() % alphabet.size()];
     for (const char* const pointer : {"", "/a", "/0", "/0/a", "/99999999999999999999"}) {
-      const auto number = number_in(payload, {pointer});
+      const auto number = Payload(payload).number_at(pointer);
       if (number && *number) {
         EXPECT_TRUE(std::isfinite(**number)) << payload;
       }
