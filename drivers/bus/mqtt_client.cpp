@@ -35,7 +35,7 @@ constexpr const char* kTrustedBySystem = "/etc/ssl/certs";
 /// 24 to 36 MiB. Where the length is set it does not grow. This holds for the whole process.
 void give_back_long_blocks_at_once() {
   constexpr int kLongBlock = 1 << 20;
-  mallopt(M_MMAP_THRESHOLD, kLongBlock);
+  mallopt(M_MMAP_THRESHOLD, kLongBlock);  // NOLINT(concurrency-mt-unsafe): others see the length of before or of now
 }
 
 /// The library is set up once, by the first that needs it, and never taken down: other threads may be using it.

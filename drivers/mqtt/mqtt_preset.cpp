@@ -6,14 +6,14 @@
 //   rtl_433    rtl_433/+/events    /wind_avg_m_s           /wind_dir_deg    /wind_max_m_s           m/s
 //                                  /wind_avg_km_h                           /wind_max_km_h          km/h
 //                                  /wind_avg_mi_h                           /wind_max_mi_h          mi/h
-//   windnerd   (yours)             /wind_instant_speed     /wind_instant_dir                        m/s
+//   windnerd   (yours)             /wind_instant_speed     /wind_instant_dir                        /unit, or m/s
 //
 // Tasmota has TX20 or WindMeter in place of TX23 for other sensors (of which the latter has no direction).
 //
 // Sources: Home Assistant's mqtt_statestream publishes numbers on homeassistant/sensor/NAME/state; arendst/Tasmota
 // tasmota/xsns_35_tx20.ino (Tx2xShow, Tx2xInit), xsns_68_windmeter.ino, MqttAppendSensorUnits; merbanan/rtl_433,
-// its document of data fields, and src/devices/hideki.c, vevor_7in1.c, fineoffset_wh1080.c, lacrossews.c, fineoffset_ws80.c;
-// windnerd.net/docs, MQTT.
+// its document of data fields, and src/devices/hideki.c, vevor_7in1.c, fineoffset_wh1080.c, lacrossews.c,
+// fineoffset_ws80.c; windnerd.net/docs, MQTT.
 #include "drivers/mqtt/mqtt_preset.hpp"
 
 #include <algorithm>
@@ -63,13 +63,21 @@ const MqttPreset& mqtt_preset_of(std::string_view name) noexcept {
   return *std::ranges::find(kMqttPresets, name, &MqttPreset::name);
 }
 
+std::string_view speed_unit_of_word(std::string_view word) noexcept {
+  constexpr std::array<std::array<std::string_view, 2>, 6> kOtherWords = {
+      {{"mi/h", "mph"}, {"kmh", "km/h"}, {"kph", "km/h"}, {"kt", "kn"}, {"kts", "kn"}, {"knots", "kn"}}};
+  for (const auto& [other, unit] : kOtherWords) {
+    if (word == other) return unit;
+  }
+  return std::ranges::find(sensor::kSpeedUnitNames, word) != sensor::kSpeedUnitNames.end() ? word : "";
+}
+
 std::optional<double> metres_per_second_of_word(std::string_view word) noexcept {
   constexpr double kYard_m = 0.9144;
   if (word == "yd/s") return kYard_m;
-  if (word == "mi/h") word = "mph";
-  const auto* const unit = std::ranges::find(sensor::kSpeedUnitTable, word, &sensor::SpeedUnit::name);
-  if (unit == sensor::kSpeedUnitTable.end()) return std::nullopt;
-  return unit->metres_per_second;
+  const std::string_view unit = speed_unit_of_word(word);
+  if (unit.empty()) return std::nullopt;
+  return sensor::metres_per_second_in(unit);
 }
 
 }  // namespace yuragi::drivers::mqtt

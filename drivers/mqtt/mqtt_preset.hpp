@@ -36,8 +36,12 @@ inline constexpr std::array<std::string_view, 4> kMqttPresetNames = {"number", "
 /// The preset of one of kMqttPresetNames.
 const MqttPreset& mqtt_preset_of(std::string_view name) noexcept;
 
-/// The factor to m/s of a unit of speed as publishers write it: m/s, km/h, kn, mph, mi/h, ft/s, yd/s; nothing for any
+/// The one of sensor::kSpeedUnitNames that publishers write so: mi/h for mph, kt for kn, and the like; empty for any
 /// other word. Thread-safe and realtime-safe: yes.
+std::string_view speed_unit_of_word(std::string_view word) noexcept;
+
+/// The factor to m/s of a unit as publishers write it: one of those, or yd/s; nothing for any other word. Thread-safe
+/// and realtime-safe: yes.
 std::optional<double> metres_per_second_of_word(std::string_view word) noexcept;
 
 }  // namespace yuragi::drivers::mqtt

@@ -8,8 +8,8 @@
 
 namespace yuragi::drivers::mqtt {
 
-/// Which station sent a message, as rtl_433 says it (merbanan/rtl_433, its document of data fields): numbers as text. Empty: not
-/// told, or, where a station is looked for, any. The id of many stations changes with their batteries.
+/// Which station sent a message, as rtl_433 says it (merbanan/rtl_433, its document of data fields): numbers as text.
+/// Empty: not told, or, where a station is looked for, any. The id of many stations changes with their batteries.
 struct StationIdentity {
   std::string model;    ///< "Acurite-5n1"
   std::string id;       ///< "115", "0a003b"
