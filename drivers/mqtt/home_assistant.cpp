@@ -170,7 +170,7 @@ std::vector<AnnouncedValue> announced_in(std::string_view topic, std::string_vie
     const Announcement components = object_of(announcement, "components", "cmps");
     for (const auto& [key, component] : components.items()) {
       if (!component.is_object() || text_of(component, "platform", "p") != "sensor") continue;
-      std::string component_path = path + "/" + key;
+      std::string component_path = fmt::format("{}/{}", path, key);
       make_printable(component_path);
       if (auto value = value_of(announcement, component, component_path)) values.push_back(std::move(*value));
     }

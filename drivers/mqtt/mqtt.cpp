@@ -166,6 +166,14 @@ std::string shown(const std::string& text) {
   return shortened(printable, 20);
 }
 
+/// Does any of the sources read JSON?
+PayloadForm form_of(const MqttSettings& settings) {
+  for (const MqttSource* const source : {&settings.speed, &settings.direction, &settings.gust}) {
+    if (std::ranges::any_of(source->places, &MqttPlace::is_json)) return PayloadForm::kJson;
+  }
+  return PayloadForm::kText;
+}
+
 /// The first of the source's places that the message has; nullptr where it has none.
 const MqttPlace* place_in(const Payload& payload, const MqttSource& source) {
   const auto place =
@@ -181,6 +189,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
         where_(fmt::format("topic {} of MQTT broker {}:{}", settings_.speed.topic, settings_.subscription.host,
                            settings_.subscription.port)),
         client_(bus::make_mqtt_client(settings_.subscription)),
+        form_(form_of(settings_)),
         stations_(settings_.silence) {}
 
   void interrupt() noexcept override { client_->interrupt(); }
@@ -223,7 +232,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     sink.raw(sensor::RawDirection::kReceived, message.payload);
     if (message.is_too_long) return sink.refused(decode::Refusal::kMalformed);
     if (message.is_retained) return sink.refused(decode::Refusal::kInvalid);
-    const Payload payload({reinterpret_cast<const char*>(message.payload.data()), message.payload.size()});
+    const Payload payload({reinterpret_cast<const char*>(message.payload.data()), message.payload.size()}, form_);
     if (bus::mqtt_topic_matches(message.topic, settings_.speed.topic)) {
       if (settings_.speed.places.front().is_json() && payload.json().is_discarded())
         return sink.refused(decode::Refusal::kMalformed);
@@ -340,6 +349,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
   MqttSettings settings_;
   std::string where_;
   std::unique_ptr<bus::MqttClient> client_;
+  PayloadForm form_;
   HeldValue direction_;
   HeldValue gust_;              // m/s
   bool is_impossible_ = false;  // the last direction was none

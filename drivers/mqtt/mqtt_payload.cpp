@@ -34,7 +34,9 @@ bool is_json_pointer(const std::string& text) {
   }
 }
 
-Payload::Payload(std::string_view bytes) : bytes_(bytes), json_(Json::parse(bytes, nullptr, false)) {}
+Payload::Payload(std::string_view bytes, PayloadForm form)
+    : bytes_(bytes),
+      json_(form == PayloadForm::kJson ? Json::parse(bytes, nullptr, false) : Json(Json::value_t::discarded)) {}
 
 /// Throws Json::exception for an index that no array can have.
 const Json* Payload::find(const std::string& pointer) const {

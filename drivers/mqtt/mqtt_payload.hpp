@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,12 +12,18 @@
 
 namespace yuragi::drivers::mqtt {
 
+/// How the payload of a message is read.
+enum class PayloadForm : std::uint8_t {
+  kJson,
+  kText,  ///< of one number: JSON in it is not looked for, nor paid for
+};
+
 /// The payload of one message, of any bytes: JSON, or the text of one number. It is parsed once. A place in it is a
 /// JSON pointer (RFC 6901), such as /TX23/Speed/Act; the empty one is the payload itself. Thread-safe: reading is.
 class Payload {
  public:
   /// `bytes` must outlive it. Never throws for any bytes.
-  explicit Payload(std::string_view bytes);
+  explicit Payload(std::string_view bytes, PayloadForm form = PayloadForm::kJson);
 
   /// Is it JSON that does not have the place? Payloads that are not JSON lack none: whether they can be read,
   /// number_at() says.

@@ -85,6 +85,28 @@ TEST(MqttPayload, StandsAnyBytes) {
   }
 }
 
+TEST(MqttPayload, OfANumberAloneIsNotReadAsJson) {
+  const Payload payload("[1]", PayloadForm::kText);
+  EXPECT_TRUE(payload.json().is_discarded());
+  const auto number = Payload("7.5", PayloadForm::kText).number_at("");
+  EXPECT_TRUE(number && *number == 7.5);
+  EXPECT_FALSE(payload.lacks(""));
+  EXPECT_FALSE(payload.text_at("/0"));
+}
+
+TEST(MqttPayload, LacksAPlaceThatIsNotThere) {
+  const Payload payload(R"({"a":null,"b":{"c":1},"name":"x","id":7,"part":1.5})");
+  EXPECT_FALSE(payload.lacks("/a")) << "it is there, and says that there is no value";
+  EXPECT_FALSE(payload.lacks("/b/c"));
+  EXPECT_TRUE(payload.lacks("/b/d"));
+  EXPECT_TRUE(payload.lacks("/c"));
+  EXPECT_FALSE(Payload("{").lacks("/a")) << "what cannot be read is malformed, not without it";
+  EXPECT_EQ(payload.text_at("/name"), "x");
+  EXPECT_EQ(payload.text_at("/id"), "7");
+  EXPECT_FALSE(payload.text_at("/part"));
+  EXPECT_FALSE(payload.text_at("/none"));
+}
+
 TEST(MqttPayload, StandsALotOfBrackets) {
   EXPECT_TRUE(refuses(std::string(60'000, '['), "/a", decode::Refusal::kMalformed));
   EXPECT_TRUE(finds_none(std::string(30'000, '[') + std::string(30'000, ']'), "/1"));
