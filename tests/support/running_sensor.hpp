@@ -60,10 +60,11 @@ class RunningSensor final : private drivers::sensor::SensorSink {
     thread_.join();
     poll();
   }
-  /// Forgets readings, refusals and messages; what the link was stays.
+  /// Forgets readings, quantities, refusals and messages; what the link was stays.
   void forget() {
     const std::lock_guard lock(mutex_);
     sink_.readings.clear();
+    sink_.station_quantities.clear();
     sink_.refusals.clear();
     sink_.raws.clear();
     whole_ = {.links = sink_.links.size()};
@@ -113,6 +114,9 @@ class RunningSensor final : private drivers::sensor::SensorSink {
   }
   void reading(const wind::WindReading& reading) override {
     change([&](RecordingSink& sink) { sink.reading(reading); });
+  }
+  void quantities(const wind::StationQuantities& said) override {
+    change([&](RecordingSink& sink) { sink.quantities(said); });
   }
   void refused(drivers::decode::Refusal why, std::uint64_t times) override {
     change([&](RecordingSink& sink) { sink.refused(why, times); });
