@@ -68,7 +68,7 @@ std::vector<ModbusRead> plan_modbus_reads(const ModbusProfile& profile, bool is_
   while (profile.block_read && merge_two(profile, reads)) {
   }
   if (profile.direction && is_direction_apart) reads.push_back(read_of(profile, ModbusMeasure::kDirection));
-  std::ranges::stable_partition(reads, &ModbusRead::has_wind);
+  std::stable_partition(reads.begin(), reads.end(), [](const ModbusRead& read) { return read.has_wind(); });
   return reads;
 }
 
