@@ -146,7 +146,6 @@ TEST_F(DecodeCommand, DecodesEverySharedModbusExchange) {
       {"DFRobot SEN048", {{"modbus:dfrobot-sen0483"}, "wind_speed_ms", ""}},
       {"Renke RS-FXJT-N01",
        {{"modbus:renke-rs-fsjt-rs-fxjt-n01", "--speed-slave", "9", "--direction-slave", "1"}, "", "wind_dir_deg"}},
-      {"Vaisala WM80", {{"modbus:vaisala-wm80"}, "wind_speed_ms", "wind_dir_deg"}},
       {"SenseCAP ONE", {{"modbus:seeed-sensecap-one"}, "ws_avg", "dir_avg", "ws_max"}},
       {"Lufft WS-UMB", {{"modbus:lufft-umb"}, "fast", "", "max"}},
       {"Xunchip", {{"modbus:xunchip-xm8589"}, "wind_speed_raw", ""}},
@@ -166,6 +165,11 @@ TEST_F(DecodeCommand, DecodesEverySharedModbusExchange) {
     }
     if (vector["expect"].contains("error")) {
       EXPECT_EQ(one(line, {"modbus:renke-rs-fsjt-n01", "--hex", "--refused"})["refused"], "not mine");
+      continue;
+    }
+    if (device == "Vaisala WM80") {
+      // Made before it was known that its less significant words come first: 5.5 m/s is next to nothing in that order.
+      EXPECT_LT(one(line, {"modbus:vaisala-wm80", "--hex"})["speed_m_s"].get<double>(), 1e-30);
       continue;
     }
     const auto found = std::ranges::find_if(cases, [&](const auto& each) { return device.starts_with(each.first); });
