@@ -24,11 +24,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   std::istringstream in(text);
   MonoTime last{};
-  const auto report =
-      daemon::tools::csv::import_csv(in, "fuzz", options, [&](std::string_view, const wind::WindReading& reading) {
+  const auto report = daemon::tools::csv::import_csv(
+      in, "fuzz", options, {.reading = [&](std::string_view, const wind::WindReading& reading) {
         if (!drivers::windlog::is_recordable(reading) || reading.time.mono < last) std::abort();
         last = reading.time.mono;
-      });
+      }});
   if (report && report->taken > report->rows) std::abort();
   return 0;
 }

@@ -246,7 +246,7 @@ TEST_F(CsvCommands, ImportTellsTheColumnsAndWhatItLeftOut) {
   write("a.csv", "time,u_ms,v_ms\n0,1,1\n1,x,1\n2,1,1\n");
   const Outcome outcome = yuragi({"import", path("a.csv"), "-o", path("a.windlog"), "--sensor", "sonic"});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.output, HasSubstr("u from \"u_ms\" (m/s, toward east)"));
+  EXPECT_THAT(outcome.output, HasSubstr("u from \"u_ms\" (m/s, toward east; by its name)"));
   EXPECT_THAT(outcome.output, HasSubstr("2 readings of 3 rows, 1 left out"));
   EXPECT_THAT(outcome.error, HasSubstr("a.csv:3: not a number in u: \"x\""));
   EXPECT_EQ(drivers::windlog::WindlogReader::open(path("a.windlog"))->sensors()[0].name, "sonic");
@@ -262,7 +262,7 @@ TEST_F(CsvCommands, ImportThatFailsLeavesNothing) {
   EXPECT_EQ(yuragi({"import", path("absent.csv"), "-o", path("a.windlog")}).code, kExitNoInput);
   EXPECT_EQ(yuragi({"import", path("bad.csv"), "-o", path("nowhere/a.windlog")}).code, kExitCannotCreate);
   EXPECT_EQ(yuragi({"import", path("bad.csv"), "-o", path("a.windlog"), "--unit", "furlongs"}).code, kExitUsage);
-  EXPECT_EQ(yuragi({"import", path("bad.csv"), "-o", path("a.windlog"), "--delimiter", "|"}).code, kExitUsage);
+  EXPECT_EQ(yuragi({"import", path("bad.csv"), "-o", path("a.windlog"), "--delimiter", "/"}).code, kExitUsage);
   EXPECT_EQ(count_files(), 3);
 }
 
