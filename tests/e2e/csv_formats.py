@@ -1,6 +1,6 @@
 """Samples of CSV files as loggers, stations and archives write them, and a reader of each in plain Python.
 
-Each sample is written after the maker's or archive's own description (drivers/SOURCES.md, "CSV files"), with marks for
+Each sample is written after the maker's or archive's own description (drivers/SOURCES.md S9), with marks for
 missing values where the format has them. The readers share nothing with the program but the knowledge of the format.
 """
 import csv
@@ -248,7 +248,7 @@ def wunderground():
                      f"{m.direction},{m.speed},{m.gust},60,{m.utc:%Y-%m-%d %H:%M:%S}")
     return Sample("Weather Underground", "\n".join(lines) + "\n",
                   lambda text: [(moment(r[9], "%Y-%m-%d %H:%M:%S"), float(r[6]) * MPH, float(r[5]), float(r[7]) * MPH) for r in table(text)],
-                  options=("--time", "DateUTC", "--direction", "WindDirectionDegrees"), units="mph",
+                  units="mph", told=('time from "DateUTC"',),
                   weather={"pressure_hpa": 29.92 * 33.8638866667, "relative_humidity_percent": 60.0})
 
 
@@ -334,7 +334,7 @@ def vaisala():
         lines.append(f"{m.utc:%Y-%m-%d}\t{m.utc:%H:%M:%S}\t{m.direction}\t{m.speed}\t{m.gust}\t{m.temperature}\t50.1\t1009.3")
     return Sample("Vaisala WXT, logged", "\n".join(lines) + "\n",
                   lambda text: [(moment(r[0] + r[1], "%Y-%m-%d%H:%M:%S"), float(r[3]), float(r[2]), float(r[4])) for r in table(text, "\t", 2)],
-                  options=("--gust", "Sx"), told=("as the row of units says",))
+                  told=("as the row of units says",))
 
 
 @sample
@@ -382,7 +382,7 @@ def era5():
         for r in table(text):
             u, v = float(r[1]), float(r[2])
             yield moment(r[0], "%Y-%m-%d %H:%M:%S"), math.hypot(u, v), math.degrees(math.atan2(-u, -v)) % 360, None
-    return Sample("ERA5 (Copernicus)", "\n".join(lines) + "\n", lambda text: list(read(text)), options=("--time", "valid_time"),
+    return Sample("ERA5 (Copernicus)", "\n".join(lines) + "\n", lambda text: list(read(text)),
                   told=("as ECMWF writes it",))
 
 
@@ -475,4 +475,4 @@ def daylight_saving():
         lines.append(f"{utc.astimezone(zone):%d.%m.%Y %H:%M};{m.speed};{m.direction}")
         true.append((utc, m.speed, float(m.direction), None))
     return Sample("a change to winter time", "\n".join(lines) + "\n", lambda text: true,
-                  options=("--zone", "Europe/Berlin", "--direction", "Richtung"))
+                  options=("--zone", "Europe/Berlin"))

@@ -19,7 +19,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   // Half of the inputs have a header that is understood, so that the rows are reached.
   std::string text = (data[0] & 32) != 0 ? "" : "time,speed,direction,gust\n";
-  if ((data[0] & 64) != 0) text = "time;u_kn;v_kn\n";
+  if ((data[0] & 64) != 0) text = "time;u_kn;v_kn;temp;w\n";
+  if ((data[0] & 128) != 0) text = "# FF : speed (in 0.1 m/s)\n# STN,YYYYMMDD,HH,DD,FF\n";
   for (std::size_t i = 1; i < size; ++i) text += static_cast<char>(data[i]);
 
   std::istringstream in(text);

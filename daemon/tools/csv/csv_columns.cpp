@@ -15,6 +15,7 @@ namespace yuragi::daemon::tools::csv {
 namespace {
 
 constexpr std::string_view kByName = "by its name";
+constexpr std::string_view kUtc = "utc";
 
 bool is_any_of(std::string_view text, std::initializer_list<std::string_view> names) {
   return std::ranges::find(names, text) != names.end();
@@ -32,7 +33,9 @@ std::string time_stem(std::string_view name) {
            word.find_first_not_of("0123456789") == std::string::npos;
   });
   while (words.size() > 1 && is_any_of(words.back(), {"ms", "s", "sec", "seconds", "iso"})) words.pop_back();
-  return words.empty() ? "time" : joined(words);
+  std::string stem = words.empty() ? "time" : joined(words);
+  if (stem.size() > kUtc.size() && stem.ends_with(kUtc)) stem.resize(stem.size() - kUtc.size());
+  return stem;
 }
 
 /// The zone that the name of a time's column says: "GMT-07:00", "UTC"; or that of American standard times.
@@ -102,27 +105,36 @@ class ColumnChoice {
     is_taken_[index] = true;
   }
 
-  /// Takes the first column with one of a role's usual names; "windspeedmph" is "windspeed" in mph.
+  /// Takes the first column with one of a role's usual names. Of two directions it is the one in degrees.
   void guess(CsvRole role) {
     if (columns_.at(role)) return;
+    if (role == CsvRole::kDirection && take_usual(role, true)) return;
+    if (take_usual(role, false)) return;
+    if (role == CsvRole::kGust) guess_greatest_speed();
+  }
+
+  /// "windspeedmph" is "windspeed" in mph.
+  bool take_usual(CsvRole role, bool is_unit_needed) {
     for (const std::string_view usual : usual_names(role)) {
       for (std::size_t i = 0; i < header_.size(); ++i) {
         if (is_taken_[i]) continue;
         const CsvName& name = names_[i];
         const CsvStatistic wanted = role == CsvRole::kGust ? CsvStatistic::kMax : CsvStatistic::kMean;
-        const bool is_mean = name.statistic == CsvStatistic::kMean;
-        if (!is_mean && name.statistic != wanted) continue;
-        if (name.stem == usual) return take(role, i);
-        if (!name.stem.starts_with(usual)) continue;
+        if (name.statistic != CsvStatistic::kMean && name.statistic != wanted) continue;
+        if (name.stem == usual && (!is_unit_needed || !name.unit_words.empty())) {
+          take(role, i);
+          return true;
+        }
+        if (name.stem == usual || !name.stem.starts_with(usual)) continue;
         const auto unit = find_unit(dimension_of(role), std::string_view(name.stem).substr(usual.size()));
         if (!unit) continue;
         take(role, i);
         columns_.at(role)->unit = unit;
         columns_.at(role)->unit_source = kByName;
-        return;
+        return true;
       }
     }
-    if (role == CsvRole::kGust) guess_greatest_speed();
+    return false;
   }
 
   /// A column of greatest speeds is one of gusts: WS_ms_Max.
@@ -135,10 +147,14 @@ class ColumnChoice {
     }
   }
 
+  /// One that says that it is in UTC, before one that may be in local time.
   std::optional<std::size_t> find_time_column(CsvRole role) const {
-    for (const std::string_view usual : usual_names(role)) {
-      for (std::size_t i = 0; i < header_.size(); ++i) {
-        if (!is_taken_[i] && !header_[i].empty() && time_stems_[i] == usual) return i;
+    for (const bool is_utc_wanted : {true, false}) {
+      for (const std::string_view usual : usual_names(role)) {
+        for (std::size_t i = 0; i < header_.size(); ++i) {
+          const bool is_usual = !is_taken_[i] && !header_[i].empty() && time_stems_[i] == usual;
+          if (is_usual && (!is_utc_wanted || zone_in_name(header_[i]) == "UTC")) return i;
+        }
       }
     }
     return std::nullopt;

@@ -2,12 +2,28 @@
 
 #include <algorithm>
 #include <span>
-#include <sstream>
 
 #include "daemon/tools/csv/csv_lines.hpp"
 
 namespace yuragi::daemon::tools::csv {
 namespace {
+
+/// A text that is read where it is.
+class TextInPlace : public std::streambuf {
+ public:
+  explicit TextInPlace(std::string& text, std::size_t size) { setg(text.data(), text.data(), text.data() + size); }
+
+ private:
+  pos_type seekoff(off_type offset, std::ios_base::seekdir from, std::ios_base::openmode) override {
+    const off_type place = offset + (from == std::ios_base::cur ? gptr() - eback() : 0);
+    if (from == std::ios_base::end || place < 0 || place > egptr() - eback()) return pos_type(off_type(-1));
+    setg(eback(), eback() + place, egptr());
+    return pos_type(place);
+  }
+  pos_type seekpos(pos_type place, std::ios_base::openmode which) override {
+    return seekoff(off_type(place), std::ios_base::beg, which);
+  }
+};
 
 /// A text, and then what another stream goes on with.
 class TextThenStream : public std::streambuf {
@@ -51,7 +67,7 @@ std::istream& CsvInput::first_pass() {
     return in_;
   }
   const auto end = is_whole_ ? kept_.size() : std::min(kept_.size(), kept_.rfind('\n') + 1);
-  kept_buffer_ = std::make_unique<std::stringbuf>(kept_.substr(0, end), std::ios::in);
+  kept_buffer_ = std::make_unique<TextInPlace>(kept_, end);
   stream_ = std::make_unique<std::istream>(kept_buffer_.get());
   return *stream_;
 }
