@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -57,8 +58,9 @@ constexpr const char* kImportFooter =
     "  yuragi import station.csv -o station.windlog --speed \"Avg Wind\" --unit km/h --direction Dir --time-format "
     "unix\n"
     "  yuragi import garden.csv -o garden.windlog --time-format day-first --zone Europe/Berlin --missing 99.0\n"
+    "  yuragi import bare.csv -o bare.windlog --header time,,speed_kn,direction\n"
     "  yuragi import history.csv -o roof.windlog --where entity_id=sensor.wind_speed --speed state --unit km/h\n"
-    "  yuragi import voyage.nmea -o voyage.windlog --sentence MWD\n"
+    "  yuragi import voyage.log -o voyage.windlog --sentence MWD\n"
     "  yuragi import windsonic.log -o roof.windlog --start 2023-06-25T22:00:00Z --interval 0.25\n"
     "  yuragi import sonic.csv -o sonic.windlog --u Ux --v Uy --uv-from\n"
     "Then: yuragi replay mast.windlog";
@@ -73,6 +75,7 @@ struct ImportOptions {
   std::string gust_unit;
   std::string zone;
   std::vector<std::string> conditions;
+  std::string header;
   std::string start;
   double interval_s = 0.0;
   std::string sentence;
@@ -118,6 +121,8 @@ tools::csv::CsvImportOptions csv_options(const ImportOptions& options) {
     if (!zone) throw ExitError(kExitUsage, "--zone: " + zone.error().message);
     csv.zone = *zone;
   }
+  std::istringstream names(options.header);
+  for (std::string name; std::getline(names, name, ',');) csv.header.push_back(name);
   for (const std::string& condition : options.conditions) csv.conditions.push_back(condition_in(condition));
   return csv;
 }
@@ -319,6 +324,10 @@ void add_import(CLI::App& app) {
   command->add_option("--comment", options->comment, "lines that begin with this character are ignored (default #)");
   command->add_option("--skip", options->csv.skip, "lines before the header; default: it is looked for")
       ->type_name("N");
+  command
+      ->add_option("--header", options->header,
+                   "names for the columns of a file without a header, with commas between them")
+      ->type_name("NAMES");
   command
       ->add_option("--where", options->conditions,
                    "take the rows where this column has this text; can be given several times")

@@ -95,7 +95,8 @@ class Import {
   CsvImportReport finish() {
     report_.columns = rows_.describe();
     for (std::string& note : rows_.notes()) report_.notes.push_back(std::move(note));
-    if (repeated_ > 0) report_.notes.push_back(count_text(repeated_, "row") + " repeated the one before");
+    if (repeated_ > 0)
+      report_.notes.push_back("the same row as the one before: left out, " + count_text(repeated_, "row"));
     return std::move(report_);
   }
 

@@ -86,7 +86,8 @@ class LayoutSearch {
   Result<CsvLayout, Failure> find() const {
     const std::size_t begin = next_line(options_.skip.value_or(0), false);
     if (begin >= lines_.size()) return Failure{"has no header line"};
-    const auto first = layout_at(begin, split(lines_[begin], delimiter(lines_[begin])), false);
+    if (!options_.header.empty()) return layout_of_names(begin);
+    auto first = layout_at(begin, split(lines_[begin], delimiter(lines_[begin])), false);
     if (first || options_.skip) return first;
 
     // In its order: a line, two lines, a comment.
@@ -161,6 +162,19 @@ class LayoutSearch {
     return layout;
   }
 
+  /// A file without a header.
+  Result<CsvLayout, Failure> layout_of_names(std::size_t begin) const {
+    CsvLayout layout;
+    layout.delimiter = delimiter(lines_[begin]);
+    layout.header = options_.header;
+    layout.row = split(lines_[begin], layout.delimiter);
+    layout.first_row = begin + 1;
+    auto columns = choose_columns(layout.header, options_.columns, layout.row);
+    if (!columns) return columns.error();
+    layout.columns = std::move(*columns);
+    return layout;
+  }
+
   /// A header over two lines: "Wind" above "Speed".
   std::optional<CsvLayout> layout_of_two(std::size_t i) const {
     if (i == 0 || is_comment(lines_[i - 1])) return std::nullopt;
@@ -227,6 +241,9 @@ class LayoutSearch {
       if (fields.size() <= most || is_comment(lines_[i]) || std::ranges::any_of(fields, is_number_or_date)) continue;
       best = i;
       most = fields.size();
+    }
+    if (std::ranges::any_of(split(lines_[begin], delimiter(lines_[begin])), is_number_or_date)) {
+      return Failure{first.message + "; where the file has no header, --header NAMES gives it one"};
     }
     if (best == begin) return first;
     const auto tried = layout_at(best, split(lines_[best], delimiter(lines_[best])), false);

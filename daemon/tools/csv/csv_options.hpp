@@ -38,6 +38,7 @@ struct CsvImportOptions {
   char delimiter = 0;                    ///< ',', ';', '|', tab, or ' ' (any blanks); 0: as the header has it
   char comment = '#';                    ///< lines that begin with it are skipped; 0: none are
   std::optional<std::size_t> skip;       ///< so many lines stand before the header; empty: it is looked for
+  std::vector<std::string> header;       ///< the names of the columns of a file without a header; empty: it has one
   std::vector<CsvCondition> conditions;  ///< all are to hold
   std::vector<std::string> missing;      ///< further texts that stand for no value ("99.0")
   std::string sensor = "imported";       ///< name of the sensor, unless the file is an export of yuragi's

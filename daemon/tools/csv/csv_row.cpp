@@ -52,11 +52,21 @@ Result<CsvRowReader, Failure> CsvRowReader::make(const CsvLayout& layout, const 
 }
 
 bool CsvRowReader::is_missing(CsvRole role, std::string_view text) const {
-  if (is_missing_word(text) || std::ranges::find(options_.missing, text) != options_.missing.end()) return true;
+  if (is_missing_word(text)) return true;
   const auto number = parse_number(text, dimension_of(role));
+  for (const std::string& missing : options_.missing) {
+    const auto mark = parse_number(missing, CsvDimension::kNone);
+    if (text == missing || (number && mark && number->value == mark->value)) return true;
+  }
   if (!number) return false;
-  return is_missing_number(role, number->value) ||
+  const CsvUnit unit = number->unit.value_or(unit_of(role));
+  return is_missing_number(role, number->value, number->value * unit.factor + unit.offset) ||
          number->value == survey_.missing_mark[static_cast<std::size_t>(role)];
+}
+
+CsvUnit CsvRowReader::unit_of(CsvRole role) const {
+  const auto& column = columns_.at(role);
+  return column && column->unit ? *column->unit : CsvUnit{};
 }
 
 Result<CsvRow, Failure> CsvRowReader::read(const CsvFields& fields) {
@@ -133,7 +143,7 @@ Result<std::optional<double>, Failure> CsvRowReader::read_number(const CsvFields
   }
   const auto number = parse_number(*text, dimension_of(role));
   if (!number) return refusal("not a number in " + std::string(name_of(role)) + ":", *text);
-  const CsvUnit unit = number->unit.value_or(columns_.at(role)->unit.value_or(CsvUnit{}));
+  const CsvUnit unit = number->unit.value_or(unit_of(role));
   return std::optional<double>(number->value * unit.factor + unit.offset);
 }
 
@@ -303,7 +313,7 @@ std::vector<std::string> CsvRowReader::notes() const {
   std::vector<std::string> lines;
   for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
     if (missing_[index] == 0) continue;
-    lines.push_back(fmt::format("{}: {} that stand for none were left empty", name_of(static_cast<CsvRole>(index)),
+    lines.push_back(fmt::format("{}: {} left empty, by a mark for none", name_of(static_cast<CsvRole>(index)),
                                 count_text(missing_[index], "value")));
   }
   for (const auto& [text, count] : odd_directions_) {
@@ -311,11 +321,11 @@ std::vector<std::string> CsvRowReader::notes() const {
         fmt::format("direction: {} is none and was left empty, {} times; the speed was taken", text, count));
   }
   if (implausible_quantities_ > 0) {
-    lines.push_back(count_text(implausible_quantities_, "value") + " of the weather cannot be, and were left out");
+    lines.push_back("weather: " + count_text(implausible_quantities_, "value") + " left out, which cannot be");
   }
   if (same_time_ > 0) {
-    lines.push_back(count_text(same_time_, "reading") +
-                    " have the time of the one before, and are kept a nanosecond apart: are the times rounded?");
+    lines.push_back("the same time as the one before: " + count_text(same_time_, "reading") +
+                    ", kept a nanosecond apart; are the times rounded?");
   }
   if (went_back_ > 0 && unzoned_ > 0) {
     lines.push_back(

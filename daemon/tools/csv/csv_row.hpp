@@ -50,6 +50,7 @@ class CsvRowReader {
   Result<void, Failure> read_packed_wind(std::string_view text, wind::WindReading& reading);
   std::optional<wind::StationQuantities> read_quantities(const CsvFields& fields, const Instant& time);
   bool is_missing(CsvRole role, std::string_view text) const;
+  CsvUnit unit_of(CsvRole role) const;
   CsvDirectionUnit direction_unit() const;
   std::string describe_time() const;
 

@@ -122,12 +122,13 @@ class Survey {
     const auto& text = fields.at(role);
     if (!text || is_missing_word(*text)) return std::nullopt;
     const auto number = parse_number(*text, dimension_of(role));
-    if (!number || is_missing_number(role, number->value)) return std::nullopt;
+    if (!number) return std::nullopt;
+    const CsvUnit unit = number->unit.value_or(layout_.columns.at(role)->unit.value_or(CsvUnit{}));
+    const double base = number->value * unit.factor + unit.offset;
+    if (is_missing_number(role, number->value, base)) return std::nullopt;
     numbers_of_[static_cast<std::size_t>(role)].add(number->value);
     if (is_possible_mark(role, number->value)) return std::nullopt;
-    const auto& column = layout_.columns.at(role);
-    const CsvUnit unit = number->unit.value_or(column->unit.value_or(CsvUnit{}));
-    return number->value * unit.factor + unit.offset;
+    return base;
   }
 
   Result<void, Failure> settle_time() {

@@ -13,6 +13,31 @@ bool is_one_of(double value, std::initializer_list<double> marks) {
   return std::ranges::any_of(marks, [value](double mark) { return std::abs(value - mark) < 1e-6 * mark; });
 }
 
+/// Is it a value that such a column has in earnest? In base units.
+bool can_be(CsvRole role, double base) {
+  constexpr double kGreatestSpeed_m_s = 60.0;
+  switch (dimension_of(role)) {
+    case CsvDimension::kSpeed:
+      return std::abs(base) < kGreatestSpeed_m_s &&
+             (base >= 0.0 || (role != CsvRole::kSpeed && role != CsvRole::kGust));
+    case CsvDimension::kDirection:
+      return base >= -180.0 && base <= 360.0;
+    case CsvDimension::kTemperature:
+      return base > -65.0 && base < 60.0;
+    case CsvDimension::kPressure:
+      return base >= 300.0 && base <= 1100.0;
+    case CsvDimension::kHumidity:
+      return base >= 0.0 && base <= 110.0;
+    case CsvDimension::kRain:
+    case CsvDimension::kRainRate:
+      return base >= 0.0 && base < 999.0;
+    case CsvDimension::kTime:
+    case CsvDimension::kNone:
+      break;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::optional<CsvNumber> parse_number(std::string_view text, CsvDimension dimension) {
@@ -49,16 +74,14 @@ bool is_missing_word(std::string_view text) {
   return std::ranges::find(kWords, lower(text)) != kWords.end();
 }
 
-bool is_missing_number(CsvRole role, double value) {
-  if (role == CsvRole::kElapsed) return false;
-  const bool has_large_values = role == CsvRole::kPressure || role == CsvRole::kRainTotal;
-  if (value < 0.0) {
-    return is_one_of(-value, {99.0, 99.9, 99.99, 999.0, 999.9, 999.99, 9999.0, 9999.9, 99999.0, 99999.9, 6999.0, 7999.0,
-                              32768.0, 8888.0, 888.0});
-  }
-  if (role == CsvRole::kDirection && is_one_of(value, {990.0})) return true;
-  if (!has_large_values && is_one_of(value, {999.0, 999.9, 999.99})) return true;
-  return is_one_of(value, {9999.0, 9999.9, 9999.99, 99999.0, 99999.9, 999999.0, 6999.0, 7999.0, 32767.0, 65535.0});
+bool is_missing_number(CsvRole role, double value, double base) {
+  if (role == CsvRole::kElapsed || can_be(role, base)) return false;
+  if (role == CsvRole::kDirection && value == 990.0) return true;
+  // Above zero, two digits may be a wind in a storm: is_possible_mark().
+  constexpr double kLeastMark = 888.0;
+  if (value > 0.0 && value < kLeastMark) return false;
+  return is_one_of(std::abs(value), {99.0, 99.9, 99.99, 888.0, 999.0, 999.9, 999.99, 6999.0, 7999.0, 8888.0, 9999.0,
+                                     9999.9, 9999.99, 32767.0, 32768.0, 65535.0, 99999.0, 99999.9, 999999.0});
 }
 
 bool is_possible_mark(CsvRole role, double value) {

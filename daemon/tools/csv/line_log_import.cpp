@@ -56,6 +56,23 @@ int rank_of(std::string_view source) {
   return static_cast<int>(found - kOrder.begin());
 }
 
+/// The best of those that the log has half as often as any, or more.
+std::string chosen_source(const LogContents& contents, const LineLogOptions& options) {
+  const auto is_wanted = [&](std::string_view source) {
+    return options.sentence.empty() || source.starts_with(options.sentence);
+  };
+  std::size_t most = 0;
+  for (const auto& [source, count] : contents.sources) {
+    if (is_wanted(source)) most = std::max(most, count);
+  }
+  std::string chosen;
+  for (const auto& [source, count] : contents.sources) {
+    if (!is_wanted(source) || 2 * count < most) continue;
+    if (chosen.empty() || rank_of(source) < rank_of(chosen)) chosen = source;
+  }
+  return chosen;
+}
+
 class LogImport {
  public:
   LogImport(const std::string& name, const LineLogOptions& options, const CsvSinks& sinks, std::string source,
@@ -91,10 +108,10 @@ class LogImport {
     }
     if (lines.is_too_long()) return too_long_line(name_, lines.number() + 1);
     if (same_time_ > 0) {
-      report_.notes.push_back(count_text(same_time_, "reading") +
-                              " have the time of the one before, and are kept a nanosecond apart");
+      report_.notes.push_back("the same time as the one before: " + count_text(same_time_, "reading") +
+                              ", kept a nanosecond apart");
     }
-    if (passed_over_ > 0) report_.notes.push_back(count_text(passed_over_, "line") + " say something else");
+    if (passed_over_ > 0) report_.notes.push_back("something else: " + count_text(passed_over_, "line"));
     return std::move(report_);
   }
 
@@ -184,11 +201,7 @@ Result<CsvImportReport, Failure> import_line_log(CsvInput& input, const std::str
     return Failure{name +
                    ": no line has a wind; NMEA 0183, Gill, FT, UMB and \"speed=4.2 direction=270\" are understood"};
   }
-  std::string source;
-  for (const auto& [each, count] : contents.sources) {
-    const bool is_wanted = options.sentence.empty() || each.starts_with(options.sentence);
-    if (is_wanted && (source.empty() || rank_of(each) < rank_of(source))) source = each;
-  }
+  const std::string source = chosen_source(contents, options);
   if (source.empty()) return Failure{name + ": no line has the sentence " + options.sentence + " with a speed"};
 
   const bool has_leading_times = 2 * contents.leading_times > contents.messages;

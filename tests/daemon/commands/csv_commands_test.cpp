@@ -296,6 +296,27 @@ TEST_F(CsvCommands, ImportTakesItsOptions) {
   EXPECT_EQ(logged[0].reading.time.utc, UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms)));
 }
 
+TEST_F(CsvCommands, ImportTakesAFileWithoutAHeaderAndOneStationOfSeveral) {
+  write("a.csv", "a;20.7.2018 16:00;7;36;90\nb;20.7.2018 16:00;7;72;90\na;20.7.2018 16:10;99;18;270\n");
+  const Outcome outcome =
+      yuragi({"import", path("a.csv"), "-o", path("a.windlog"), "--header", "station,time,,speed,dir", "--where",
+              "station=a", "--unit", "km/h", "--zone", "Europe/Berlin"});
+  EXPECT_EQ(outcome.code, 0) << outcome.error;
+  const auto logged = test::read_all(path("a.windlog"));
+  ASSERT_EQ(logged.size(), 2U);
+  EXPECT_DOUBLE_EQ(logged[0].reading.speed_m_s, 10.0);
+  EXPECT_EQ(logged[0].reading.time.utc, UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms)));
+  EXPECT_EQ(logged[1].reading.direction_deg, 270.0);
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--zone", "Mars/Olympus"},
+                                                {"--where", "station"},
+                                                {"--gust-unit", "bft"},
+                                                {"--start", "noon"}}) {
+    std::vector<std::string> arguments = {"import", path("a.csv"), "-o", path("b.windlog")};
+    arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+    EXPECT_EQ(yuragi(arguments).code, kExitUsage) << wrong[0];
+  }
+}
+
 TEST_F(CsvCommands, ExportRefusesWhatIsNoRecording) {
   write("a.txt", "hello");
   EXPECT_EQ(yuragi({"export", path("a.txt"), "-o", "-"}).code, kExitDataError);

@@ -85,6 +85,8 @@ TEST(LineLog, OneSentenceOfSeveralIsTaken) {
   LineLogOptions options;
   options.sentence = "MWV R";
   EXPECT_EQ(import_log(text, options).readings.at(1).direction_deg, 20.0);
+  EXPECT_EQ(import_log(text + "$WIMWV,30,R,7.0,M,A\n$WIMWV,40,R,7.0,M,A\n$WIMWV,50,R,7.0,M,A\n").readings.size(), 5U)
+      << "a sentence that is said seldom is not the wind";
   options.sentence = "VWR";
   EXPECT_THAT(import_log(text, options).failure, HasSubstr("VWR"));
 }
