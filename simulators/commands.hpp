@@ -9,6 +9,10 @@ namespace yuragi::simulators {
 void add_recording_command(CLI::App& app);
 }
 
+namespace yuragi::simulators::davis {
+void add_davis_command(CLI::App& app);
+}
+
 namespace yuragi::simulators::microphone {
 void add_microphone_command(CLI::App& app);
 }

@@ -186,7 +186,7 @@ TEST(DecodeProgram, HelpsWithAnExampleOfEachFormat) {
   const std::string help = program.rest();
   EXPECT_EQ(program.wait(), 0);
   for (const char* name : {"nmea", "gill", "umb", "ft", "line", "wmr100", "wmr300", "fineoffset", "acurite", "te923",
-                           "mcc1208", "labjack", "modbus:"}) {
+                           "davis", "mcc1208", "labjack", "modbus:"}) {
     EXPECT_THAT(help, HasSubstr(std::string("yuragi decode ") + name));
   }
 }
