@@ -34,11 +34,10 @@ bool DescriptorPort::write(std::span<const std::uint8_t> bytes) {
     const ssize_t size = ::write(descriptor(), bytes.data(), bytes.size());
     if (size > 0) {
       bytes = bytes.subspan(static_cast<std::size_t>(size));
-    } else if (errno != EAGAIN && errno != EINTR) {
-      return false;
-    } else if (interruption_.wait(descriptor(), WaitFor::kWritable, kWritePatience) != WaitEnd::kReady) {
-      return false;
+      continue;
     }
+    if (errno != EAGAIN && errno != EINTR) return false;
+    if (interruption_.wait(descriptor(), WaitFor::kWritable, kWritePatience) != WaitEnd::kReady) return false;
   }
   return true;
 }

@@ -1,5 +1,5 @@
-// Any bytes for the decoders of Davis consoles, with checksums mended on request, so that values are reached; and for
-// the driver, in any pieces with any pauses between them: what it publishes is physical.
+// Any bytes for the decoders of the WeatherLink Live and of Davis consoles, with checksums mended on request, so that
+// values are reached; and for the driver, in any pieces with any pauses between them: what it publishes is physical.
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -9,6 +9,7 @@
 #include "drivers/davis/vantage_sensor.hpp"
 #include "drivers/decode/davis/vantage.hpp"
 #include "drivers/decode/davis/vantage_assembler.hpp"
+#include "drivers/decode/davis/weatherlink_live.hpp"
 #include "engine/wind/wind_reading.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
@@ -57,6 +58,15 @@ void assemble(decode::ByteSpan bytes) {
   require(!assembler.cut());
 }
 
+void read_json(std::string_view json) {
+  for (const int transmitter : {0, 1}) {
+    const auto said = decode::davis::decode_live_conditions(json, transmitter);
+    require(!said || decode::checked(said->wind).has_value());
+  }
+  const auto port = decode::davis::decode_live_broadcast_port(json);
+  require(!port || *port > 0);
+}
+
 void talk(const std::uint8_t* data, std::size_t size) {
   FarEnd far_end;
   ManualClock clock;
@@ -98,6 +108,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   read_packet(bytes);
   read_mended_packet({bytes.begin(), bytes.end()});
   assemble(bytes);
+  read_json({reinterpret_cast<const char*>(data), size});
   talk(data, size);
   return 0;
 }

@@ -8,6 +8,7 @@
 
 #include "tests/support/child_process.hpp"
 #include "tests/support/driver_named.hpp"
+#include "tests/support/free_port.hpp"
 #include "tests/support/live_sensor.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -62,6 +63,22 @@ TEST(DavisConversation, AgreesOnTheWindOverTcpWithOldFirmware) {
   ASSERT_TRUE(live.wait_for_readings(5)) << live.sink.last_detail();
   expect_the_wind(live.sink);
   EXPECT_THAT(live.sink.last_detail(), HasSubstr("Davis console (LOOP) at "));
+}
+
+TEST(DavisConversation, AgreesOnTheWindOfAWeatherLinkLive) {
+  const std::int64_t udp_port = free_port(SOCK_DGRAM);
+  ChildProcess simulator({test::built_path("bin/yuragi-sim"), "weatherlink-live", "--tcp", "127.0.0.1:0", "--udp",
+                          "127.0.0.1:" + std::to_string(udp_port), "--interval", "0.2", "--speed", "7.15264",
+                          "--direction", "123", "--turbulence", "0"});
+  const std::string place = simulator.line_after("listening on ");
+  test::LiveSensor live(
+      driver_named("weatherlink")
+          .open(values_for("weatherlink", {{"host", std::string("127.0.0.1")},
+                                           {"http_port", std::int64_t{std::stoi(place.substr(place.rfind(':') + 1))}},
+                                           {"port", udp_port}})));
+  ASSERT_TRUE(live.wait_for_readings(8)) << live.sink.last_detail();
+  expect_the_wind(live.sink);
+  EXPECT_FALSE(live.sink.station_quantities.empty());
 }
 
 }  // namespace
