@@ -89,7 +89,8 @@ class BytePort {
   /// Sends all of it (serial and TCP). False: the port is lost, takes nothing for a second, or cannot be written to.
   virtual bool write(std::span<const std::uint8_t> bytes) = 0;
 
-  /// Ends a read(), write() or open() that waits and makes all later work end at once.
+  /// Ends a read(), write() or open() that waits and makes all later work end at once. What a port takes without a wait
+  /// can still be written: a last word to the device.
   virtual void interrupt() noexcept = 0;
 };
 

@@ -10,7 +10,9 @@
 
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/sensor/sensor.hpp"
-#include "simulators/text/text_simulator.hpp"
+#include "simulators/played_wind.hpp"
+#include "simulators/simulator.hpp"
+#include "simulators/text/text_wire.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
 
@@ -79,8 +81,7 @@ class TextBench {
     return std::make_unique<ImpatientPort>(drivers::bus::make_byte_port(address), patience_);
   }
 
-  void put(std::unique_ptr<simulators::text::TextSimulator> simulator,
-           std::unique_ptr<drivers::sensor::Sensor> sensor) {
+  void put(std::unique_ptr<simulators::Simulator> simulator, std::unique_ptr<drivers::sensor::Sensor> sensor) {
     simulator_ = std::move(simulator);
     sensor_ = std::move(sensor);
   }
@@ -98,6 +99,13 @@ class TextBench {
     return holds();
   }
 
+  /// The sensor ends as with the daemon, and the simulator sees what it said last.
+  void close_sensor() {
+    sensor_->interrupt();
+    sensor_.reset();
+    serve({});
+  }
+
   ManualClock clock;
   RecordingSink sink;
 
@@ -108,15 +116,8 @@ class TextBench {
     time_s_ += kStep_s;
     clock.advance(from_seconds(kStep_s));
 
-    std::vector<pollfd> waits;
-    for (const int descriptor : simulator_->descriptors()) waits.push_back({descriptor, POLLIN, 0});
-    poll(waits.data(), waits.size(), 0);
-    std::vector<int> ready;
-    for (const pollfd& wait : waits) {
-      if (wait.revents != 0) ready.push_back(wait.fd);
-    }
     has_written_ = false;
-    simulator_->serve(ready, time_s_, fault);
+    serve(fault);
 
     // What was said is on its way, and arrives in this step also on a machine that has other things to do.
     patience_ = has_written_ ? std::chrono::milliseconds(100) : std::chrono::microseconds(200);
@@ -125,7 +126,18 @@ class TextBench {
     sensor_->poll(clock, sink);
   }
 
-  std::unique_ptr<simulators::text::TextSimulator> simulator_;
+  void serve(std::optional<simulators::FaultKind> fault) {
+    std::vector<pollfd> waits;
+    for (const int descriptor : simulator_->descriptors()) waits.push_back({descriptor, POLLIN, 0});
+    poll(waits.data(), waits.size(), 0);
+    std::vector<int> ready;
+    for (const pollfd& wait : waits) {
+      if (wait.revents != 0) ready.push_back(wait.fd);
+    }
+    simulator_->serve(ready, time_s_, fault);
+  }
+
+  std::unique_ptr<simulators::Simulator> simulator_;
   std::unique_ptr<drivers::sensor::Sensor> sensor_;
   Nanoseconds patience_ = std::chrono::milliseconds(1);
   bool has_written_ = false;

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "drivers/decode/davis/vantage.hpp"
 #include "drivers/decode/hid/acurite.hpp"
 #include "drivers/decode/hid/fineoffset.hpp"
 #include "drivers/decode/hid/te923.hpp"
@@ -177,6 +178,13 @@ constexpr std::array kUnitFormats = {
                .devices = "Hideki TE923 (Meade, TFA Nexus, Mebus, IROX)",
                .example = "te923 --hex blocks.hex",
                .make = make_te923},
+    UnitFormat{
+        .name = "davis",
+        .is_text = false,
+        .unit = "a packet LOOP or LOOP2, of 99 bytes",
+        .devices = "consoles of Davis Vantage Pro, Vantage Pro2, Vantage Vue",
+        .example = "davis --hex packets.hex",
+        .make = [](const UnitDecoderOptions&) { return stateless(drivers::decode::davis::decode_vantage_packet); }},
     UnitFormat{.name = "mcc1208",
                .is_text = false,
                .unit = "a reply: 4 bytes of the counter, 2 of an analogue input",

@@ -78,6 +78,15 @@ TEST_F(DecodeCommand, ReadsEachKindOfStationByItsFormat) {
   EXPECT_TRUE(is_value(record["speed_m_s"], 4.7, 1e-9));
   EXPECT_TRUE(is_value(record["direction_deg"], 135.0));
 
+  // A packet LOOP2, of PyVantagePro's tests.
+  json loop2 = one(
+      "4C4F4FEC01FF7F95745D033A860305FF3B012300180007003B01FF7FFF7F4A00FF3CFF65005A0066000000FF78000000FFFF00000000000"
+      "0BF000000020000C9FF0E720E72BE74FF07060C0E0D090C39160202FF7FFF7FFF7FFF7FFF7FFF7F0A0DCBFD\n",
+      {"davis", "--hex"});
+  EXPECT_TRUE(is_value(loop2["speed_m_s"], 2.2352, 1e-9));
+  EXPECT_TRUE(is_value(loop2["gust_m_s"], 3.12928, 1e-9));
+  EXPECT_TRUE(is_value(loop2["direction_deg"], 315.0));
+
   // Counter 1234 and half of 2.44 V, with the sums of the U3's frames.
   json labjack = one("ff f8 05 00 00 02 00 00 00 b0 7a d2 04 00 00 00\n", {"labjack", "--hex"});
   EXPECT_EQ(labjack["count"], 1234);
