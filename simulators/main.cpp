@@ -21,6 +21,7 @@ int run(int argc, char** argv) {
   yuragi::simulators::modbus::add_modbus_command(app);
   yuragi::simulators::text::add_nmea_command(app);
   yuragi::simulators::text::add_line_command(app);
+  yuragi::simulators::network::add_ecowitt_command(app);
   yuragi::simulators::network::add_tempest_command(app);
   yuragi::simulators::usb::add_hid_command(app);
   yuragi::simulators::usb::add_usb_command(app);

@@ -52,6 +52,7 @@ TEST(NamedDevices, AreWhatTheConfigurationSays) {
   EXPECT_THAT(names_in("driver = \"mqtt\"\ntopic = \"a\"\nhost = \"lan\"\ntls = true"),
               ElementsAre(Named(DeviceKind::kBroker, "lan:8883")));
   EXPECT_THAT(names_in("driver = \"tempest\""), ElementsAre(Named(DeviceKind::kUdpPort, ":50222")));
+  EXPECT_THAT(names_in("driver = \"ecowitt\"\nhost = \"gw\""), ElementsAre(Named(DeviceKind::kNetwork, "gw:45000")));
   EXPECT_THAT(names_in("driver = \"hid\"\nstation = \"wmr300\""),
               ElementsAre(Named(DeviceKind::kUsb, "hid (station wmr300)")));
   EXPECT_THAT(names_in("driver = \"microphone\""), ElementsAre(Named(DeviceKind::kSoundCard, "microphone")));
