@@ -8,6 +8,7 @@
 #include "drivers/decode/network/ecowitt.hpp"
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 

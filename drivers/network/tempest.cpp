@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -228,14 +229,14 @@ std::unique_ptr<sensor::Sensor> open_tempest(const ParameterValues& values) {
   return std::make_unique<TempestSensor>(std::move(settings));
 }
 
-/// Sensors of different stations share the port. A sensor without a serial number may hear any station, so that no
-/// other one may be without it.
+/// Sensors of different stations share the port. One that may follow any station has it to itself among ours, so that
+/// no station counts twice.
 std::vector<sensor::DeviceClaim> tempest_claims(const ParameterValues& values) {
   const TempestSettings settings = tempest_settings_of(values);
-  const std::string station =
-      settings.serial_number.empty() ? "whose serial_number is not set" : settings.serial_number;
-  return {{.device = fmt::format("UDP port {}", settings.port.port), .is_shared = true},
-          {.device = fmt::format("station {} on UDP port {}", station, settings.port.port)}};
+  const std::string port = fmt::format("UDP port {}", settings.port.port);
+  if (settings.serial_number.empty()) return {{.device = port}};
+  return {{.device = port, .is_shared = true},
+          {.device = fmt::format("station {} at {}", settings.serial_number, port)}};
 }
 
 }  // namespace

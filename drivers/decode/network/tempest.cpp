@@ -114,7 +114,7 @@ std::optional<Refusal> take_observation(const Json& observations, const Observat
 
 }  // namespace
 
-Result<TempestMessage, Refusal> decode_tempest(std::string_view datagram) noexcept {
+Result<TempestMessage, Refusal> decode_tempest(std::string_view datagram) {
   if (datagram.empty()) return Refusal::kTooShort;
   if (datagram.size() > kLongestTempestMessage) return Refusal::kMalformed;
   const Json message = Json::parse(datagram, nullptr, false);

@@ -1,6 +1,8 @@
 // The driver as the daemon opens and runs it, and the simulated gateway, over TCP on the loopback.
+#include <atomic>
 #include <chrono>
 #include <future>
+#include <memory>
 #include <stdexcept>
 
 #include <gmock/gmock.h>

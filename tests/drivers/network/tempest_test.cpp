@@ -1,5 +1,6 @@
 // The driver as the daemon opens it, and the simulated hub, over real datagrams on the loopback.
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 
@@ -369,7 +370,12 @@ TEST(TempestSettings, ClaimTheStationAndShareThePort) {
   EXPECT_TRUE(one[0].is_shared);
   EXPECT_FALSE(one[1].is_shared);
   EXPECT_NE(one[1].device, claims("ST-00000002")[1].device);
-  EXPECT_EQ(claims("")[1].device, claims("")[1].device);
+
+  // One that may follow any station is refused beside others.
+  const auto any = claims("");
+  ASSERT_EQ(any.size(), 1U);
+  EXPECT_EQ(any[0].device, one[0].device);
+  EXPECT_FALSE(any[0].is_shared);
 }
 
 }  // namespace
