@@ -23,6 +23,11 @@ namespace yuragi::simulators::modbus {
 void add_modbus_command(CLI::App& app);
 }
 
+namespace yuragi::simulators::network {
+void add_ecowitt_command(CLI::App& app);
+void add_tempest_command(CLI::App& app);
+}  // namespace yuragi::simulators::network
+
 namespace yuragi::simulators::text {
 void add_line_command(CLI::App& app);
 void add_nmea_command(CLI::App& app);

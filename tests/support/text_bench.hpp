@@ -15,6 +15,7 @@
 #include "simulators/text/text_wire.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
+#include "tests/support/still_wind.hpp"
 
 namespace yuragi {
 
@@ -57,16 +58,6 @@ class ObservedWire final : public simulators::text::TextWire {
  private:
   std::unique_ptr<simulators::text::TextWire> wire_;
   bool& has_written_;
-};
-
-/// A wind that stands still.
-class StillWind final : public simulators::PlayedWind {
- public:
-  explicit StillWind(simulators::PlayedMoment moment) : moment_(moment) {}
-  simulators::PlayedMoment at(double /*time_s*/) override { return moment_; }
-
- private:
-  simulators::PlayedMoment moment_;
 };
 
 /// A driver and a simulator with a real wire between them, in a time that the test makes: the seconds pass as fast as
