@@ -106,6 +106,7 @@ SensorHub::SensorHub(const settings::Config& config, const drivers::sensor::Cloc
     const std::optional<wind::judging::JudgeSettings>& judged_by = channel.config.judge;
     channel.judge = wind::judging::ReadingJudge(judged_by.value_or(wind::judging::JudgeSettings{}));
     channel.is_compared = is_compared(channel.config);
+    channel.record = wind::blend::SourceRecord(channel.config.blend.unchanged_for_s);
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_, thread);
     channels_.push_back(std::move(channel));
   }
@@ -184,13 +185,23 @@ void SensorHub::take(std::size_t index, const wind::WindReading& raw) {
     estimator_.accept(index, reading);
     return;
   }
-  channel.record.take(reading);
+  const bool repeats = channel.record.has_reading() && wind::says_the_same(reading, *channel.record.last());
+  if (!channel.record.take(reading) && repeats) {
+    // A message that is said again has been judged.
+    if (channel.is_last_believed) {
+      estimator_.accept(index, reading);
+    } else {
+      ++channel.not_believed;
+    }
+    return;
+  }
 
   // Simulated readings are not judged: they may be constant.
   const bool is_judged = channel.config.judge && reading.quality != wind::ReadingQuality::kSimulated;
   const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
   if (makes_sense) vote_.accept(index, reading.time.mono, reading.speed_m_s);
-  if (makes_sense && vote_.vote_on(index) != wind::judging::Vote::kOutvoted) {
+  channel.is_last_believed = makes_sense && vote_.vote_on(index) != wind::judging::Vote::kOutvoted;
+  if (channel.is_last_believed) {
     estimator_.accept(index, reading);
   } else {
     ++channel.not_believed;
