@@ -1,6 +1,7 @@
 #include "daemon/sensing/sensor_hub.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -24,6 +25,12 @@ bool is_disputed(wind::judging::SensorState state, wind::judging::Vote vote) {
 std::uint32_t key_of(wind::judging::SensorState state, wind::judging::Vote vote) {
   constexpr std::uint32_t kDisputedBit = 1U << 8U;
   return static_cast<std::uint32_t>(state) | (is_disputed(state, vote) ? kDisputedBit : 0U);
+}
+/// The key of a link for the ChangeGate: the state; while it is connected, what is said of it, too.
+std::uint32_t key_of(const LinkReport& link) {
+  const auto state = static_cast<std::uint32_t>(link.state);
+  if (link.state != wind::LinkState::kConnected) return state;
+  return state | static_cast<std::uint32_t>(std::hash<std::string>{}(link.detail) << 8U);
 }
 wind::judging::SensorState state_in(std::uint32_t key) {
   return static_cast<wind::judging::SensorState>(key & 0xFFU);
@@ -245,15 +252,14 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
           .others_m_s = vote_.others_m_s(index)};
 }
 
-/// Logs changes of the link's state, but not each failed attempt.
+/// Logs changes of the link's state, and what a connected sensor says anew of it, but not each failed attempt.
 void SensorHub::log_link(Channel& channel, MonoTime now) const {
   if (const std::uint64_t reports = channel.runner->link_reports(); reports != channel.link_reports) {
     channel.link = channel.runner->link();
     channel.link_reports = reports;
     spdlog::debug("sensor {}: {}: {}", channel.config.name, name_of(channel.link.state), channel.link.detail);
   }
-  if (channel.link_reports == 0 || !channel.link_gate.offer(static_cast<std::uint32_t>(channel.link.state), now))
-    return;
+  if (channel.link_reports == 0 || !channel.link_gate.offer(key_of(channel.link), now)) return;
   spdlog::info("sensor {}: {}: {}{}", channel.config.name, name_of(channel.link.state), channel.link.detail,
                passed_over_text(channel.link_gate));
 }
