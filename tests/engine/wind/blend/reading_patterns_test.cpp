@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "blend_run.hpp"
-#include "engine/base/time.hpp"
+#include "engine/wind/blend/reading_interval.hpp"
 
 namespace yuragi::wind::blend {
 namespace {
@@ -192,6 +192,25 @@ TEST(ReadingPatterns, ARepetitionIsTheSameReadingToTheTurbulence) {
     return run.estimator().turbulence().intensity;
   };
   EXPECT_NEAR(fitted(3), fitted(1), 0.01);
+}
+
+/// Old recordings of regular stations are replayed to the same wind.
+TEST(ReadingPatterns, ARegularOneHasTheMedianOfItsLastNineGapsToTheBit) {
+  for (const double interval_s : {0.05, 1.0, 2.5, 14.0}) {
+    for (const double jitter : {0.0, 0.2, 0.6, 1.0}) {
+      ReadingInterval interval;
+      std::vector<double> gaps_s;
+      for (int i = 0; i < 500; ++i) {
+        const bool is_outage = i % 40 == 20;
+        gaps_s.push_back(interval_s * (is_outage ? 50.0 : 1.0 + jitter * (scattered(i) - 0.5)));
+        EXPECT_TRUE(interval.take(gaps_s.back(), i % 7 == 0)) << "each is a new one";
+        const std::size_t known = std::min<std::size_t>(gaps_s.size(), 9);
+        std::vector<double> last_s(gaps_s.end() - static_cast<std::ptrdiff_t>(known), gaps_s.end());
+        std::ranges::sort(last_s);
+        ASSERT_EQ(interval.interval_s(), last_s[known / 2]) << interval_s << " s, " << jitter << ", " << i;
+      }
+    }
+  }
 }
 
 TEST(ReadingPatterns, OneOutageOrTwoFarApartAreNoPause) {
