@@ -117,6 +117,12 @@ const std::array kMqttParameters = {
               .min = 0.1,
               .max = 86400.0,
               .help = "without a message for this long the publisher counts as stopped"},
+    Parameter{.name = "on_change",
+              .unit = "",
+              .default_value = false,
+              .help =
+                  "the publisher speaks on change only (Home Assistant's statestream): a silence says that the wind "
+                  "is unchanged, for as long as `silence`, which has to be longer than the longest calm"},
     Parameter{.name = "keep_alive",
               .unit = "s",
               .default_value = std::int64_t{15},
@@ -461,6 +467,10 @@ std::unique_ptr<sensor::Sensor> open_mqtt(const ParameterValues& values) {
   return std::make_unique<MqttSensor>(std::move(settings));
 }
 
+double mqtt_unchanged_for_s(const ParameterValues& values) {
+  return values.flag("on_change") ? values.number("silence") : 0.0;
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kMqttDriver;
@@ -468,6 +478,7 @@ const sensor::DriverDescription kMqttDriver{
     .name = "mqtt",
     .summary = "wind that is published on an MQTT broker, as a number or in JSON",
     .parameters = kMqttParameters,
-    .open = open_mqtt};
+    .open = open_mqtt,
+    .unchanged_for_s = mqtt_unchanged_for_s};
 
 }  // namespace yuragi::drivers::mqtt

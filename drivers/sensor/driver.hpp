@@ -44,6 +44,9 @@ struct DriverDescription {
   std::vector<DeviceClaim> (*claims)(const ParameterValues& values) = nullptr;
   /// The devices that it knows by name; nullptr: none.
   std::vector<KnownDevice> (*known_devices)() = nullptr;
+  /// A sensor of these values speaks on change only: for how long, s, its silence says that nothing has changed; 0, or
+  /// nullptr: it does not. A longer silence is one.
+  double (*unchanged_for_s)(const ParameterValues& values) = nullptr;
   /// It plays a recording: never to be taken for the live wind.
   bool plays_recordings = false;
   /// A relative sensor: only the fluctuations of its readings are valid, not their scale, which depends on where it
