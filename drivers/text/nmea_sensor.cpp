@@ -140,8 +140,14 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
 /// Of any sentence of the talker: `sentences` says where the wind is taken from.
 std::optional<wind::StationQuantities> NmeaSensor::quantities_of(std::string_view line) const {
   const NmeaFormat format = settings_.format == NmeaFormat::kAuto ? format_by_look(line) : settings_.format;
-  if (format != NmeaFormat::kNmea) return {};
+  if (format != NmeaFormat::kNmea && format != NmeaFormat::kGill) return {};
   if (!settings_.talker.empty() && name_of_message(format, line).talker != settings_.talker) return {};
+  if (format == NmeaFormat::kGill) {
+    decode::text::GillOptions options;
+    options.checksum = settings_.makers_checksum;
+    options.status = settings_.status;
+    return decode::text::decode_gill_quantities(options, line);
+  }
   return decode::text::decode_nmea_quantities(
       {.checksum = settings_.checksum, .status = settings_.status, .xdr_first_id = settings_.xdr_first_id}, line);
 }
