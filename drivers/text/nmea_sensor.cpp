@@ -180,11 +180,25 @@ void NmeaSensor::name_sources(const std::string& source, const wind::WindReading
 /// Of any sentence of the talker: `sentences` says where the wind is taken from.
 std::optional<wind::StationQuantities> NmeaSensor::quantities_of(std::string_view line) const {
   const NmeaFormat format = settings_.format == NmeaFormat::kAuto ? format_by_look(line) : settings_.format;
-  if (format != NmeaFormat::kNmea && format != NmeaFormat::kWxt) return {};
   if (!settings_.talker.empty() && name_of_message(format, line).talker != settings_.talker) return {};
-  if (format == NmeaFormat::kWxt) return decode::text::decode_wxt_quantities({.checksum = settings_.checksum}, line);
-  return decode::text::decode_nmea_quantities(
-      {.checksum = settings_.checksum, .status = settings_.status, .xdr_first_id = settings_.xdr_first_id}, line);
+  switch (format) {
+    case NmeaFormat::kNmea:
+      return decode::text::decode_nmea_quantities(
+          {.checksum = settings_.checksum, .status = settings_.status, .xdr_first_id = settings_.xdr_first_id}, line);
+    case NmeaFormat::kGill: {
+      decode::text::GillOptions options;
+      options.checksum = settings_.makers_checksum;
+      options.status = settings_.status;
+      return decode::text::decode_gill_quantities(options, line);
+    }
+    case NmeaFormat::kWxt:
+      return decode::text::decode_wxt_quantities({.checksum = settings_.checksum}, line);
+    case NmeaFormat::kAuto:
+    case NmeaFormat::kFt:
+    case NmeaFormat::kUmb:
+      break;
+  }
+  return {};
 }
 
 std::optional<wind::WindReading> NmeaSensor::take_held() {

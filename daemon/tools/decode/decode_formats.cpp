@@ -71,14 +71,15 @@ Made make_nmea(const UnitDecoderOptions& options) {
 
 Made make_gill(const UnitDecoderOptions& options) {
   drivers::decode::text::GillOptions gill;
-  gill.checksum = options.checksum;
+  gill.checksum = options.makers_checksum;
   gill.status = options.status;
   gill.node = options.node;
   return of_lines(drivers::decode::text::decode_gill, gill);
 }
 
 Made make_ft(const UnitDecoderOptions& options) {
-  return of_lines(drivers::decode::text::decode_ft, drivers::decode::text::FtOptions{options.checksum, options.status});
+  return of_lines(drivers::decode::text::decode_ft,
+                  drivers::decode::text::FtOptions{options.makers_checksum, options.status});
 }
 
 Made make_wxt(const UnitDecoderOptions& options) {
@@ -87,7 +88,7 @@ Made make_wxt(const UnitDecoderOptions& options) {
 
 Made make_umb(const UnitDecoderOptions& options) {
   return of_lines(drivers::decode::text::decode_umb,
-                  drivers::decode::text::UmbOptions{options.checksum, options.status, options.umb_device,
+                  drivers::decode::text::UmbOptions{options.makers_checksum, options.status, options.umb_device,
                                                     options.umb_speed_range_m_s});
 }
 
@@ -120,7 +121,7 @@ constexpr std::array kUnitFormats = {
     UnitFormat{.name = "gill",
                .is_text = true,
                .unit = "a line",
-               .devices = "Gill WindSonic, WindObserver, MaxiMet",
+               .devices = "Gill WindSonic, WindObserver, WindMaster, MaxiMet",
                .example = "gill --node Q mast.log",
                .make = make_gill},
     UnitFormat{.name = "umb",

@@ -45,7 +45,7 @@ TEST_F(DecodeCommand, MakesOneStreamOfTheBytesOfAWmr100) {
   const auto done = run("ff ff 00 48 0a\n0c 16 e0 02\n00 20 76 01 ff ff\n", {"wmr100", "--hex"});
   ASSERT_EQ(done.objects.size(), 1U) << done.error;
   EXPECT_TRUE(is_value(done.objects[0]["speed_m_s"], 4.6));
-  EXPECT_TRUE(is_value(done.objects[0]["gust_m_s"], 2.2));
+  EXPECT_TRUE(done.objects[0]["gust_m_s"].is_null()) << "2.2 m/s, below the average";
 }
 
 TEST_F(DecodeCommand, ReadsEachKindOfStationByItsFormat) {

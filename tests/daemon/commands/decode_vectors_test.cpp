@@ -103,7 +103,10 @@ TEST_F(DecodeCommand, DecodesEverySharedStationReport) {
     };
     EXPECT_TRUE(is_value(decoded["speed_m_s"], number({"avg_ms", "speed_ms"}), 1e-4));
     EXPECT_TRUE(is_value(decoded["direction_deg"], number({"avg_dir", "dir_deg"}), 1e-9));
-    EXPECT_TRUE(is_value(decoded["gust_m_s"], number({"gust_ms"}), 1e-9));
+    // The collection has a WMR100's gust as it stands there; one below the average is left out.
+    auto gust_m_s = number({"gust_ms"});
+    if (format->second == "wmr100" && gust_m_s < number({"avg_ms"})) gust_m_s.reset();
+    EXPECT_TRUE(is_value(decoded["gust_m_s"], gust_m_s, 1e-9));
   }
   EXPECT_EQ(covered["wmr300"], 1);
   EXPECT_EQ(covered["fineoffset"], 2);
@@ -233,8 +236,8 @@ TEST_F(DecodeCommand, ReadsEveryWindSentenceOfARealVoyageAsGpsdDoes) {
 TEST_F(DecodeCommand, ReadsALogWithoutStatusFieldsByPolicy) {
   const std::string log = test::source_path("../shared/data/nmea/signalk_n2kd-183-merrimac.log");
   if (!std::ifstream(log)) GTEST_SKIP() << log << " is not here";
-  EXPECT_TRUE(run_file(log, {"nmea"}).objects.empty());
-  const auto done = run_file(log, {"nmea", "--status", "accept"});
+  EXPECT_TRUE(run_file(log, {"nmea", "--status", "refuse"}).objects.empty());
+  const auto done = run_file(log, {"nmea"});
   ASSERT_EQ(done.objects.size(), 147U);
   EXPECT_TRUE(is_value(done.objects[0]["speed_m_s"], 1.89 * 1852.0 / 3600.0, 1e-9));
   EXPECT_TRUE(is_value(done.objects[0]["direction_deg"], 327.6, 1e-9));

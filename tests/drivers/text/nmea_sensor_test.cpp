@@ -73,6 +73,16 @@ TEST_F(NmeaSensorTest, HandsOnWhatAStationSaysBesidesTheWind) {
   EXPECT_EQ(sink.readings.size(), 1U);
 }
 
+TEST_F(NmeaSensorTest, HandsOnTheVerticalWindOfAWindMaster) {
+  make_nmea();
+  receive(framed("Q,335.3,001.261,-001.282,M,+345.41,+023.05,00,"));
+  receive(framed("Q,335.3,001.261,-001.282,M,+345.41,+023.05,01,"));
+  ASSERT_EQ(sink.station_quantities.size(), 1U);
+  EXPECT_EQ(sink.station_quantities[0].vertical_speed_m_s, -1.282);
+  EXPECT_EQ(sink.readings.size(), 1U);
+  expect_last(1.261, 335.3);
+}
+
 TEST_F(NmeaSensorTest, PublishesOneWindOfABurstOnceAndPrefersNorth) {
   make_nmea();
   for (int second = 0; second < 10; ++second) {
