@@ -1,6 +1,6 @@
 """Samples of CSV files as loggers, stations and archives write them, and a reader of each in plain Python.
 
-Each sample is written after the maker's or archive's own description (drivers/SOURCES.md S9), with marks for
+Each sample is written after the maker's or archive's own description (drivers/SOURCES.md S12), with marks for
 missing values where the format has them. The readers share nothing with the program but the knowledge of the format.
 """
 import csv

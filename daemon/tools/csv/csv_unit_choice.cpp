@@ -10,7 +10,7 @@
 namespace yuragi::daemon::tools::csv {
 namespace {
 
-/// Files whose headers name no units, by columns that only they have. Sources: drivers/SOURCES.md S9.
+/// Files whose headers name no units, by columns that only they have. Sources: drivers/SOURCES.md S12.
 struct KnownWriter {
   std::string_view name;
   std::array<std::string_view, 2> columns;  ///< all of them are there, as joined(words_of())
