@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "blend_run.hpp"
 #include "engine/wind/blend/reading_interval.hpp"
+#include "tests/engine/wind/blend/blend_run.hpp"
 
 namespace yuragi::wind::blend {
 namespace {
