@@ -7,7 +7,8 @@
 
 namespace yuragi::simulators {
 void add_recording_command(CLI::App& app);
-}
+void add_scenario_command(CLI::App& app);
+}  // namespace yuragi::simulators
 
 namespace yuragi::simulators::microphone {
 void add_microphone_command(CLI::App& app);

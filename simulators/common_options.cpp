@@ -3,11 +3,15 @@
 #include <utility>
 
 #include "engine/base/duration.hpp"
+#include "simulators/scenario_file.hpp"
 
 namespace yuragi::simulators {
 
 void CommonOptions::add_to(CLI::App& command) {
-  command.add_option("--wind", wind, "synthetic, or a recording FILE.windlog, played in a loop")->capture_default_str();
+  command
+      .add_option("--wind", wind,
+                  "synthetic; or a recording FILE.windlog, played in a loop; or the wind of a scenario, FILE.toml")
+      ->capture_default_str();
   command.add_option("--speed", synthetic.mean_speed_m_s, "mean of the synthetic wind, m/s")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
@@ -20,8 +24,8 @@ void CommonOptions::add_to(CLI::App& command) {
   command.add_option("--seed", synthetic.seed, "the same seed gives the same wind and the same random faults")
       ->capture_default_str();
   command.add_option("--fault", faults,
-                     "KIND@START+DURATION in seconds, such as silence@10+5; can be repeated. While running, standard "
-                     "input takes: KIND [SECONDS], clear, help");
+                     "KIND@START+DURATION, such as silence@10+5 (seconds) or unplug@5min+30s; can be repeated. While "
+                     "running, standard input takes: KIND [TIME], clear, help");
   command.add_option("--random-faults", random_faults_every_s, "one random fault in each period of this many seconds")
       ->check(CLI::Range(1.0, 1e6));
   command.add_option("--random-fault-duration", random_fault_s, "duration of each random fault, s")
@@ -35,7 +39,9 @@ void CommonOptions::add_to(CLI::App& command) {
 }
 
 MeasuredWind CommonOptions::make_wind() const {
-  return MeasuredWind(wind == "synthetic" ? play_synthetic_wind(synthetic) : play_recorded_wind(wind));
+  if (wind == "synthetic") return MeasuredWind(play_synthetic_wind(synthetic));
+  if (wind.ends_with(".toml")) return MeasuredWind(play_phases(read_scenario(wind).phases));
+  return MeasuredWind(play_recorded_wind(wind));
 }
 
 Faults CommonOptions::make_faults(std::span<const FaultKind> known) const {

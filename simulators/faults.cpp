@@ -1,12 +1,12 @@
 #include "simulators/faults.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include <fmt/format.h>
 
+#include "engine/base/duration.hpp"
 #include "engine/math/philox.hpp"
 
 namespace yuragi::simulators {
@@ -15,11 +15,9 @@ namespace {
 constexpr double kDefaultDuration_s = 3.0;
 
 std::optional<double> time_in(std::string_view text) {
-  double value_s = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value_s);
-  const bool is_time =
-      error == std::errc{} && end == text.data() + text.size() && std::isfinite(value_s) && value_s >= 0.0;
-  return is_time ? std::optional(value_s) : std::nullopt;
+  if (text.find(' ') != std::string_view::npos) return std::nullopt;
+  const auto time_s = parse_duration_s(text);
+  return time_s ? std::optional(*time_s) : std::nullopt;
 }
 
 }  // namespace
@@ -65,9 +63,11 @@ Result<Fault, Failure> Faults::parse(std::string_view text) const {
     const auto duration_s = time_in(text.substr(plus + 1));
     if (kind && start_s && duration_s) return Fault{*kind, *start_s, *duration_s};
   }
-  return Failure{fmt::format(
-      "\"{}\" is not a fault; allowed: KIND@START+DURATION in seconds, such as silence@10+5, with KIND one of {}", text,
-      kinds())};
+  return Failure{
+      fmt::format("\"{}\" is not a fault; allowed: KIND@START+DURATION, such as silence@10+5 (seconds) or "
+                  "unplug@5min+30s, with KIND "
+                  "one of {}",
+                  text, kinds())};
 }
 
 std::string Faults::obey(std::string_view line, double time_s) {
@@ -82,7 +82,7 @@ std::string Faults::obey(std::string_view line, double time_s) {
   }
   const auto kind = kind_named(word);
   const auto duration_s = duration.empty() ? std::optional(kDefaultDuration_s) : time_in(duration);
-  if (!kind || !duration_s) return fmt::format("allowed: KIND [SECONDS], with KIND one of {}; or clear", kinds());
+  if (!kind || !duration_s) return fmt::format("allowed: KIND [TIME], with KIND one of {}; or clear", kinds());
   add(Fault{*kind, time_s, *duration_s});
   return fmt::format("{} for {:g} s", word, *duration_s);
 }

@@ -24,6 +24,7 @@ int run(int argc, char** argv) {
   yuragi::simulators::usb::add_hid_command(app);
   yuragi::simulators::usb::add_usb_command(app);
   yuragi::simulators::add_recording_command(app);
+  yuragi::simulators::add_scenario_command(app);
   try {
     app.parse(argc, argv);
     return 0;

@@ -1,4 +1,3 @@
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -10,6 +9,7 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include "simulators/line_reader.hpp"
 #include "simulators/simulator.hpp"
 
 namespace yuragi::simulators {
@@ -47,46 +47,18 @@ class StopSignals {
   int descriptor_ = -1;
 };
 
-/// Standard input, line by line, until its end.
-class TypedLines {
- public:
-  TypedLines() {
-    // In the background of a terminal, reading must fail rather than stop the program.
-    std::signal(SIGTTIN, SIG_IGN);
-  }
-
-  bool is_open() const { return is_open_; }
-
-  /// Reads once; calls `use` with each whole line.
-  template <class Use>
-  void read_lines(Use&& use) {
-    std::array<char, 512> block{};
-    const ssize_t size = read(STDIN_FILENO, block.data(), block.size());
-    if (size <= 0) {
-      is_open_ = size < 0 && (errno == EINTR || errno == EAGAIN);
-      return;
-    }
-    for (const char c : std::span(block).first(static_cast<std::size_t>(size))) {
-      if (c != '\n') {
-        if (line_.size() < block.size()) line_ += c;
-        continue;
-      }
-      use(line_);
-      line_.clear();
-    }
-  }
-
- private:
-  bool is_open_ = true;
-  std::string line_;
-};
+/// Standard input, which a simulator in the background of a terminal must be able to read in vain, and not be stopped.
+LineReader typed_lines() {
+  std::signal(SIGTTIN, SIG_IGN);
+  return LineReader(STDIN_FILENO);
+}
 
 }  // namespace
 
 void run(Simulator& simulator, Faults faults, const RunOptions& options) {
   using Clock = std::chrono::steady_clock;
   const StopSignals stop;
-  TypedLines typed;
+  LineReader typed = typed_lines();
   const bool shows_status = options.verbose || isatty(STDERR_FILENO) == 1;
   const auto start = Clock::now();
   double next_status_s = 1.0;
@@ -106,6 +78,7 @@ void run(Simulator& simulator, Faults faults, const RunOptions& options) {
     if (waits[0].revents != 0 || (options.duration_s && time_s >= *options.duration_s)) return;
     if (waits[1].revents != 0) {
       typed.read_lines([&](const std::string& line) {
+        if (simulator.take_line(line)) return;
         if (const std::string reply = faults.obey(line, time_s); !reply.empty()) {
           std::fprintf(stderr, "%s\n", reply.c_str());
         }

@@ -25,6 +25,9 @@ class Simulator {
   /// of this moment, one of known_faults(). Called at least 20 times a second.
   virtual void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) = 0;
 
+  /// A line that was typed. True: it was for the simulator; otherwise it is a command for Faults::obey().
+  virtual bool take_line(const std::string& /*line*/) { return false; }
+
   /// One line for people.
   virtual std::string status() const = 0;
 

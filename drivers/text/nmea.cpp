@@ -1,10 +1,11 @@
 // Anemometers that send text, by themselves or on request: NMEA 0183 and its variants (drivers/SOURCES.md S4), and the
-// formats of Gill, FT Technologies and Lufft, over a serial line, a TCP server, UDP datagrams, a file or a pipe. The
-// formats are described with their decoders: drivers/decode/{nmea,gill,ft,umb}.hpp. Requests:
+// formats of Gill, FT Technologies, Lufft and Vaisala, over a serial line, a TCP server, UDP datagrams, a file or a
+// pipe. The formats are described with their decoders: drivers/decode/text. Requests:
 //
 //   format  request                   source
 //   umb     "01TR4" CR                Lufft V200A-UMB manual V25, 20.5.4
 //   ft      "$01,WV?*hh" CR LF        FT Technologies FT702LT manual, 5.3
+//   wxt     "0r1Goe" CR LF            Vaisala WXT530 user's guide M211840EN, 7.2, polling with CRC
 //   others  as configured (a WindSonic in polled mode M3 needs its node letter)
 #include <array>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/decode/text/wxt.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/nmea_sensor.hpp"
@@ -19,7 +21,7 @@
 namespace yuragi::drivers::text {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNmeaFormats = {"auto", "nmea", "gill", "ft", "umb"};
+constexpr std::array<std::string_view, 6> kNmeaFormats = {"auto", "nmea", "gill", "ft", "umb", "wxt"};
 constexpr std::array<std::string_view, 4> kNmeaReferences = {"auto", "north", "relative", "true"};
 constexpr std::array<std::string_view, 3> kMissingChecksum = {"auto", "accept", "refuse"};
 constexpr std::array<std::string_view, 2> kMissingStatus = {"accept", "refuse"};
@@ -31,7 +33,7 @@ const std::vector<Parameter> kNmeaParameters = with_byte_port_parameters(
         {.name = "format",
          .unit = "",
          .default_value = std::string("auto"),
-         .help = "auto: detected for each line; ft and umb also send the requests of these devices",
+         .help = "auto: detected for each line; ft, umb and wxt also send the requests of these devices",
          .choices = kNmeaFormats},
         {.name = "sentences",
          .unit = "",
@@ -40,13 +42,14 @@ const std::vector<Parameter> kNmeaParameters = with_byte_port_parameters(
         {.name = "talker",
          .unit = "",
          .default_value = std::string(""),
-         .help =
-             "accept only this talker: two characters before the sentence (WI), Gill's node letter (Q); empty: any"},
+         .help = "accept only this talker: two characters before the sentence (WI), Gill's node letter (Q), a WXT's "
+                 "address "
+                 "(0); empty: any"},
         {.name = "reference",
          .unit = "",
          .default_value = std::string("auto"),
          .help = "which direction to use where a device sends several: from north (MWD, MDA), relative to its own mark "
-                 "(MWV R, VWR, XDR, Gill, FT, UMB), true (MWV T, VWT); auto: the first of these that it sends",
+                 "(MWV R, VWR, XDR, Gill, FT, UMB, WXT), true (MWV T, VWT); auto: the first of these that it sends",
          .choices = kNmeaReferences},
         {.name = "north_offset",
          .unit = "deg",
@@ -63,10 +66,11 @@ const std::vector<Parameter> kNmeaParameters = with_byte_port_parameters(
         {.name = "missing_checksum",
          .unit = "",
          .default_value = std::string("auto"),
-         .help =
-             "lines without a checksum; auto: NMEA sentences are accepted over a network and from a file, and "
-             "refused on a serial line, where nothing else detects a wrong bit; the makers' own formats always have "
-             "one. A wrong checksum is always refused",
+         .help = "lines without a checksum; auto: NMEA sentences and those of a WXT are accepted over a network and "
+                 "from a file, and "
+                 "refused on a serial line, where nothing else detects a wrong bit; the other makers' own formats "
+                 "always have "
+                 "one. A wrong checksum is always refused",
          .choices = kMissingChecksum},
         {.name = "missing_status",
          .unit = "",
@@ -75,8 +79,8 @@ const std::vector<Parameter> kNmeaParameters = with_byte_port_parameters(
          .choices = kMissingStatus},
         {.name = "address",
          .unit = "",
-         .default_value = std::string("01"),
-         .help = "ft, umb: address of the device, two characters"},
+         .default_value = std::string(""),
+         .help = "ft, umb: address of the device, two characters (01 by default); wxt: one (0 by default)"},
         {.name = "xdr_id",
          .unit = "",
          .default_value = std::int64_t{0},
@@ -115,7 +119,20 @@ std::string request_of(NmeaFormat format, const std::string& device) {
   if (format == NmeaFormat::kUmb) return device + "TR4\r";
   if (format == NmeaFormat::kFt)
     return fmt::format("${0},WV?*{1:02X}\r\n", device, decode::xor_checksum(device + ",WV?"));
+  if (format == NmeaFormat::kWxt) return decode::text::wxt_wind_request(device.front());
   return "";
+}
+
+/// The address of the device to request from.
+std::string device_of(NmeaFormat format, const ParameterValues& values) {
+  const bool is_wxt = format == NmeaFormat::kWxt;
+  const std::string& given = values.text("address");
+  if (given.empty()) return is_wxt ? "0" : "01";
+  if (given.size() != (is_wxt ? 1U : 2U)) {
+    throw std::runtime_error(fmt::format("address: is \"{}\"; allowed: {}", given,
+                                         is_wxt ? "one character, as in \"0\"" : "two characters, as in \"01\""));
+  }
+  return given;
 }
 
 /// The request and its interval, for a polled device.
@@ -128,12 +145,9 @@ void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
     text.poll_interval = kUmbInterval;
   }
   if (text.poll_interval == Nanoseconds::zero() || !text.request.empty()) return;
-  const std::string& device = values.text("address");
-  if (device.size() != 2)
-    throw std::runtime_error("address: is \"" + device + "\"; allowed: two characters, as in \"01\"");
-  text.request = request_of(settings.format, device);
+  text.request = request_of(settings.format, device_of(settings.format, values));
   if (text.request.empty()) {
-    throw std::runtime_error("request: is missing; only formats ft and umb have a default request");
+    throw std::runtime_error("request: is missing; only formats ft, umb and wxt have a default request");
   }
 }
 
@@ -168,7 +182,7 @@ NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values) {
 extern const sensor::DriverDescription kNmeaDriver;
 const sensor::DriverDescription kNmeaDriver{
     .name = "nmea",
-    .summary = "anemometers that send NMEA 0183, or the text of Gill, FT Technologies or Lufft",
+    .summary = "anemometers that send NMEA 0183, or the text of Gill, FT Technologies, Lufft or Vaisala",
     .parameters = kNmeaParameters,
     .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
       const NmeaSensorSettings settings = nmea_sensor_settings_of(values);

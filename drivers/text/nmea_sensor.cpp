@@ -10,6 +10,7 @@
 #include "drivers/decode/text/gill.hpp"
 #include "drivers/decode/text/nmea.hpp"
 #include "drivers/decode/text/umb.hpp"
+#include "drivers/decode/text/wxt.hpp"
 
 namespace yuragi::drivers::text {
 namespace {
@@ -20,6 +21,7 @@ constexpr Nanoseconds kJoinTime = std::chrono::seconds(2);
 /// The format of a line. Gill's begin with one letter, and have an ETX before the checksum.
 NmeaFormat format_by_look(std::string_view line) {
   const std::string_view text = decode::trimmed(line);
+  if (decode::text::looks_like_wxt(text)) return NmeaFormat::kWxt;
   const std::size_t dollar = text.rfind('$');
   if (dollar == std::string_view::npos) {
     const bool has_node = text.size() > 2 && text[0] >= 'A' && text[0] <= 'Z' && text[1] == ',';
@@ -40,6 +42,7 @@ MessageName name_of_message(NmeaFormat format, std::string_view line) {
   const std::size_t dollar = text.rfind('$');
   const std::string_view sentence = dollar == std::string_view::npos ? text : text.substr(dollar + 1);
   const std::string_view word = sentence.substr(0, sentence.find(','));
+  if (format == NmeaFormat::kWxt) return {.talker = word.substr(0, 1), .sentence = "WXT"};
   if (dollar == std::string_view::npos) return {.talker = word, .sentence = "Gill"};
   if (sentence.starts_with(' ')) return {.talker = decode::split_fields(text, ' ')[1], .sentence = "UMB"};
   if (format == NmeaFormat::kFt && word.size() == 2) return {.talker = word, .sentence = "WVP"};
@@ -83,6 +86,8 @@ Result<decode::DecodedWind, decode::Refusal> NmeaSensor::decode(NmeaFormat forma
       options.speed_range_m_s = settings_.speed_range_m_s;
       return decode::text::decode_umb(options, line);
     }
+    case NmeaFormat::kWxt:
+      return decode::text::decode_wxt({.checksum = settings_.checksum}, line);
     case NmeaFormat::kAuto:
     case NmeaFormat::kNmea:
       break;
@@ -140,13 +145,22 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
 /// Of any sentence of the talker: `sentences` says where the wind is taken from.
 std::optional<wind::StationQuantities> NmeaSensor::quantities_of(std::string_view line) const {
   const NmeaFormat format = settings_.format == NmeaFormat::kAuto ? format_by_look(line) : settings_.format;
-  if (format != NmeaFormat::kNmea && format != NmeaFormat::kGill) return {};
   if (!settings_.talker.empty() && name_of_message(format, line).talker != settings_.talker) return {};
-  if (format == NmeaFormat::kGill) {
-    decode::text::GillOptions options;
-    options.checksum = settings_.makers_checksum;
-    options.status = settings_.status;
-    return decode::text::decode_gill_quantities(options, line);
+  switch (format) {
+    case NmeaFormat::kWxt:
+      return decode::text::decode_wxt_quantities({.checksum = settings_.checksum}, line);
+    case NmeaFormat::kGill: {
+      decode::text::GillOptions options;
+      options.checksum = settings_.makers_checksum;
+      options.status = settings_.status;
+      return decode::text::decode_gill_quantities(options, line);
+    }
+    case NmeaFormat::kFt:
+    case NmeaFormat::kUmb:
+      return {};
+    case NmeaFormat::kAuto:
+    case NmeaFormat::kNmea:
+      break;
   }
   return decode::text::decode_nmea_quantities(
       {.checksum = settings_.checksum, .status = settings_.status, .xdr_first_id = settings_.xdr_first_id}, line);
@@ -176,7 +190,8 @@ std::string NmeaSensor::name() const {
 
 std::string NmeaSensor::advice(decode::Refusal why, std::string_view line) const {
   const std::string where = describe(settings().address);
-  const bool has_checksum = line.find('*') != std::string_view::npos || line.find('\x03') != std::string_view::npos;
+  const bool is_wxt = decode::text::looks_like_wxt(line);
+  const bool has_checksum = is_wxt ? decode::trimmed(line)[1] == 'r' : line.find_first_of("*\x03") != line.npos;
   if (why == decode::Refusal::kBadChecksum && !has_checksum) {
     return "lines arrive from " + where +
            " without a checksum: set the device to send one, or missing_checksum to \"accept\"";

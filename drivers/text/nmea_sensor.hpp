@@ -22,6 +22,7 @@ enum class NmeaFormat : std::uint8_t {
   kGill,
   kFt,
   kUmb,
+  kWxt,
 };
 
 struct NmeaSensorSettings {
@@ -30,9 +31,9 @@ struct NmeaSensorSettings {
   std::vector<std::string> sentences;                           ///< take these only (MWV, MWD, ...); none: all
   std::string talker;                                           ///< take this one only; empty: any
   std::optional<WindFrame> frame;                               ///< accept this frame only; nothing: the best received
-  decode::WhenMissing checksum = decode::WhenMissing::kRefuse;  ///< of NMEA sentences
+  decode::WhenMissing checksum = decode::WhenMissing::kRefuse;  ///< of NMEA sentences, and Vaisala's messages
   decode::WhenMissing makers_checksum =
-      decode::WhenMissing::kRefuse;  ///< of the makers' own formats, which always have one
+      decode::WhenMissing::kRefuse;  ///< of the other makers' own formats, which always have one
   decode::WhenMissing status = decode::WhenMissing::kAccept;
   double north_offset_deg = 0.0;  ///< what to add to a direction from the device's own mark
   double variation_deg = 0.0;     ///< what to add to a direction from magnetic north
@@ -43,7 +44,7 @@ struct NmeaSensorSettings {
 /// The values of kNmeaDriver's parameters. Throws std::runtime_error where they cannot work together.
 NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values);
 
-/// An anemometer that sends NMEA 0183, or the text of Gill, FT Technologies or Lufft.
+/// An anemometer that sends NMEA 0183, or the text of Gill, FT Technologies, Lufft or Vaisala.
 class NmeaSensor final : public TextSensor {
  public:
   NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<bus::BytePort> port);

@@ -26,7 +26,7 @@ void simulate_nmea(NmeaOptions options) {
 void add_nmea_command(CLI::App& app) {
   auto options = std::make_shared<NmeaOptions>();
   CLI::App* command =
-      app.add_subcommand("nmea", "anemometer that sends NMEA 0183, or the text formats of Gill, FT or Lufft");
+      app.add_subcommand("nmea", "anemometer that sends NMEA 0183, or the text formats of Gill, FT, Lufft or Vaisala");
   command->add_option("--format", options->formats, "formats; several, separated by commas, are sent in one burst")
       ->delimiter(',')
       ->check(CLI::IsMember(nmea_format_names()))

@@ -11,11 +11,13 @@
 //   gill-uv  <STX>Q,+002.17,-002.64,M,00,<ETX>hh              +U blows to north, +V to west
 //   ft       $WI,WVP=003.4,231,0*hh                           FT7xx; unasked, and on the request "$01,WV?*hh"
 //   umb      $WIMWV,230.6,R,003.4,M,A*hh                      Lufft; only on the request "01TR4"
+//   wxt      0r1,Dn=226D,Dm=231D,Dx=236D,Sn=3.1M,Sm=3.4M,Sx=3.8Mccc    Vaisala WXT; unasked, and on the request "0r1Goe"
 // clang-format on
 //
-// hh: the exclusive or of what stands between '$' and '*', or STX and ETX, in hexadecimal. CR LF ends each. Sources:
-// gpsd www/NMEA.adoc; Vaisala WXT520 user's guide (M210906EN), NMEA 0183 v3.0 query messages; Gill WindSonic manual
-// 1405-PS-0019; FT Technologies FT702LT manual 5.3; Lufft V200A-UMB manual V25 20.5.4.
+// hh: the exclusive or of what stands between '$' and '*', or STX and ETX, in hexadecimal. CR LF ends each; ccc: its
+// CRC-16 (M211840EN, appendix C). Sources: gpsd www/NMEA.adoc; Vaisala WXT520 user's guide (M210906EN), NMEA 0183 v3.0
+// query messages; Gill WindSonic manual 1405-PS-0019; FT Technologies FT702LT manual 5.3; Lufft V200A-UMB manual
+// V25 20.5.4.
 #include "simulators/text/nmea_device.hpp"
 
 #include <algorithm>
@@ -39,6 +41,7 @@ constexpr double kGillCalm_m_s = 0.05;
 struct Style {
   std::string_view talker = "WI";
   char node = 'Q';
+  char address = '0';
   unsigned checksum_error = 0;
 };
 
@@ -124,11 +127,33 @@ std::string umb(const PlayedMoment& now, const Style& style) {
   return sentence(fmt::format("{}MWV,{:05.1f},R,{:05.1f},M,A", style.talker, now.direction_deg, now.speed_m_s), style);
 }
 
+/// CRC-16/ARC as three characters.
+std::string wxt_characters(std::string_view text) {
+  unsigned crc = 0;
+  for (const char c : text) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int i = 0; i < 8; ++i) crc = crc % 2 == 1 ? (crc / 2) ^ 0xA001U : crc / 2;
+  }
+  return {static_cast<char>('@' + crc / 4096), static_cast<char>('@' + crc / 64 % 64),
+          static_cast<char>('@' + crc % 64)};
+}
+
+std::string wxt(const PlayedMoment& now, const Style& style) {
+  const auto turned = [&](double by_deg) { return whole_deg(now.direction_deg + by_deg + 360.0); };
+  const std::string body =
+      fmt::format("{}r1,Dn={:03}D,Dm={:03}D,Dx={:03}D,Sn={:.1f}M,Sm={:.1f}M,Sx={:.1f}M", style.address, turned(-5.0),
+                  turned(0.0), turned(5.0), 0.9 * now.speed_m_s, now.speed_m_s, 1.1 * now.speed_m_s);
+  return body + wxt_characters(body + std::string(style.checksum_error, '?')) + "\r\n";
+}
+
 bool is_ft_request(std::string_view line) {
   return line.starts_with("$01,WV?*");
 }
 bool is_umb_request(std::string_view line) {
   return line == "01TR4";
+}
+bool is_wxt_request(std::string_view line) {
+  return line == "0r1Goe";
 }
 
 struct Format {
@@ -136,7 +161,7 @@ struct Format {
   std::string (*send_messages)(const PlayedMoment& now, const Style& style);
   bool (*is_request)(std::string_view line) = nullptr;
 };
-constexpr std::array<Format, 10> kFormats = {{{"mwv", mwv},
+constexpr std::array<Format, 11> kFormats = {{{"mwv", mwv},
                                               {"mwd", mwd},
                                               {"vwr", vwr},
                                               {"vwt", vwt},
@@ -145,7 +170,8 @@ constexpr std::array<Format, 10> kFormats = {{{"mwv", mwv},
                                               {"gill", gill},
                                               {"gill-uv", gill_uv},
                                               {"ft", ft, is_ft_request},
-                                              {"umb", umb, is_umb_request}}};
+                                              {"umb", umb, is_umb_request},
+                                              {"wxt", wxt, is_wxt_request}}};
 
 class NmeaDevice final : public TextDevice {
  public:
@@ -162,6 +188,7 @@ class NmeaDevice final : public TextDevice {
     if (fault == FaultKind::kWrongId) {
       style.talker = "II";
       style.node = 'R';
+      style.address = '1';
     }
     std::vector<std::string> messages;
     messages.reserve(formats_.size());

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <sys/types.h>
-
+#include "simulators/child_program.hpp"
 #include "simulators/simulator.hpp"
 
 namespace yuragi::simulators::usb {
@@ -16,13 +15,8 @@ class LaunchedProgram final : public Simulator {
  public:
   /// Starts it; `simulator` must outlive this. Throws std::system_error.
   LaunchedProgram(const std::vector<std::string>& command, Simulator& simulator);
-  /// Ends it, if it still runs: by SIGTERM first, and kills it after two seconds.
-  ~LaunchedProgram() override;
-  LaunchedProgram(const LaunchedProgram&) = delete;
-  LaunchedProgram& operator=(const LaunchedProgram&) = delete;
 
-  /// As a shell reports it: 128 plus the number of a signal, 127 for a program that was not found. Empty: it still
-  /// runs.
+  /// ChildProgram::exit_code().
   std::optional<int> exit_code() const noexcept { return exit_code_; }
 
   std::span<const FaultKind> known_faults() const override { return simulator_.known_faults(); }
@@ -32,11 +26,8 @@ class LaunchedProgram final : public Simulator {
   bool is_over() const override { return exit_code_.has_value(); }
 
  private:
-  bool reap();
-
   Simulator& simulator_;
-  pid_t process_ = -1;
-  int descriptor_ = -1;  // readable when it has ended
+  ChildProgram program_;
   std::optional<int> exit_code_;
 };
 

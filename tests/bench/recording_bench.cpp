@@ -16,7 +16,9 @@
 //     10000000     33.1       1.51         0.55     1.41     8.98           1.19
 //    100000000     33.6       1.34         0.43     0.13     2.06           0.73
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -83,12 +85,8 @@ void measure(const std::filesystem::path& file, std::int64_t count) {
              seek_ms, moment_ms, play_ms);
 }
 
-}  // namespace
-
-int main(int argument_count, char** arguments) {
-  const std::filesystem::path folder =
-      argument_count > 1 ? std::filesystem::path(arguments[1]) : std::filesystem::temp_directory_path();
-  const std::int64_t most = argument_count > 2 ? std::atoll(arguments[2]) : 1'000'000;
+/// With 100,000 readings, and ten times as many up to `most`.
+void run(const std::filesystem::path& folder, std::int64_t most) {
   fmt::print("{:>12} {:>8} {:>10} {:>12} {:>8} {:>8} {:>14}\n", "readings", "bytes", "open, ms", "seldom, ms", "seek",
              "moment", "begin to play");
   for (std::int64_t count = 100'000; count <= most; count *= 10) {
@@ -97,5 +95,17 @@ int main(int argument_count, char** arguments) {
     write_recording(file, count);
     measure(file, count);
     std::filesystem::remove(file);
+  }
+}
+
+}  // namespace
+
+int main(int argument_count, char** arguments) {
+  try {
+    run(argument_count > 1 ? std::filesystem::path(arguments[1]) : std::filesystem::temp_directory_path(),
+        argument_count > 2 ? std::atoll(arguments[2]) : 1'000'000);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "yuragi-recording-bench: %s\n", error.what());
+    return 1;
   }
 }

@@ -1021,8 +1021,9 @@ shown = false
 
     def test_every_example_installation_is_right(self):
         project = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-        examples = [os.path.join(project, "config", name) for name in sorted(os.listdir(os.path.join(project, "config")))]
-        examples = [path for path in examples if path.endswith(".toml")]
+        examples = [os.path.join(folder, name) for folder in (os.path.join(project, "config"), os.path.join(project, "config/rehearsals"))
+                    for name in sorted(os.listdir(folder))]
+        examples = [path for path in examples if path.endswith(".toml") and not path.endswith(".scenario.toml")]
         self.assertTrue(examples)
         for path in examples:
             done = run("check-config", path)

@@ -12,8 +12,8 @@ class Program:
     """A program that runs beside the test. What it says is read all the time, so that it never blocks."""
 
     def __init__(self, *command, **options):
-        self.process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL,
-                                        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **options)
+        self.process = subprocess.Popen([str(word) for word in command], **{"stdin": subprocess.DEVNULL, **options},
+                                        stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         self.said = b""
         self.is_silent = False  # for good
         self.news = threading.Condition()

@@ -13,6 +13,7 @@
 #include "drivers/decode/text/line_assembler.hpp"
 #include "drivers/decode/text/nmea.hpp"
 #include "drivers/decode/text/umb.hpp"
+#include "drivers/decode/text/wxt.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace {
@@ -62,6 +63,8 @@ void decode_everything(std::string_view line, unsigned choices) {
     }
     require_physical(decode::text::decode_ft({.checksum = checksum, .status = status}, text));
     require_physical(decode::text::decode_umb({}, text));
+    require_physical(decode::text::decode_wxt({.checksum = checksum}, text));
+    static_cast<void>(decode::text::decode_wxt_quantities({.checksum = checksum}, text));
     require_physical(decode::text::decode_line(numbers, text));
   }
 }

@@ -22,6 +22,13 @@ TEST(Fault, IsReadFromKindStartAndDuration) {
   EXPECT_EQ(fault->duration_s, 2.0);
 }
 
+TEST(Fault, TakesDurationsWithTheirUnits) {
+  const auto fault = Faults(kKnown).parse("silence@5min+500ms");
+  ASSERT_TRUE(fault.has_value());
+  EXPECT_EQ(fault->start_s, 300.0);
+  EXPECT_EQ(fault->duration_s, 0.5);
+}
+
 TEST(Fault, ThatCannotBeReadSaysWhatIsAllowed) {
   for (const auto* text : {"", "silence", "silence@", "silence@1", "silence@1+", "silence@1+x", "silence@-1+2",
                            "silence@1+-2", "silence@1+inf", "noise@1+2", "silence+1@2", "silence@1 +2", "unplug@1+2"}) {

@@ -13,6 +13,7 @@
 #include "drivers/decode/text/gill.hpp"
 #include "drivers/decode/text/nmea.hpp"
 #include "drivers/decode/text/umb.hpp"
+#include "drivers/decode/text/wxt.hpp"
 
 namespace yuragi::daemon::tools::decode {
 namespace {
@@ -80,6 +81,10 @@ Made make_ft(const UnitDecoderOptions& options) {
                   drivers::decode::text::FtOptions{options.makers_checksum, options.status});
 }
 
+Made make_wxt(const UnitDecoderOptions& options) {
+  return of_lines(drivers::decode::text::decode_wxt, drivers::decode::text::WxtOptions{options.checksum});
+}
+
 Made make_umb(const UnitDecoderOptions& options) {
   return of_lines(drivers::decode::text::decode_umb,
                   drivers::decode::text::UmbOptions{options.makers_checksum, options.status, options.umb_device,
@@ -130,6 +135,12 @@ constexpr std::array kUnitFormats = {
                .devices = "FT Technologies FT205, FT7xx",
                .example = "ft --checksum accept ft742.log",
                .make = make_ft},
+    UnitFormat{.name = "wxt",
+               .is_text = true,
+               .unit = "a line",
+               .devices = "Vaisala WXT510 to WXT536, WMT52 in their ASCII protocol",
+               .example = "wxt --checksum accept wxt536.log",
+               .make = make_wxt},
     UnitFormat{.name = "line",
                .is_text = true,
                .ending = drivers::decode::text::LineEnding::kEtx,

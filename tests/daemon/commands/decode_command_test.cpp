@@ -198,7 +198,8 @@ TEST_F(DecodeCommand, TakesAndRefusesWhatTheDriverTakesAndRefusesFromAFile) {
       {"ft", "$WI,WVP=020.0,045,0"},
       {"umb", "$WIMWV,214.8,R,10.0,N,A*1D"},
       {"umb", "$WIMWV,214.8,R,10.0,N,A"},
-      {"umb", "$ 28673 M 00400 32760"}};
+      {"umb", "$ 28673 M 00400 32760"},
+      {"wxt", "0R1,Dn=236D,Dm=283D,Dx=031D,Sn=0.0M,Sm=1.0M,Sx=2.2M"}};
   int taken = 0;
   for (const auto& [format, message] : messages) {
     SCOPED_TRACE(format + ": " + message);
@@ -211,7 +212,7 @@ TEST_F(DecodeCommand, TakesAndRefusesWhatTheDriverTakesAndRefusesFromAFile) {
     EXPECT_EQ(done.objects[0]["status"] == "good", readings[0].quality == wind::ReadingQuality::kGood);
   }
   EXPECT_GE(taken, 7);
-  EXPECT_LE(taken, 10);
+  EXPECT_LE(taken, 11);
 }
 
 TEST_F(DecodeCommand, ReadsNumbersWhereTheOptionsSayTheyStand) {
@@ -306,8 +307,8 @@ TEST(DecodeProgram, HelpsWithAnExampleOfEachFormat) {
   ChildProcess program({test::built_path("bin/yuragi"), "decode", "--help"});
   const std::string help = program.rest();
   EXPECT_EQ(program.wait(), 0);
-  for (const char* name : {"nmea", "gill", "umb", "ft", "line", "wmr100", "wmr300", "fineoffset", "acurite", "te923",
-                           "mcc1208", "labjack", "modbus:"}) {
+  for (const char* name : {"nmea", "gill", "umb", "ft", "wxt", "line", "wmr100", "wmr300", "fineoffset", "acurite",
+                           "te923", "mcc1208", "labjack", "modbus:"}) {
     EXPECT_THAT(help, HasSubstr(std::string("yuragi decode ") + name));
   }
 }

@@ -96,12 +96,13 @@ TextDriver nmea_driver() {
       .garbage_formats = {"mwv"},
       .garbage_on_pty_s = 10.0,
       .garbage_s = 10.0,
-      .split_formats = {"mwv", "gill", "ft"},
-      .partial_formats = {"mwv", "gill"},
+      .split_formats = {"mwv", "gill", "ft", "wxt"},
+      .partial_formats = {"mwv", "gill", "wxt"},
       .partial_wires = {Wire::kPty, Wire::kTcp, Wire::kUdp},
       .partial_rates_hz = {4.0},
       .polled = {{"umb", {{"format", std::string("umb")}, {"poll_interval", 0.25}}},
-                 {"ft", {{"format", std::string("ft")}, {"poll_interval", 0.25}}}},
+                 {"ft", {{"format", std::string("ft")}, {"poll_interval", 0.25}}},
+                 {"wxt", {{"format", std::string("wxt")}, {"poll_interval", 0.25}}}},
   };
 }
 
@@ -280,7 +281,7 @@ class NmeaFault : public TextDriverBench {
 };
 
 TEST_F(NmeaFault, BadChecksum) {
-  for (const std::string format : {"mwv", "mwd", "xdr", "gill", "gill-uv", "ft"}) {
+  for (const std::string format : {"mwv", "mwd", "xdr", "gill", "gill-uv", "ft", "wxt"}) {
     put(Wire::kPty, format, 4.0);
     ASSERT_TRUE(is_live());
     bench_.run(5.0, FaultKind::kBadChecksum);
@@ -293,7 +294,8 @@ TEST_F(NmeaFault, BadChecksum) {
 }
 
 TEST_F(NmeaFault, WrongId) {
-  const std::vector<std::pair<std::string, std::string>> talkers = {{"mwv", "WI"}, {"gill", "Q"}, {"ft", "WI"}};
+  const std::vector<std::pair<std::string, std::string>> talkers = {
+      {"mwv", "WI"}, {"gill", "Q"}, {"ft", "WI"}, {"wxt", "0"}};
   for (const auto& [format, talker] : talkers) {
     put(Wire::kPty, format, 4.0, {{"talker", talker}});
     ASSERT_TRUE(is_live());

@@ -68,7 +68,7 @@ ParameterValues::Map tcp_to(std::int64_t port) {
 }
 
 TEST(TextConversation, AgreesOnTheWindInEveryFormat) {
-  for (const std::string format : {"mwv", "mwd", "vwr", "vwt", "mda", "xdr", "gill", "gill-uv", "ft", "umb"}) {
+  for (const std::string format : {"mwv", "mwd", "vwr", "vwt", "mda", "xdr", "gill", "gill-uv", "ft", "umb", "wxt"}) {
     SCOPED_TRACE(format);
     const test::TemporaryFolder folder;
     const std::string link = (folder / "anemometer").string();
@@ -98,13 +98,15 @@ TEST(TextConversation, AgreesOverTcpAndUdp) {
 }
 
 TEST(TextConversation, AsksOverTcp) {
-  TextSimulatorProcess server("nmea", {"--tcp", "127.0.0.1:0", "--format", "ft", "--rate", "0"});
-  auto given = tcp_to(server.port());
-  given["format"] = std::string("ft");
-  given["poll_interval"] = 0.1;
-  TextSensorRun client("nmea", given);
-  ASSERT_TRUE(client.receives(5)) << client.sink.last_detail();
-  client.expect_the_wind();
+  for (const std::string format : {"ft", "wxt"}) {
+    TextSimulatorProcess server("nmea", {"--tcp", "127.0.0.1:0", "--format", format, "--rate", "0"});
+    auto given = tcp_to(server.port());
+    given["format"] = format;
+    given["poll_interval"] = 0.1;
+    TextSensorRun client("nmea", given);
+    ASSERT_TRUE(client.receives(5)) << client.sink.last_detail();
+    client.expect_the_wind();
+  }
 }
 
 TEST(TextConversation, AgreesOnLinesOfNumbers) {

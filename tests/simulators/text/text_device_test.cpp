@@ -36,6 +36,7 @@ TEST(NmeaDevice, SaysEachFormatByteForByte) {
             "32\r\n");
   EXPECT_EQ(message_in("ft"), "$WI,WVP=003.4,231,0*77\r\n");
   EXPECT_EQ(message_in("umb"), "$WIMWV,230.6,R,003.4,M,A*20\r\n");
+  EXPECT_EQ(message_in("wxt"), "0r1,Dn=226D,Dm=231D,Dx=236D,Sn=3.1M,Sm=3.4M,Sx=3.8M@NE\r\n");
 }
 
 TEST(NmeaDevice, HasNoDirectionWhereAWindSonicHasNone) {
@@ -58,6 +59,7 @@ TEST(NmeaDevice, KnowsWhatItIsAsked) {
   EXPECT_TRUE(make_nmea_device({"umb"})->is_request("01TR4"));
   EXPECT_FALSE(make_nmea_device({"umb"})->is_request("02TR4"));
   EXPECT_TRUE(make_nmea_device({"ft"})->is_request("$01,WV?*2B"));
+  EXPECT_TRUE(make_nmea_device({"wxt"})->is_request("0r1Goe"));
   EXPECT_FALSE(make_nmea_device({"mwv"})->is_request("01TR4"));
   EXPECT_THROW(make_nmea_device({"mwx"}), std::runtime_error);
 }
