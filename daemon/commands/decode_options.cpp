@@ -48,7 +48,7 @@ struct TextOption {
   std::string_view option;
   std::string_view formats;
 };
-constexpr std::array<TextOption, 4> kTextOptions = {{{"missing_checksum", "--checksum", "nmea, gill, umb, ft"},
+constexpr std::array<TextOption, 4> kTextOptions = {{{"missing_checksum", "--checksum", "nmea, gill, umb, ft, wxt"},
                                                      {"missing_status", "--status", "nmea, gill, umb, ft"},
                                                      {"xdr_id", "--xdr-id", "nmea"},
                                                      {"speed_range", "--speed-range", "umb"}}};

@@ -57,7 +57,7 @@ class UnitDecoder {
 /// Policies, and facts that are not in the messages. Each format uses its own. The defaults are those of the drivers,
 /// of messages from a file.
 struct UnitDecoderOptions {
-  drivers::decode::WhenMissing checksum = drivers::decode::WhenMissing::kAccept;         ///< nmea
+  drivers::decode::WhenMissing checksum = drivers::decode::WhenMissing::kAccept;         ///< nmea, wxt
   drivers::decode::WhenMissing makers_checksum = drivers::decode::WhenMissing::kRefuse;  ///< gill, umb, ft
   drivers::decode::WhenMissing status = drivers::decode::WhenMissing::kAccept;           ///< nmea, gill, umb, ft
   int xdr_first_id = 0;                                                                  ///< nmea
