@@ -17,7 +17,7 @@ namespace {
 namespace http = boost::beast::http;
 
 constexpr std::uint32_t kLongestHeader = 8 * 1024;
-constexpr std::uint64_t kLongestBody = 64 * 1024;
+constexpr std::uint64_t kLongestBody = 64UL * 1024;
 
 }  // namespace
 

@@ -78,7 +78,6 @@ TEST(DavisConversation, AgreesOnTheWindOfAWeatherLinkLive) {
                                            {"port", udp_port}})));
   ASSERT_TRUE(live.wait_for_readings(8)) << live.sink.last_detail();
   expect_the_wind(live.sink);
-  EXPECT_FALSE(live.sink.station_quantities.empty());
 }
 
 }  // namespace
