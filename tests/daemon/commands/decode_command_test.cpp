@@ -259,7 +259,7 @@ TEST_F(DecodeCommand, SaysWhatToDoAboutEachMistake) {
   EXPECT_THAT(bytes.error, HasSubstr("--hex"));
   const auto unknown = run("", {"nmea2000"});
   EXPECT_EQ(unknown.code, kExitUsage);
-  EXPECT_THAT(unknown.error, HasSubstr("nmea, gill, umb, ft, line"));
+  EXPECT_THAT(unknown.error, HasSubstr("nmea, gill, umb, ft, wxt, line"));
   EXPECT_EQ(run("", {"modbus", "--hex"}).code, kExitUsage) << "a profile must be named";
   const auto profile = run("", {"modbus:no-such-device", "--hex"});
   EXPECT_EQ(profile.code, kExitConfig);
