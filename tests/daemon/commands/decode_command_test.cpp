@@ -202,7 +202,7 @@ TEST_F(DecodeCommand, TakesAndRefusesWhatTheDriverTakesAndRefusesFromAFile) {
       {"wxt", "0R1,Dn=236D,Dm=283D,Dx=031D,Sn=0.0M,Sm=1.0M,Sx=2.2M"}};
   int taken = 0;
   for (const auto& [format, message] : messages) {
-    SCOPED_TRACE(format + ": " + message);
+    SCOPED_TRACE(testing::Message() << format << ": " << message);
     const auto readings = of_driver(format, message + "\r\n");
     const auto done = run(message + "\r\n", {format});
     ASSERT_EQ(done.objects.size(), readings.size()) << done.error;
