@@ -201,7 +201,7 @@ TEST_F(DecodeCommand, TakesAndRefusesWhatTheDriverTakesAndRefusesFromAFile) {
       {"umb", "$ 28673 M 00400 32760"}};
   int taken = 0;
   for (const auto& [format, message] : messages) {
-    SCOPED_TRACE(format + ": " + message);
+    SCOPED_TRACE(testing::Message() << format << ": " << message);
     const auto readings = of_driver(format, message + "\r\n");
     const auto done = run(message + "\r\n", {format});
     ASSERT_EQ(done.objects.size(), readings.size()) << done.error;
@@ -258,7 +258,7 @@ TEST_F(DecodeCommand, SaysWhatToDoAboutEachMistake) {
   EXPECT_THAT(bytes.error, HasSubstr("--hex"));
   const auto unknown = run("", {"nmea2000"});
   EXPECT_EQ(unknown.code, kExitUsage);
-  EXPECT_THAT(unknown.error, HasSubstr("nmea, gill, umb, ft, line"));
+  EXPECT_THAT(unknown.error, HasSubstr("nmea, gill, umb, ft, wxt, line"));
   EXPECT_EQ(run("", {"modbus", "--hex"}).code, kExitUsage) << "a profile must be named";
   const auto profile = run("", {"modbus:no-such-device", "--hex"});
   EXPECT_EQ(profile.code, kExitConfig);

@@ -136,9 +136,10 @@ TEST(Recorder, LosesAndDoublesNothingThatStationsSayWhereAFileIsCompleted) {
       // Several seconds before the reading that completes the file, and after it, in one go.
       for (int second = 0; second < 5; ++second) {
         said.push_back(10.0 * i + second);
-        EXPECT_TRUE(recorder.push(i % 2 == 0 ? 0 : 1, temperature_at(10'000 * i + 1000 * second, said.back())));
+        EXPECT_TRUE(recorder.push(i % 2 == 0 ? 0 : 1,
+                                  temperature_at(std::int64_t{10'000} * i + std::int64_t{1000} * second, said.back())));
       }
-      EXPECT_TRUE(recorder.push(0, test::reading_at(10'000 * i + 2500, i)));
+      EXPECT_TRUE(recorder.push(0, test::reading_at(std::int64_t{10'000} * i + 2500, i)));
       wait_for(recorder, [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i); });
     }
   }
@@ -158,7 +159,7 @@ TEST(Recorder, CompletesAFileThatHasNoReading) {
   const auto file = folder / "a.windlog";
   std::vector<double> said;
   std::vector<std::string> reports;
-  constexpr std::int64_t kDay_ms = 24 * 3'600'000;
+  constexpr std::int64_t kDay_ms = std::int64_t{24} * 3'600'000;
   for (int day = 0; day < 5; ++day) {
     Recorder recorder(file, info_of({{"mast", "nmea", ""}}),
                       [&](std::string_view sentence) { reports.emplace_back(sentence); }, {},
@@ -181,7 +182,7 @@ TEST(Recorder, CompletesAFileThatHasNoReadingInTheMiddleOfARun) {
     Recorder recorder(file, info_of({{"mast", "nmea", ""}}), {}, {}, {.most_file_bytes = 1});
     for (int i = 1; i <= 3; ++i) {
       said.push_back(i);
-      EXPECT_TRUE(recorder.push(0, temperature_at(10'000 * i, i)));
+      EXPECT_TRUE(recorder.push(0, temperature_at(std::int64_t{10'000} * i, i)));
       const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
       while (temperatures_now_in(file) != said && std::chrono::steady_clock::now() < until) std::this_thread::yield();
       EXPECT_EQ(temperatures_in(file), said);
@@ -201,8 +202,8 @@ TEST(Recorder, DeletesWhatStationsSaidWithTheFileThatItIsIn) {
                       [&](std::string_view sentence) { reports.emplace_back(sentence); }, {},
                       {.most_file_bytes = 1, .most_bytes = 100'000});
     for (int i = 1; i <= 8; ++i) {
-      EXPECT_TRUE(recorder.push(0, temperature_at(10'000 * i, i)));
-      EXPECT_TRUE(recorder.push(0, test::reading_at(10'000 * i, i)));
+      EXPECT_TRUE(recorder.push(0, temperature_at(std::int64_t{10'000} * i, i)));
+      EXPECT_TRUE(recorder.push(0, test::reading_at(std::int64_t{10'000} * i, i)));
       wait_for(recorder, [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i); });
     }
   }
@@ -225,7 +226,7 @@ TEST(Recorder, KeepsWhatStationsSayWhileTheDiskIsFull) {
     recorder.begin_session(info_of({{"mast", "nmea", ""}}), {.least_free_bytes = ~std::uint64_t{0}});
     for (int second = 2; second < 30; ++second) {
       said.push_back(second);
-      EXPECT_TRUE(recorder.push(0, temperature_at(1000 * second, second)));
+      EXPECT_TRUE(recorder.push(0, temperature_at(std::int64_t{1000} * second, second)));
     }
     recorder.push(0, test::reading_at(40'000, 2.0));
     wait_for(recorder, [](const RecorderStatus& status) { return status.state == RecorderState::kRetrying; });
