@@ -7,15 +7,13 @@
 #include <list>
 #include <numeric>
 #include <random>
-#include <stdexcept>
 
-#include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
 #include "engine/base/count_text.hpp"
-#include "simulators/network/socket_address.hpp"
+#include "simulators/tcp_listener.hpp"
 
 namespace yuragi::simulators::network {
 namespace {
@@ -79,22 +77,14 @@ GatewayBytes live_items(const RadioWind* wind) {
 class EcowittSimulator::State {
  public:
   State(const EcowittOptions& options, MeasuredWind wind)
-      : options_(options),
-        wind_(std::move(wind)),
-        random_(options.seed),
-        endpoint_(socket_address(options.host), options.port) {
-    if (const auto error = listen())
-      throw std::runtime_error(fmt::format("cannot listen on {}:{} ({}): choose another port, or 0 for a free one",
-                                           options.host, options.port, error.message()));
-    endpoint_ = listener_.local_endpoint();
-  }
+      : options_(options), wind_(std::move(wind)), random_(options.seed), listener_(options.host, options.port) {}
 
-  std::uint16_t port() const { return endpoint_.port(); }
+  std::uint16_t port() const { return listener_.endpoint().port(); }
 
-  std::vector<int> descriptors() const {
+  std::vector<int> descriptors() {
     std::vector<int> all;
-    if (listener_.is_open()) all.push_back(const_cast<tcp::acceptor&>(listener_).native_handle());
-    for (const Client& client : clients_) all.push_back(const_cast<tcp::socket&>(client.socket).native_handle());
+    if (listener_.is_open()) all.push_back(listener_.descriptor());
+    for (Client& client : clients_) all.push_back(client.socket.native_handle());
     return all;
   }
 
@@ -103,17 +93,16 @@ class EcowittSimulator::State {
     measure(time_s);
     if (fault == FaultKind::kDisconnect) {
       clients_.clear();
-      boost::system::error_code ignored;
-      listener_.close(ignored);
+      listener_.close();
       return;
     }
-    if (!listener_.is_open() && listen()) return;
+    if (!listener_.open_again()) return;
     for (Client& client : clients_) {
       if (std::ranges::find(ready, client.socket.native_handle()) != ready.end()) read(client, time_s);
       send_what_is_due(client, time_s);
     }
     std::erase_if(clients_, [](const Client& client) { return !client.socket.is_open(); });
-    accept_all();
+    while (auto client = listener_.accept()) clients_.push_back({.socket = std::move(*client)});
   }
 
   std::string status() const {
@@ -131,27 +120,6 @@ class EcowittSimulator::State {
     GatewayBytes received = {};
     std::deque<Due> waiting = {};
   };
-
-  boost::system::error_code listen() {
-    boost::system::error_code error;
-    const bool failed = listener_.open(endpoint_.protocol(), error) ||
-                        listener_.set_option(tcp::acceptor::reuse_address(true), error) ||
-                        listener_.bind(endpoint_, error) || listener_.listen(8, error) ||
-                        listener_.non_blocking(true, error);
-    boost::system::error_code ignored;
-    if (failed) listener_.close(ignored);
-    return error;
-  }
-
-  void accept_all() {
-    for (;;) {
-      boost::system::error_code error;
-      tcp::socket socket = listener_.accept(error);
-      if (error) return;
-      socket.non_blocking(true, error);
-      if (!error) clients_.push_back({.socket = std::move(socket)});
-    }
-  }
 
   /// The anemometer measures all the time, and speaks at its own pace.
   void measure(double time_s) {
@@ -210,9 +178,7 @@ class EcowittSimulator::State {
   EcowittOptions options_;
   MeasuredWind wind_;
   std::mt19937_64 random_;
-  boost::asio::io_context context_;
-  tcp::endpoint endpoint_;
-  tcp::acceptor listener_{context_};
+  TcpListener listener_;
   std::list<Client> clients_;
 
   double next_radio_s_ = 0.0;

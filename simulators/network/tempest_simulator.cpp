@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/count_text.hpp"
-#include "simulators/network/socket_address.hpp"
+#include "simulators/socket_address.hpp"
 
 namespace yuragi::simulators::network {
 namespace {

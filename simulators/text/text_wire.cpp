@@ -12,20 +12,14 @@
 #include <fmt/format.h>
 
 #include "simulators/pty.hpp"
+#include "simulators/socket_address.hpp"
+#include "simulators/tcp_listener.hpp"
 
 namespace yuragi::simulators::text {
 namespace {
 
 using boost::asio::ip::tcp;
 using boost::asio::ip::udp;
-
-boost::asio::ip::address address_named(const std::string& host) {
-  boost::system::error_code error;
-  auto address = boost::asio::ip::make_address(host == "localhost" ? "127.0.0.1" : host, error);
-  if (error)
-    throw std::runtime_error(fmt::format("\"{}\" is not an address; allowed: a numeric one such as 127.0.0.1", host));
-  return address;
-}
 
 template <class Endpoint>
 std::string text_of(const Endpoint& endpoint) {
@@ -68,13 +62,7 @@ class PtyWire final : public TextWire {
 
 class TcpWire final : public TextWire {
  public:
-  TcpWire(const std::string& host, std::uint16_t port) : endpoint_(address_named(host), port) {
-    if (const auto error = listen()) {
-      throw std::runtime_error(fmt::format("cannot listen on {} ({}): choose another port, or 0 for a free one",
-                                           text_of(endpoint_), error.message()));
-    }
-    endpoint_ = listener_.local_endpoint();
-  }
+  TcpWire(const std::string& host, std::uint16_t port) : listener_(host, port) {}
 
   std::span<const FaultKind> known_faults() const override {
     static constexpr std::array kKnown = {FaultKind::kDisconnect, FaultKind::kUnplug};
@@ -82,7 +70,7 @@ class TcpWire final : public TextWire {
   }
   std::vector<int> descriptors() const override {
     std::vector<int> all;
-    if (listener_.is_open()) all.push_back(const_cast<tcp::acceptor&>(listener_).native_handle());
+    if (listener_.is_open()) all.push_back(const_cast<TcpListener&>(listener_).descriptor());
     for (const tcp::socket& client : clients_) all.push_back(const_cast<tcp::socket&>(client).native_handle());
     return all;
   }
@@ -97,7 +85,7 @@ class TcpWire final : public TextWire {
       received.append(block.data(), size);
       if (error && error != boost::asio::error::would_block) client.close(error);
     }
-    if (listener_.is_open()) accept_all();
+    while (auto client = listener_.accept()) clients_.push_back(std::move(*client));
     std::erase_if(clients_, [](const tcp::socket& client) { return !client.is_open(); });
     return received;
   }
@@ -113,45 +101,19 @@ class TcpWire final : public TextWire {
 
   void take_away() override {
     clients_.clear();
-    boost::system::error_code ignored;
-    listener_.close(ignored);
+    listener_.close();
   }
-  void bring_back() override {
-    if (!listener_.is_open()) listen();
-  }
-  std::string place() const override { return "listening on " + text_of(endpoint_); }
+  void bring_back() override { listener_.open_again(); }
+  std::string place() const override { return "listening on " + text_of(listener_.endpoint()); }
 
  private:
-  boost::system::error_code listen() {
-    boost::system::error_code error;
-    const bool failed = listener_.open(endpoint_.protocol(), error) ||
-                        listener_.set_option(tcp::acceptor::reuse_address(true), error) ||
-                        listener_.bind(endpoint_, error) || listener_.listen(8, error) ||
-                        listener_.non_blocking(true, error);
-    boost::system::error_code ignored;
-    if (failed) listener_.close(ignored);
-    return error;
-  }
-
-  void accept_all() {
-    for (;;) {
-      boost::system::error_code error;
-      tcp::socket client = listener_.accept(error);
-      if (error) return;
-      client.non_blocking(true, error);
-      if (!error) clients_.push_back(std::move(client));
-    }
-  }
-
-  boost::asio::io_context context_;
-  tcp::endpoint endpoint_;
-  tcp::acceptor listener_{context_};
+  TcpListener listener_;
   std::vector<tcp::socket> clients_;
 };
 
 class UdpWire final : public TextWire {
  public:
-  UdpWire(const std::string& host, std::uint16_t port) : endpoint_(address_named(host), port) {
+  UdpWire(const std::string& host, std::uint16_t port) : endpoint_(socket_address(host), port) {
     if (port == 0) throw std::runtime_error("cannot send to port 0");
     bring_back();
   }

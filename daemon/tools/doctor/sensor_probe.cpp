@@ -139,6 +139,10 @@ std::vector<DeviceFacts> named_devices(const settings::SensorConfig& sensor) {
     port.is_shared = true;
     return {port};
   }
+  if (driver == "weatherlink") {
+    return {one(DeviceKind::kNetwork, fmt::format("{}:{}", values.text("host"), values.integer("http_port"))),
+            one(DeviceKind::kUdpPort, fmt::format(":{}", values.integer("port")))};
+  }
   if (driver == "ecowitt") return {one(DeviceKind::kNetwork, address_of(values))};
   if (sensor.driver->plays_recordings) return {one(DeviceKind::kFile, text_or_empty(values, "file"))};
   const std::string transport = text_or_empty(values, "transport");

@@ -53,6 +53,10 @@ TEST(NamedDevices, AreWhatTheConfigurationSays) {
               ElementsAre(Named(DeviceKind::kBroker, "lan:8883")));
   EXPECT_THAT(names_in("driver = \"tempest\""), ElementsAre(Named(DeviceKind::kUdpPort, ":50222")));
   EXPECT_THAT(names_in("driver = \"ecowitt\"\nhost = \"gw\""), ElementsAre(Named(DeviceKind::kNetwork, "gw:45000")));
+  EXPECT_THAT(names_in("driver = \"davis\"\ndevice = \"/dev/ttyUSB0\""),
+              ElementsAre(Named(DeviceKind::kSerialPort, "/dev/ttyUSB0")));
+  EXPECT_THAT(names_in("driver = \"weatherlink\"\nhost = \"wll\""),
+              ElementsAre(Named(DeviceKind::kNetwork, "wll:80"), Named(DeviceKind::kUdpPort, ":22222")));
   EXPECT_THAT(names_in("driver = \"hid\"\nstation = \"wmr300\""),
               ElementsAre(Named(DeviceKind::kUsb, "hid (station wmr300)")));
   EXPECT_THAT(names_in("driver = \"microphone\""), ElementsAre(Named(DeviceKind::kSoundCard, "microphone")));

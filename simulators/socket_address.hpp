@@ -4,9 +4,9 @@
 
 #include <boost/asio/ip/address.hpp>
 
-namespace yuragi::simulators::network {
+namespace yuragi::simulators {
 
 /// A numeric address, or localhost. Throws std::runtime_error for any other text.
 boost::asio::ip::address socket_address(const std::string& host);
 
-}  // namespace yuragi::simulators::network
+}  // namespace yuragi::simulators

@@ -1,10 +1,10 @@
-#include "simulators/network/socket_address.hpp"
+#include "simulators/socket_address.hpp"
 
 #include <stdexcept>
 
 #include <fmt/format.h>
 
-namespace yuragi::simulators::network {
+namespace yuragi::simulators {
 
 boost::asio::ip::address socket_address(const std::string& host) {
   boost::system::error_code error;
@@ -14,4 +14,4 @@ boost::asio::ip::address socket_address(const std::string& host) {
   return address;
 }
 
-}  // namespace yuragi::simulators::network
+}  // namespace yuragi::simulators
