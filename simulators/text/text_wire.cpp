@@ -4,6 +4,7 @@
 #include <array>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -111,6 +112,8 @@ class TcpWire final : public TextWire {
     std::erase_if(clients_, [](const tcp::socket& client) { return !client.is_open(); });
   }
 
+  void greet_with(std::string bytes) override { greeting_ = std::move(bytes); }
+
   void take_away() override {
     clients_.clear();
     boost::system::error_code ignored;
@@ -139,6 +142,7 @@ class TcpWire final : public TextWire {
       tcp::socket client = listener_.accept(error);
       if (error) return;
       client.non_blocking(true, error);
+      if (!error) boost::asio::write(client, boost::asio::buffer(greeting_), error);
       if (!error) clients_.push_back(std::move(client));
     }
   }
@@ -147,6 +151,7 @@ class TcpWire final : public TextWire {
   tcp::endpoint endpoint_;
   tcp::acceptor listener_{context_};
   std::vector<tcp::socket> clients_;
+  std::string greeting_;
 };
 
 class UdpWire final : public TextWire {
