@@ -10,6 +10,11 @@ void add_recording_command(CLI::App& app);
 void add_scenario_command(CLI::App& app);
 }  // namespace yuragi::simulators
 
+namespace yuragi::simulators::davis {
+void add_davis_command(CLI::App& app);
+void add_weatherlink_live_command(CLI::App& app);
+}  // namespace yuragi::simulators::davis
+
 namespace yuragi::simulators::microphone {
 void add_microphone_command(CLI::App& app);
 }
@@ -17,6 +22,11 @@ void add_microphone_command(CLI::App& app);
 namespace yuragi::simulators::modbus {
 void add_modbus_command(CLI::App& app);
 }
+
+namespace yuragi::simulators::network {
+void add_ecowitt_command(CLI::App& app);
+void add_tempest_command(CLI::App& app);
+}  // namespace yuragi::simulators::network
 
 namespace yuragi::simulators::text {
 void add_line_command(CLI::App& app);

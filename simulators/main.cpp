@@ -23,6 +23,10 @@ int run(int argc, char** argv) {
   yuragi::simulators::text::add_nmea2000_command(app);
   yuragi::simulators::text::add_signalk_command(app);
   yuragi::simulators::text::add_line_command(app);
+  yuragi::simulators::davis::add_davis_command(app);
+  yuragi::simulators::davis::add_weatherlink_live_command(app);
+  yuragi::simulators::network::add_ecowitt_command(app);
+  yuragi::simulators::network::add_tempest_command(app);
   yuragi::simulators::usb::add_hid_command(app);
   yuragi::simulators::usb::add_usb_command(app);
   yuragi::simulators::add_recording_command(app);

@@ -1,6 +1,7 @@
 #include "daemon/commands/decode_options.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <stdexcept>
 #include <type_traits>
@@ -9,7 +10,9 @@
 #include <fmt/format.h>
 
 #include "daemon/commands/exit.hpp"
+#include "drivers/sensor/driver.hpp"
 #include "drivers/text/line_sensor.hpp"
+#include "drivers/text/nmea_sensor.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -30,6 +33,26 @@ std::string option_of(std::string name) {
   return "--" + name;
 }
 
+const drivers::sensor::DriverDescription& driver_named(std::string_view name) {
+  return **std::ranges::find(drivers::sensor::driver_table(), name,
+                             [](const drivers::sensor::DriverDescription* driver) { return driver->name; });
+}
+
+const Parameter& parameter_named(const drivers::sensor::DriverDescription& driver, std::string_view name) {
+  return *std::ranges::find(driver.parameters, name, &Parameter::name);
+}
+
+/// A parameter of the driver `nmea` that is an option here.
+struct TextOption {
+  std::string_view parameter;
+  std::string_view option;
+  std::string_view formats;
+};
+constexpr std::array<TextOption, 4> kTextOptions = {{{"missing_checksum", "--checksum", "nmea, gill, umb, ft, wxt"},
+                                                     {"missing_status", "--status", "nmea, gill, umb, ft"},
+                                                     {"xdr_id", "--xdr-id", "nmea"},
+                                                     {"speed_range", "--speed-range", "umb"}}};
+
 }  // namespace
 
 void DecodeCommandOptions::add_to(CLI::App& command) {
@@ -39,7 +62,7 @@ void DecodeCommandOptions::add_to(CLI::App& command) {
                    "one message per line, as hexadecimal digits (blanks, commas and 0x are allowed between bytes; a "
                    "line that begins with # is a comment)");
   command.add_flag("--refused", shows_refused, "also print what is refused, and why");
-  add_policies(command);
+  add_text_options(command);
   add_line_options(command);
   add_station_options(command);
   add_modbus_options(command);
@@ -58,6 +81,7 @@ void DecodeCommandOptions::check() {
                       fmt::format("{} does not apply to {}; it is for {}", option->get_name(), name, formats));
     }
   }
+  set_text();
   set_line();
 }
 
@@ -65,6 +89,26 @@ CLI::Option* DecodeCommandOptions::limit(CLI::Option* option, const std::string&
   option->group("Only for " + formats);
   limited_.push_back({option, formats});
   return option;
+}
+
+/// The driver's own parameters, checked and understood by the driver, as of a sensor that reads a file: what is not
+/// given is what the driver does by itself.
+void DecodeCommandOptions::set_text() {
+  ParameterValues::Map given = given_for_text_;
+  given["transport"] = std::string("file");
+  given["file"] = std::string("-");
+  const auto values = ParameterValues::resolve(driver_named("nmea").parameters, given);
+  if (!values) {
+    const auto* const option = std::ranges::find(kTextOptions, values.error().name, &TextOption::parameter);
+    const std::string name = option == kTextOptions.end() ? values.error().name : std::string(option->option);
+    throw ExitError(kExitUsage, fmt::format("{}: {}", name, values.error().message));
+  }
+  const drivers::text::NmeaSensorSettings settings = drivers::text::nmea_sensor_settings_of(*values);
+  decoder.checksum = settings.checksum;
+  decoder.makers_checksum = settings.makers_checksum;
+  decoder.status = settings.status;
+  decoder.xdr_first_id = settings.xdr_first_id;
+  decoder.umb_speed_range_m_s = settings.speed_range_m_s;
 }
 
 /// The driver's own parameters, checked by the driver: logs are decoded with the settings of the device.
@@ -82,45 +126,35 @@ void DecodeCommandOptions::set_line() {
   }
 }
 
-void DecodeCommandOptions::add_policies(CLI::App& command) {
-  const std::map<std::string, drivers::decode::WhenMissing> missing = {
-      {"refuse", drivers::decode::WhenMissing::kRefuse}, {"accept", drivers::decode::WhenMissing::kAccept}};
-  const auto add_missing = [&](const char* name, drivers::decode::WhenMissing& value, const char* help) {
-    limit(add_choice(command, name, value, missing, help)->option_text("refuse|accept"), "nmea, gill, umb, ft");
-  };
-  add_missing("--checksum", decoder.checksum,
-              "if the checksum is missing (default refuse); a wrong one is always refused");
-  add_missing("--status", decoder.status,
-              "if the status is missing (default refuse); an accepted reading is uncertain");
-  limit(command.add_option("--xdr-id", decoder.xdr_first_id, "the address of the WXT whose XDR is read (default 0)")
-            ->check(CLI::Range(0, 255))
-            ->option_text("N"),
-        "nmea");
+/// A driver's parameter as an option.
+void DecodeCommandOptions::add_parameter(CLI::App& command, const Parameter& parameter, const std::string& option,
+                                         ParameterValues::Map& given, const std::string& formats) {
+  const std::string help = fmt::format("{} ({})", parameter.help, describe_allowed(parameter));
+  std::visit(
+      [&](const auto& default_value) {
+        using Value = std::decay_t<decltype(default_value)>;
+        const auto take = [&given, name = std::string(parameter.name)](const Value& value) { given[name] = value; };
+        const char* type = std::is_same_v<Value, std::string> ? "TEXT" : "NUMBER";
+        limit(command.add_option_function<Value>(option, take, help)->option_text(type), formats);
+      },
+      printable(parameter.default_value));
+}
+
+void DecodeCommandOptions::add_text_options(CLI::App& command) {
+  for (const TextOption& each : kTextOptions) {
+    add_parameter(command, parameter_named(driver_named("nmea"), each.parameter), std::string(each.option),
+                  given_for_text_, std::string(each.formats));
+  }
   limit(command.add_option("--node", decoder.node, "accept only the messages of this one")->option_text("A..Z"),
         "gill");
   limit(command.add_option("--device", decoder.umb_device, "accept only the replies of this one (28673 is WS no. 1)")
             ->option_text("N"),
         "umb");
-  limit(command
-            .add_option("--speed-range", decoder.umb_speed_range_m_s,
-                        "in ASCII mode: the speed that 65520 stands for (default 75; a VENTUS has 90)")
-            ->check(CLI::PositiveNumber)
-            ->option_text("M/S"),
-        "umb");
 }
 
 void DecodeCommandOptions::add_line_options(CLI::App& command) {
   for (const Parameter& parameter : drivers::text::line_reading_parameters()) {
-    const std::string name(parameter.name);
-    const std::string help = fmt::format("{} ({})", parameter.help, describe_allowed(parameter));
-    std::visit(
-        [&](const auto& default_value) {
-          using Value = std::decay_t<decltype(default_value)>;
-          const auto take = [this, name](const Value& value) { given_for_line_[name] = value; };
-          const char* type = std::is_same_v<Value, std::string> ? "TEXT" : "NUMBER";
-          limit(command.add_option_function<Value>(option_of(name), take, help)->option_text(type), "line");
-        },
-        printable(parameter.default_value));
+    add_parameter(command, parameter, option_of(std::string(parameter.name)), given_for_line_, "line");
   }
 }
 
@@ -139,21 +173,30 @@ void DecodeCommandOptions::add_modbus_options(CLI::App& command) {
 }
 
 void DecodeCommandOptions::add_counter_options(CLI::App& command) {
-  const auto add = [&](const char* name, auto& value, const char* help, const char* type) {
+  const auto add = [&](const char* name, auto& value, const std::string& help, const char* type) {
     return limit(command.add_option(name, value, help)->option_text(type), "mcc1208, labjack");
   };
-  CLI::Option* slope =
-      add("--slope", decoder.cup.metres_per_pulse, "speed per pulse rate: m/s for each pulse per second", "METRES");
-  CLI::Option* interval =
-      add("--interval", decoder.interval_s, "time between replies; with it, counts give a speed", "SECONDS");
-  slope->check(CLI::PositiveNumber)->needs(interval);
-  interval->check(CLI::PositiveNumber)->needs(slope);
-  add("--offset", decoder.cup.offset_m_s, "the wind speed below which the cup does not turn (default 0)", "M/S")
-      ->check(CLI::Range(0.0, 10.0))
-      ->needs(slope);
-  add("--vane-reference", decoder.vane_reference_v,
-      "voltage over the vane's potentiometer; with it, volts give a direction", "VOLTS")
+  add("--interval", decoder.interval_s, "time between replies; with it, counts give a speed", "SECONDS")
       ->check(CLI::PositiveNumber);
+
+  // The cup's and the vane's, with the driver's limits and defaults.
+  const auto of_driver = [](std::string_view name) -> const Parameter& {
+    return parameter_named(driver_named("usb"), name);
+  };
+  const auto add_cup = [&](const char* name, double& value, const Parameter& parameter, const char* type) {
+    value = std::get<double>(parameter.default_value);
+    add(name, value, fmt::format("{} ({})", parameter.help, describe_allowed(parameter)), type)
+        ->check(CLI::Range(parameter.min, parameter.max))
+        ->needs("--interval");
+  };
+  add_cup("--slope", decoder.cup.metres_per_pulse, of_driver("metres_per_pulse"), "METRES");
+  add_cup("--offset", decoder.cup.offset_m_s, of_driver("offset"), "M/S");
+  const Parameter& reference = of_driver("reference_voltage");
+  add("--vane-reference", decoder.vane_reference_v,
+      fmt::format("voltage over the vane's potentiometer ({}); only with it do volts give a direction",
+                  describe_allowed(reference)),
+      "VOLTS")
+      ->check(CLI::Range(reference.min, reference.max));
 
   const std::map<std::string, drivers::decode::usb::LabjackInput> inputs = {
       {"low-voltage", drivers::decode::usb::LabjackInput::kLowVoltage},

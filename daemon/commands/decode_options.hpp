@@ -34,13 +34,17 @@ class DecodeCommandOptions {
   };
 
   CLI::Option* limit(CLI::Option* option, const std::string& formats);
-  void add_policies(CLI::App& command);
+  void add_parameter(CLI::App& command, const Parameter& parameter, const std::string& option,
+                     ParameterValues::Map& given, const std::string& formats);
+  void add_text_options(CLI::App& command);
   void add_line_options(CLI::App& command);
   void add_station_options(CLI::App& command);
   void add_modbus_options(CLI::App& command);
   void add_counter_options(CLI::App& command);
+  void set_text();
   void set_line();
 
+  ParameterValues::Map given_for_text_;
   ParameterValues::Map given_for_line_;
   std::vector<Limited> limited_;
 };

@@ -5,7 +5,10 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -14,6 +17,7 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_import.hpp"
+#include "daemon/tools/csv/line_log_import.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "engine/base/count_text.hpp"
@@ -26,23 +30,56 @@ extern const Command kImportCommand;
 namespace {
 
 constexpr const char* kImportFooter =
-    "The columns are found by their names: time or timestamp, wind_speed, direction, gust, or u and v; a unit in a "
-    "name\n"
-    "(u_ms, speed_kmh, \"Gust (mph)\") is understood. The choice is printed. Rows that are not readings, or go\n"
-    "back in time, are left out and counted.\n"
+    "What `import` finds by itself, and tells:\n"
+    "  the header       below a preamble (Campbell TOA5, HOBO, open-meteo), over two lines (Davis), or in a comment\n"
+    "                   (KNMI, NDBC); rows of units below it\n"
+    "  the columns      by their usual names: timestamp, wind_speed, direction, gust, or u and v; date and time, or "
+    "year,\n"
+    "                   month, day, hour in columns of their own; temperature, pressure, humidity, w\n"
+    "  the units        of each column: from its name (\"Gust (mph)\"), the row of units, the preamble, the fields\n"
+    "                   (\"5.4 kn\"), the program that wrote the file, the column beside it. Where nothing says one, "
+    "m/s\n"
+    "                   is assumed, and told; where that cannot be right, --unit is asked for\n"
+    "  the times        ISO 8601, 20.7.2018, 7/20/18 2:00 PM, 201807201400, Unix time. Where day and month cannot be "
+    "told\n"
+    "                   apart, --time-format is asked for. Times without a zone are in UTC, unless --zone says "
+    "otherwise\n"
+    "  missing values   --, M, VRB, -999, 9999, 99.0 far above all others ... A missing direction leaves the speed in\n"
+    "  the order        a file with its newest row first is read from its end\n"
+    "\n"
+    "A log of messages (NMEA 0183, Gill, FT, UMB, or \"speed=4.2 direction=270\"), one a line, is taken with the times "
+    "that\n"
+    "a logger wrote before them, or those of its own RMC, ZDA and GLL, or --start and --interval.\n"
+    "\n"
+    "Rows that are not readings, repeat the one before, or go back in time, are left out and counted.\n"
     "\n"
     "Examples:\n"
     "  yuragi import mast.csv -o mast.windlog\n"
     "  yuragi import station.csv -o station.windlog --speed \"Avg Wind\" --unit km/h --direction Dir --time-format "
     "unix\n"
+    "  yuragi import garden.csv -o garden.windlog --time-format day-first --zone Europe/Berlin --missing 99.0\n"
+    "  yuragi import bare.csv -o bare.windlog --header time,,speed_kn,direction\n"
+    "  yuragi import history.csv -o roof.windlog --where entity_id=sensor.wind_speed --speed state --unit km/h\n"
+    "  yuragi import voyage.log -o voyage.windlog --sentence MWD\n"
+    "  yuragi import windsonic.log -o roof.windlog --start 2023-06-25T22:00:00Z --interval 0.25\n"
     "  yuragi import sonic.csv -o sonic.windlog --u Ux --v Uy --uv-from\n"
     "Then: yuragi replay mast.windlog";
+
+enum class Format : std::uint8_t { kAuto, kCsv, kLog };
 
 struct ImportOptions {
   std::string input;
   std::string output;
   tools::csv::CsvImportOptions csv;
   std::string unit;
+  std::string gust_unit;
+  std::string zone;
+  std::vector<std::string> conditions;
+  std::string header;
+  std::string start;
+  double interval_s = 0.0;
+  std::string sentence;
+  Format format = Format::kAuto;
   std::string delimiter;
   std::string comment = "#";
   bool force = false;
@@ -51,8 +88,25 @@ struct ImportOptions {
 char delimiter_named(const std::string& text) {
   if (text.empty()) return 0;
   if (text == "tab" || text == "\\t" || text == "\t") return '\t';
-  if (text == "," || text == ";") return text[0];
-  throw ExitError(kExitUsage, "--delimiter: is \"" + text + "\"; allowed: , or ; or tab");
+  if (text == "blank" || text == " ") return ' ';
+  if (text == "," || text == ";" || text == "|") return text[0];
+  throw ExitError(kExitUsage, "--delimiter: is \"" + text + "\"; allowed: , or ; or | or tab or blank");
+}
+
+std::optional<tools::csv::CsvUnit> speed_unit_named(const char* option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const auto unit = tools::csv::find_speed_unit(text);
+  if (unit) return unit;
+  throw ExitError(kExitUsage,
+                  fmt::format("{}: is \"{}\"; allowed: m/s, km/h, kn, mph, ft/s, cm/s, 0.1 m/s", option, text));
+}
+
+tools::csv::CsvCondition condition_in(const std::string& text) {
+  const auto sign = text.find('=');
+  if (sign == std::string::npos || sign == 0) {
+    throw ExitError(kExitUsage, "--where: is \"" + text + "\"; allowed: COLUMN=VALUE");
+  }
+  return {text.substr(0, sign), text.substr(sign + 1)};
 }
 
 tools::csv::CsvImportOptions csv_options(const ImportOptions& options) {
@@ -60,8 +114,48 @@ tools::csv::CsvImportOptions csv_options(const ImportOptions& options) {
   csv.delimiter = delimiter_named(options.delimiter);
   if (options.comment.size() > 1) throw ExitError(kExitUsage, "--comment: give one character, or \"\" for none");
   csv.comment = options.comment.empty() ? '\0' : options.comment[0];
-  if (!options.unit.empty()) csv.unit = tools::csv::find_speed_unit(options.unit);
+  csv.unit = speed_unit_named("--unit", options.unit);
+  csv.gust_unit = speed_unit_named("--gust-unit", options.gust_unit);
+  if (!options.zone.empty()) {
+    const auto zone = tools::csv::CsvZone::parse(options.zone);
+    if (!zone) throw ExitError(kExitUsage, "--zone: " + zone.error().message);
+    csv.zone = *zone;
+  }
+  std::istringstream names(options.header);
+  for (std::string name; std::getline(names, name, ',');) csv.header.push_back(name);
+  for (const std::string& condition : options.conditions) csv.conditions.push_back(condition_in(condition));
   return csv;
+}
+
+tools::csv::LineLogOptions log_options(const ImportOptions& options, const tools::csv::CsvImportOptions& csv) {
+  tools::csv::LineLogOptions log;
+  log.time_format = csv.time_format;
+  log.zone = csv.zone;
+  log.sensor = csv.sensor;
+  log.strict = csv.strict;
+  log.sentence = options.sentence;
+  if (options.interval_s > 0.0) log.interval = from_seconds(options.interval_s);
+  if (options.start.empty()) return log;
+  const auto start = tools::csv::parse_time(options.start, tools::csv::CsvTimeFormat::kIso);
+  if (!start) throw ExitError(kExitUsage, "--start: is \"" + options.start + "\"; allowed: 2023-06-25T22:00:00Z");
+  log.start = start->clock - start->utc_offset.value_or(Nanoseconds{0});
+  return log;
+}
+
+/// As a table or as a log, whichever it looks like.
+Result<tools::csv::CsvImportReport, Failure> import_any(const ImportOptions& options, std::istream& in,
+                                                        const tools::csv::CsvSinks& sinks) {
+  const tools::csv::CsvImportOptions csv = csv_options(options);
+  const tools::csv::LineLogOptions log = log_options(options, csv);
+  tools::csv::CsvInput input(in);
+  Format format = options.format;
+  if (format == Format::kAuto) {
+    const auto lines = tools::csv::first_lines(input, options.input);
+    if (!lines) return lines.error();
+    format = tools::csv::looks_like_line_log(*lines) ? Format::kLog : Format::kCsv;
+  }
+  return format == Format::kLog ? tools::csv::import_line_log(input, options.input, log, sinks)
+                                : tools::csv::import_csv(input, options.input, csv, sinks);
 }
 
 /// Writes the imported readings to one session of a new recording.
@@ -79,6 +173,7 @@ class Target {
       known = sensors_.emplace(sensor, *id).first;
     }
     must(writer_.append(known->second, reading));
+    last_sensor_ = known->second;
 
     // Transactions of bounded size; shows progress now and then when it takes long.
     constexpr std::size_t kRowsPerCommit = 100'000;
@@ -88,6 +183,12 @@ class Target {
       if (is_watched_ && is_slow) fmt::print(stderr, "\r{} readings", count_);
       has_shown_ = has_shown_ || (is_watched_ && is_slow);
     }
+  }
+
+  /// Of the sensor and time of the last reading.
+  void take(const wind::StationQuantities& quantities) {
+    const auto done = writer_.append(last_sensor_, quantities);
+    if (!done) throw ExitError(kExitCannotCreate, done.error().message);
   }
 
   void close() {
@@ -111,22 +212,26 @@ class Target {
   bool is_watched_;
   bool has_shown_ = false;
   std::size_t count_ = 0;
+  std::int64_t last_sensor_ = 0;
   std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
   std::map<std::string, std::int64_t, std::less<>> sensors_;
 };
 
 void print_report(const ImportOptions& options, const tools::csv::CsvImportReport& report) {
   for (const std::string& line : report.columns) fmt::print("  {}\n", line);
+  for (const std::string& line : report.notes) fmt::print("  {}\n", line);
   for (const std::string& line : report.first_refusals) fmt::print(stderr, "left out: {}\n", line);
   if (report.refused() > report.first_refusals.size()) {
     fmt::print(stderr, "left out: {} more\n", report.refused() - report.first_refusals.size());
   }
   fmt::print("{}: {} of {}, {} left out\n", options.output, count_text(report.taken, "reading"),
              count_text(report.rows, "row"), report.refused());
+  if (report.quantities > 0)
+    fmt::print("{} say more than the wind (yuragi export --quantities)\n", count_text(report.quantities, "row"));
 }
 
 void run_import(const ImportOptions& options) {
-  const tools::csv::CsvImportOptions csv = csv_options(options);
+  csv_options(options);  // a mistake in them is told before anything is opened
   std::ifstream file;
   const bool is_standard_input = options.input == "-";
   if (!is_standard_input) {
@@ -137,9 +242,12 @@ void run_import(const ImportOptions& options) {
 
   settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   Target target(output.working_path(), fmt::format("# imported from {}\n", options.input));
-  const auto report = tools::csv::import_csv(
-      is_standard_input ? std::cin : file, options.input, csv,
-      [&target](std::string_view sensor, const wind::WindReading& reading) { target.take(sensor, reading); });
+  const auto report =
+      import_any(options, is_standard_input ? std::cin : file,
+                 {.reading = [&target](std::string_view sensor,
+                                       const wind::WindReading& reading) { target.take(sensor, reading); },
+                  .quantities = [&target](std::string_view,
+                                          const wind::StationQuantities& quantities) { target.take(quantities); }});
   if (!report) throw ExitError(kExitDataError, report.error().message);
   if (!is_standard_input && file.bad()) throw ExitError(kExitNoInput, options.input + ": could not be read completely");
   target.close();
@@ -153,36 +261,52 @@ void run_import(const ImportOptions& options) {
 
 void add_import(CLI::App& app) {
   const auto options = std::make_shared<ImportOptions>();
-  CLI::App* command = app.add_subcommand("import", "Convert a CSV file to a recording");
+  CLI::App* command =
+      app.add_subcommand("import", "Convert a CSV file, or a log of an anemometer's messages, to a recording");
   command->footer(kImportFooter);
-  command->add_option("file", options->input, "the CSV file; - is standard input")->required();
+  command->add_option("file", options->input, "the CSV file or log; - is standard input")->required();
   command->add_option("-o,--output", options->output, "the recording to write (.windlog)")->required();
   command->add_flag("--force", options->force, "overwrite it");
+  static const std::map<std::string, Format> kFormats = {
+      {"auto", Format::kAuto}, {"csv", Format::kCsv}, {"log", Format::kLog}};
+  command->add_option("--format", options->format, "what the file is; auto: by its first lines")
+      ->transform(CLI::CheckedTransformer(kFormats))
+      ->option_text("auto|csv|log");
 
   const auto add_column = [&](const char* flag, tools::csv::CsvRole role, const char* help) {
     command->add_option(flag, options->csv.columns[static_cast<std::size_t>(role)], help)->type_name("COLUMN");
   };
   add_column("--time", tools::csv::CsvRole::kTime, "the column of times");
+  add_column("--date", tools::csv::CsvRole::kDate, "the column of dates, where --time has none");
   add_column("--speed", tools::csv::CsvRole::kSpeed, "the column of wind speeds");
   add_column("--direction", tools::csv::CsvRole::kDirection, "the column of directions");
   add_column("--gust", tools::csv::CsvRole::kGust, "the column of gusts");
   add_column("--u", tools::csv::CsvRole::kU, "the column of the eastward component");
   add_column("--v", tools::csv::CsvRole::kV, "the column of the northward component");
+  add_column("--w", tools::csv::CsvRole::kVerticalSpeed, "the column of the upward component");
+  add_column("--temperature", tools::csv::CsvRole::kTemperature, "the column of air temperatures");
+  add_column("--pressure", tools::csv::CsvRole::kPressure, "the column of air pressures");
+  add_column("--humidity", tools::csv::CsvRole::kHumidity, "the column of relative humidities");
   command->add_flag("--uv-from", options->csv.components_are_from, "u and v point toward where the wind comes from");
 
   static const std::map<std::string, tools::csv::CsvTimeFormat> kTimeFormats = {
-      {"auto", tools::csv::CsvTimeFormat::kAuto},
-      {"iso", tools::csv::CsvTimeFormat::kIso},
-      {"unix", tools::csv::CsvTimeFormat::kUnix},
-      {"unix-ms", tools::csv::CsvTimeFormat::kUnixMs},
-      {"seconds", tools::csv::CsvTimeFormat::kSeconds}};
-  command->add_option("--time-format", options->csv.time_format, "format of the times; auto: by the first row")
-      ->transform(CLI::CheckedTransformer(kTimeFormats))
-      ->option_text("auto|iso|unix|unix-ms|seconds");
+      {"auto", tools::csv::CsvTimeFormat::kAuto},          {"iso", tools::csv::CsvTimeFormat::kIso},
+      {"day-first", tools::csv::CsvTimeFormat::kDayFirst}, {"month-first", tools::csv::CsvTimeFormat::kMonthFirst},
+      {"compact", tools::csv::CsvTimeFormat::kCompact},    {"unix", tools::csv::CsvTimeFormat::kUnix},
+      {"unix-ms", tools::csv::CsvTimeFormat::kUnixMs},     {"unix-us", tools::csv::CsvTimeFormat::kUnixUs},
+      {"unix-ns", tools::csv::CsvTimeFormat::kUnixNs},     {"seconds", tools::csv::CsvTimeFormat::kSeconds}};
   command
-      ->add_option("--unit", options->unit, "unit of speed, gust, u and v; default: as the column's name says, or m/s")
-      ->check(CLI::IsMember({"m/s", "km/h", "kn", "mph"}))
-      ->option_text("m/s|km/h|kn|mph");
+      ->add_option("--time-format", options->csv.time_format,
+                   "format of the times; auto: by all rows; compact: YYYYMMDDHH and so on")
+      ->transform(CLI::CheckedTransformer(kTimeFormats))
+      ->option_text("auto|iso|day-first|month-first|compact|unix|unix-ms|unix-us|unix-ns|seconds");
+  command
+      ->add_option("--zone", options->zone,
+                   "zone of times that name none: UTC, +02:00, Europe/Berlin (default: as the file says, or UTC)")
+      ->type_name("ZONE");
+  command->add_option("--unit", options->unit, "unit of speed, gust, u, v and w; default: as the file says, or m/s")
+      ->option_text("m/s|km/h|kn|mph|ft/s|cm/s|\"0.1 m/s\"");
+  command->add_option("--gust-unit", options->gust_unit, "unit of the gust alone")->type_name("UNIT");
   static const std::map<std::string, bool> kConventions = {{"from", false}, {"toward", true}};
   command
       ->add_option("--direction-convention", options->csv.direction_is_toward,
@@ -196,9 +320,29 @@ void add_import(CLI::App& app) {
   command->add_option("--direction-unit", options->csv.direction_unit, "point16: 0 to 15, clockwise from north")
       ->transform(CLI::CheckedTransformer(kDirectionUnits))
       ->option_text("deg|rad|point16");
-  command->add_option("--delimiter", options->delimiter, ", or ; or tab; default: the most frequent one in the header");
+  command->add_option("--delimiter", options->delimiter, ", or ; or | or tab or blank; default: as the header has it");
   command->add_option("--comment", options->comment, "lines that begin with this character are ignored (default #)");
+  command->add_option("--skip", options->csv.skip, "lines before the header; default: it is looked for")
+      ->type_name("N");
+  command
+      ->add_option("--header", options->header,
+                   "names for the columns of a file without a header, with commas between them")
+      ->type_name("NAMES");
+  command
+      ->add_option("--where", options->conditions,
+                   "take the rows where this column has this text; can be given several times")
+      ->type_name("COLUMN=VALUE")
+      ->allow_extra_args(false);
+  command->add_option("--missing", options->csv.missing, "a text that stands for no value; can be given several times")
+      ->type_name("TEXT")
+      ->allow_extra_args(false);
   command->add_option("--sensor", options->csv.sensor, "name of the sensor")->capture_default_str();
+  command->add_option("--start", options->start, "a log without times: when its first reading was")->type_name("TIME");
+  command->add_option("--interval", options->interval_s, "a log without times: from one reading to the next")
+      ->check(CLI::Range(0.001, 86400.0))
+      ->type_name("SECONDS");
+  command->add_option("--sentence", options->sentence, "a log of several sentences: the one to take (MWD, MWV R ...)")
+      ->type_name("NAME");
   command->add_flag("--strict", options->csv.strict, "stop at the first row that is not a reading");
   command->callback([options] { run_import(*options); });
 }

@@ -1,4 +1,5 @@
-// `yuragi sensors list`: lists the devices that are plugged in, and how to configure them.
+// `yuragi sensors list`: lists the devices that are plugged in, or announced on an MQTT broker, and how to configure
+// them.
 #include <memory>
 
 #include <fmt/core.h>
@@ -7,8 +8,82 @@
 #include "daemon/commands/sensors.hpp"
 #include "daemon/tools/sensors/description_json.hpp"
 #include "daemon/tools/sensors/device_list.hpp"
+#include "drivers/mqtt/broker_search.hpp"
+#include "drivers/mqtt/home_assistant.hpp"
+#include "drivers/sensor/secret_source.hpp"
+#include "engine/base/address.hpp"
 
 namespace yuragi::daemon::commands {
+namespace {
+
+struct ListOptions {
+  std::string broker;
+  std::string user;
+  std::string password_file;
+  std::string ca_file;
+  std::string prefix = "homeassistant";
+  bool uses_tls = false;
+  bool as_json = false;
+};
+
+/// How to reach the broker; and the same as a sensor's table says it. Throws FailureError.
+drivers::mqtt::BrokerSearch broker_search_of(const ListOptions& options) {
+  constexpr std::uint16_t kPort = 1883;
+  constexpr std::uint16_t kTlsPort = 8883;
+  const std::uint16_t usual_port = options.uses_tls ? kTlsPort : kPort;
+  const Address address = parse_address(options.broker, usual_port).value();
+  drivers::mqtt::BrokerSearch search;
+  search.prefix = options.prefix;
+  search.broker.host = address.host;
+  search.broker.port = address.port;
+  search.broker.uses_tls = options.uses_tls;
+  search.broker.ca_file = options.ca_file;
+  search.broker.user = options.user;
+  if (!options.password_file.empty())
+    search.broker.password = drivers::sensor::secret_in_file(options.password_file).value();
+
+  const auto add = [&](std::string_view key, const std::string& text) {
+    if (!text.empty()) search.settings += fmt::format("{} = {}\n", key, drivers::mqtt::quoted_for_toml(text));
+  };
+  add("host", address.host);
+  if (address.port != usual_port) search.settings += fmt::format("port = {}\n", address.port);
+  if (options.uses_tls) search.settings += "tls = true\n";
+  add("ca_file", options.ca_file);
+  add("user", options.user);
+  add("password_file", options.password_file);
+  return search;
+}
+
+std::vector<tools::sensors::DeviceFinding> announced(const ListOptions& options) {
+  const auto drivers = drivers::sensor::driver_table();
+  const auto* const mqtt = *std::ranges::find(drivers, "mqtt", &drivers::sensor::DriverDescription::name);
+  std::vector<tools::sensors::DeviceFinding> findings;
+  for (drivers::sensor::FoundDevice& device : drivers::mqtt::find_announced(broker_search_of(options)).value())
+    findings.push_back({mqtt, std::move(device)});
+  return findings;
+}
+
+void list_plugged_in(bool as_json) {
+  const auto drivers = drivers::sensor::driver_table();
+  const std::vector<tools::sensors::DeviceFinding> findings = tools::sensors::find_devices(drivers);
+  if (as_json) return print_json(tools::sensors::devices_json(findings));
+  fmt::print(
+      "{}Devices on a serial line or behind a Modbus gateway: `yuragi sensors probe modbus PORT|HOST:PORT`.\n"
+      "What is announced on an MQTT broker: `yuragi sensors list --broker HOST`.\n",
+      tools::sensors::device_list(findings, drivers));
+}
+
+void list_announced(const ListOptions& options) {
+  const std::vector<tools::sensors::DeviceFinding> findings = announced(options);
+  if (options.as_json) return print_json(tools::sensors::devices_json(findings));
+  if (!findings.empty()) return fmt::print("{}", tools::sensors::device_list(findings, {}));
+  fmt::print(
+      "No anemometer is announced on {} below {}/. What is published there without an announcement is configured by "
+      "hand:\n`yuragi sensors describe mqtt`.\n",
+      options.broker, options.prefix);
+}
+
+}  // namespace
 
 void add_sensors_list(CLI::App& sensors) {
   CLI::App* command =
@@ -16,17 +91,25 @@ void add_sensors_list(CLI::App& sensors) {
   command->footer(
       "Each driver looks for its devices, and opens none for longer than necessary, so that a running daemon is "
       "not\ndisturbed. If a permission is missing, the udev rule or group that grants it is shown.\n"
+      "With --broker the anemometers are listed that ESPHome and others announce on an MQTT broker for Home "
+      "Assistant.\n"
       "--json: a list with driver, device, settings (TOML to paste), trouble and remedy (null where it can be "
       "opened).");
-  auto as_json = std::make_shared<bool>(false);
-  add_json(*command, *as_json);
-  command->callback([as_json] {
-    const auto drivers = drivers::sensor::driver_table();
-    const std::vector<tools::sensors::DeviceFinding> findings = tools::sensors::find_devices(drivers);
-    if (*as_json) return print_json(tools::sensors::devices_json(findings));
-    fmt::print("{}Devices on a serial line or behind a Modbus gateway: `yuragi sensors probe modbus PORT|HOST:PORT`.\n",
-               tools::sensors::device_list(findings, drivers));
-  });
+  auto options = std::make_shared<ListOptions>();
+  CLI::Option* const broker = command->add_option("--broker", options->broker,
+                                                  "HOST[:PORT]: list what is announced on this MQTT broker instead");
+  command->add_option("--user", options->user, "the user name for the broker")->needs(broker);
+  command->add_option("--password-file", options->password_file, "a file that holds the password for the broker")
+      ->needs(broker);
+  command->add_flag("--tls", options->uses_tls, "use TLS, and verify the broker")->needs(broker);
+  command->add_option("--ca-file", options->ca_file, "the CA certificate (PEM) of the broker; default: the system's")
+      ->needs(broker);
+  command->add_option("--prefix", options->prefix, "the topic below which publishers announce what they have")
+      ->needs(broker)
+      ->capture_default_str();
+  add_json(*command, options->as_json);
+  command->callback(
+      [options] { options->broker.empty() ? list_plugged_in(options->as_json) : list_announced(*options); });
 }
 
 }  // namespace yuragi::daemon::commands

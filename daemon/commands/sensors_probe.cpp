@@ -7,6 +7,7 @@
 #include <memory>
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
@@ -26,7 +27,7 @@ struct ProbeOptions {
   std::string where;
   std::vector<int> bauds;
   std::vector<std::string> parities;
-  std::string ids = "1-16";
+  std::string ids;
   double timeout_s = 0.2;
   bool tries_all = false;
   std::string profile_dir;
@@ -83,6 +84,15 @@ std::vector<std::uint8_t> ids_of(const std::string& text) {
   return ids;
 }
 
+/// Where none are given: those that people choose, and those that devices have from the factory.
+std::vector<std::uint8_t> usual_ids(const std::vector<drivers::modbus::NamedModbusProfile>& profiles) {
+  std::vector<std::uint8_t> ids = ids_of("1-16");
+  for (const drivers::modbus::NamedModbusProfile& named : profiles) {
+    if (std::ranges::count(ids, named.profile.speed.slave) == 0) ids.push_back(named.profile.speed.slave);
+  }
+  return ids;
+}
+
 /// "9600 8N1", or nothing over TCP.
 std::string settings_of(const drivers::bus::ModbusLine& line) {
   if (line.framing == drivers::decode::modbus::ModbusFraming::kTcp) return "";
@@ -114,7 +124,7 @@ std::string stable_name(const std::string& device) {
 drivers::modbus::ModbusProbePlan plan_of(const ProbeOptions& options) {
   drivers::modbus::ModbusProbePlan plan;
   plan.profiles = drivers::modbus::shipped_modbus_profiles(options.profile_dir);
-  plan.ids = ids_of(options.ids);
+  plan.ids = options.ids.empty() ? usual_ids(plan.profiles) : ids_of(options.ids);
   plan.response_timeout = from_seconds(options.timeout_s);
   plan.tries_all_lines = options.tries_all;
   if (const auto line = tcp_line_of(options.where)) {
@@ -155,6 +165,14 @@ void show_fit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::Modb
   fmt::print("  fits {} ({}): {:.1f} m/s", fit.profile, fit.device, *fit.speed_m_s);
   if (fit.direction_deg) fmt::print(" from {:.0f} degrees", *fit.direction_deg);
   if (fit.gust_m_s) fmt::print(", gust {:.1f} m/s", *fit.gust_m_s);
+  if (fit.verdict != drivers::modbus::ForceVerdict::kNone) {
+    fmt::print("; its own wind force, {:.0f} Beaufort, {}", *fit.beaufort,
+               fit.verdict == drivers::modbus::ForceVerdict::kAgrees ? "agrees" : "CONTRADICTS that: not this one");
+  }
+  if (!is_live(fit)) fmt::print("; all of it is 0");
+  if (fit.direction_slave && !fit.direction_deg) {
+    fmt::print("; no direction from slave {}: set direction_slave, if its vane has another id", *fit.direction_slave);
+  }
   fmt::print("{}\n", fit.is_at_home ? "" : " (its settings are not the factory settings)");
 }
 
@@ -166,12 +184,21 @@ void show_hit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::Modb
   if (hit.fits.size() > 1) {
     fmt::print("  Several devices have these registers: choose the one with the name of your device.\n");
   }
+  if (!hit.scale_doubts.empty()) {
+    fmt::print(
+        "  The scale is open: {} read the same register, and the device says nothing by which to tell who is right.\n"
+        "  Choose the one whose speed is the wind that you feel, or probe again when it blows.\n",
+        fmt::join(hit.scale_doubts, " and "));
+  }
   const auto best =
       std::ranges::find_if(hit.fits, [](const drivers::modbus::ModbusFit& fit) { return fit.speed_m_s.has_value(); });
   if (best != hit.fits.end()) {
     const auto named = std::ranges::find(plan.profiles, best->profile, &drivers::modbus::NamedModbusProfile::name);
     fmt::print("\n{}",
                drivers::modbus::sensor_table_for(hit.line, *best, named->profile, stable_name(hit.line.device)));
+    for (const std::string& other : hit.scale_doubts) {
+      if (other != best->profile) fmt::print("# or, by its scale: profile = \"{}\"\n", other);
+    }
   }
   fmt::print("\n");
   std::fflush(stdout);
@@ -182,15 +209,26 @@ void show_hit_as_json(const drivers::modbus::ModbusHit& hit) {
   const bool is_tcp = hit.line.framing == drivers::decode::modbus::ModbusFraming::kTcp;
   nlohmann::ordered_json fits = nlohmann::ordered_json::array();
   for (const drivers::modbus::ModbusFit& fit : hit.fits) {
+    nlohmann::ordered_json agrees = nullptr;
+    if (fit.verdict != drivers::modbus::ForceVerdict::kNone)
+      agrees = fit.verdict == drivers::modbus::ForceVerdict::kAgrees;
     fits.push_back({{"profile", fit.profile},
                     {"device", fit.device},
                     {"speed_m_s", tools::sensors::json_or_null(fit.speed_m_s)},
                     {"direction_deg", tools::sensors::json_or_null(fit.direction_deg)},
                     {"gust_m_s", tools::sensors::json_or_null(fit.gust_m_s)},
+                    {"beaufort", tools::sensors::json_or_null(fit.beaufort)},
+                    {"agrees_with_beaufort", agrees},
+                    {"is_live", is_live(fit)},
                     {"has_factory_settings", fit.is_at_home}});
   }
-  nlohmann::ordered_json json = {{"line", describe(hit.line)}, {"baud", nullptr}, {"parity", nullptr},
-                                 {"stop_bits", nullptr},       {"slave", hit.id}, {"fits", fits}};
+  nlohmann::ordered_json json = {{"line", describe(hit.line)},
+                                 {"baud", nullptr},
+                                 {"parity", nullptr},
+                                 {"stop_bits", nullptr},
+                                 {"slave", hit.id},
+                                 {"fits", fits},
+                                 {"scale_doubts", hit.scale_doubts}};
   if (!is_tcp) {
     json["baud"] = hit.line.baud;
     json["parity"] = std::string(1, hit.line.parity);
@@ -231,9 +269,14 @@ void add_sensors_probe(CLI::App& sensors) {
       "the serial port exclusively: stop it first.\n"
       "  yuragi sensors probe modbus /dev/ttyUSB0\n"
       "  yuragi sensors probe modbus 192.168.1.20:502 --id 1-10\n"
-      "--json: an object a line for each device: line, baud, parity, stop_bits (null over TCP), slave, fits; of each "
-      "fit\n"
-      "profile, device, speed_m_s, direction_deg, gust_m_s (null where it has none), has_factory_settings.");
+      "Where profiles read the same register with different scales, all of them are shown, and the device's own wind "
+      "force, where\n"
+      "it has one, tells which is right. What reads nothing but zeros comes last.\n"
+      "--json: an object a line for each device: line, baud, parity, stop_bits (null over TCP), slave, fits, "
+      "scale_doubts (the\n"
+      "profiles among which nothing tells); of each fit profile, device, speed_m_s, direction_deg, gust_m_s, beaufort, "
+      "agrees_with_beaufort\n"
+      "(null where it has none), is_live (not all of it is 0), has_factory_settings.");
   auto options = std::make_shared<ProbeOptions>();
   command->add_option("where", options->where, "serial port, or HOST:PORT of a device or gateway")
       ->required()
@@ -244,7 +287,7 @@ void add_sensors_probe(CLI::App& sensors) {
   command->add_option("--parity", options->parities, "serial: only these")
       ->check(CLI::IsMember({"none", "even", "odd"}))
       ->delimiter(',');
-  command->add_option("--id", options->ids, "slaves to ask: 3, 1-10, 1,2,17")->capture_default_str();
+  command->add_option("--id", options->ids, "slaves to ask: 3, 1-10, 1,2,17; default: 1-16, and the profiles' own ids");
   command->add_option("--timeout", options->timeout_s, "how long a device may take to answer, s")
       ->check(CLI::Range(0.02, 10.0))
       ->capture_default_str();

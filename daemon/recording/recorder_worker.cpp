@@ -37,6 +37,13 @@ std::string megabytes(std::uint64_t bytes) {
   return std::to_string(bytes / 1'000'000) + " MB";
 }
 
+/// The earliest time of what stations said besides the wind; there is some.
+template <class Entries>
+Instant earliest_of(const Entries& entries) {
+  return std::ranges::min_element(entries, {}, [](const auto& entry) { return entry.quantities.time.mono; })
+      ->quantities.time;
+}
+
 /// Keeps since when something waits for the disk.
 class AtTheDisk {
  public:
@@ -64,6 +71,7 @@ RecorderWorker::RecorderWorker(const std::filesystem::path& file, const settings
                                RecordingInfo info, RecorderReport report, const RecorderLimits& limits)
     : file_(file),
       rules_(rules),
+      sensor_count_(info.sensors.size()),
       info_(std::move(info)),
       limits_(limits),
       ring_(kRingCapacity),
@@ -78,13 +86,13 @@ RecorderWorker::RecorderWorker(const std::filesystem::path& file, const settings
 bool RecorderWorker::push(std::size_t sensor, const wind::WindReading& reading) noexcept {
   push_marks();
   const bool taken =
-      sensor < info_.sensors.size() && drivers::windlog::is_recordable(reading) && ring_.push({sensor, reading});
+      sensor < sensor_count_ && drivers::windlog::is_recordable(reading) && ring_.push({sensor, reading});
   (taken ? pushed_ : lost_).fetch_add(1, std::memory_order_relaxed);
   return taken;
 }
 
 bool RecorderWorker::push(std::size_t sensor, const wind::StationQuantities& quantities) noexcept {
-  const bool taken = sensor < info_.sensors.size() && quantities_ring_.push({sensor, quantities});
+  const bool taken = sensor < sensor_count_ && quantities_ring_.push({sensor, quantities});
   if (!taken) lost_quantities_.fetch_add(1, std::memory_order_relaxed);
   return taken;
 }
@@ -256,17 +264,22 @@ Result<void, Failure> RecorderWorker::write_pending() {
 /// Writes what stations said besides the wind, where no readings took it with them.
 Result<void, Failure> RecorderWorker::write_quantities() {
   if (pending_quantities_.empty()) return {};
-  const Instant first = pending_quantities_.front().quantities.time;
+  const Instant first = earliest_of(pending_quantities_);
   if (auto prepared = prepare_file(first, first); !prepared) return prepared;
-  if (auto appended = append_quantities(); !appended) return appended;
+  if (auto appended = append_quantities(MonoTime::max()); !appended) return appended;
   if (auto committed = commit(); !committed) return committed;
   pending_quantities_.clear();
-  return {};
+  return learn_begin();
 }
 
-/// What the file has no place for is counted; the readings do not suffer from it.
-Result<void, Failure> RecorderWorker::append_quantities() {
+/// Appends what stations said before a time; it stays pending until it is committed. What the file has no place for is
+/// counted; the readings do not suffer from it.
+Result<void, Failure> RecorderWorker::append_quantities(MonoTime before) {
   for (auto entry = pending_quantities_.begin(); entry != pending_quantities_.end();) {
+    if (entry->quantities.time.mono >= before) {
+      ++entry;
+      continue;
+    }
     const auto is_added = writer_->append(sensor_ids_[entry->sensor], entry->quantities);
     if (!is_added) return is_added.error();
     if (*is_added) {
@@ -279,6 +292,11 @@ Result<void, Failure> RecorderWorker::append_quantities() {
   return {};
 }
 
+void RecorderWorker::forget_quantities(MonoTime before) {
+  std::erase_if(pending_quantities_,
+                [before](const QuantitiesEntry& entry) { return entry.quantities.time.mono < before; });
+}
+
 /// Writes the first readings that are pending, which are of one session.
 Result<void, Failure> RecorderWorker::write_readings(std::size_t count) {
   // Of several sensors the first reading need not be the earliest.
@@ -289,9 +307,13 @@ Result<void, Failure> RecorderWorker::write_readings(std::size_t count) {
   for (const Entry& entry : std::span(pending_).first(count)) {
     if (auto appended = writer_->append(sensor_ids_[entry.sensor], entry.reading); !appended) return appended;
   }
-  if (auto appended = append_quantities(); !appended) return appended;
+  if (auto appended = append_quantities(MonoTime::max()); !appended) return appended;
   if (auto committed = commit(); !committed) return committed;
   pending_quantities_.clear();
+  return learn_begin();
+}
+
+Result<void, Failure> RecorderWorker::learn_begin() {
   if (began_) return {};
   const auto began = writer_->began();
   if (!began) return began.error();
@@ -300,18 +322,28 @@ Result<void, Failure> RecorderWorker::write_readings(std::size_t count) {
 }
 
 /// Makes the file ready for what arrived at `first`: completes one, opens one, begins the session that is due at
-/// `earliest`.
+/// `earliest`. What stations said before that goes into the session that ends: a session has no place for what was
+/// before it.
 Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earliest) {
   if (auto made = make_room(first.utc); !made) return made;
   if (writer_) {
     if (auto kept = check_name(); !kept) return kept;
-    if (began_ && is_complete(rules_, *began_, size_of(file_), first.utc)) {
-      if (auto completed = complete_file(); !completed) return completed;
+    const bool is_due = began_ && is_complete(rules_, *began_, size_of(file_), first.utc);
+    if (is_due || is_session_due_) {
+      const MonoTime begin = is_due ? first.mono : earliest.mono;
+      if (auto appended = append_quantities(begin); !appended) return appended;
+      if (auto committed = writer_->commit(); !committed) return committed;
+      forget_quantities(begin);
     }
+    if (is_due) {
+      if (auto completed = complete_file(); !completed) return completed;
+      return open_session(first);
+    }
+    return is_session_due_ ? begin_session_at(earliest) : Result<void, Failure>{};
   }
-  if (!writer_) return open_session(first);
-  if (is_session_due_) return begin_session_at(earliest);
-  return {};
+  const bool have_said = !pending_quantities_.empty();
+  const Instant said = have_said ? earliest_of(pending_quantities_) : first;
+  return open_session(said.mono < first.mono ? said : first);
 }
 
 /// Commits; at first and then once a minute what is committed also comes into the file itself, so that a copy of it
@@ -322,7 +354,7 @@ Result<void, Failure> RecorderWorker::commit() {
   return writer_->checkpoint();
 }
 
-/// Closes the file and renames it to what a completed part is called; the next reading begins a new one.
+/// Closes the file and renames it to what a completed part is called.
 Result<void, Failure> RecorderWorker::complete_file() {
   if (auto closed = writer_->close(); !closed) return closed;
   writer_.reset();

@@ -100,7 +100,9 @@ class RecorderWorker {
   Result<void, Failure> write_pending();
   Result<void, Failure> write_readings(std::size_t count);
   Result<void, Failure> write_quantities();
-  Result<void, Failure> append_quantities();
+  Result<void, Failure> append_quantities(MonoTime before);
+  void forget_quantities(MonoTime before);
+  Result<void, Failure> learn_begin();
   Result<void, Failure> prepare_file(Instant first, Instant earliest);
   Result<void, Failure> begin_session_at(Instant started);
   void take_next_session();
@@ -118,6 +120,7 @@ class RecorderWorker {
 
   std::filesystem::path file_;
   settings::RecordingConfig rules_;
+  std::size_t sensor_count_;  ///< of every session; it never changes, so that push() may look at it
   RecordingInfo info_;
   RecorderLimits limits_;
   SpscRing<Entry> ring_;
@@ -148,7 +151,7 @@ class RecorderWorker {
   std::vector<QuantitiesEntry> pending_quantities_;
   std::optional<drivers::windlog::WindlogWriter> writer_;
   FileIdentity identity_;         ///< of the file that writer_ writes
-  std::optional<UtcTime> began_;  ///< that file's first session, once it has readings
+  std::optional<UtcTime> began_;  ///< that file's first session, once it has readings or quantities
   std::vector<std::int64_t> sensor_ids_;
   bool is_session_due_ = false;  ///< the next reading begins one
   int commits_ = 0;              ///< since the file was opened

@@ -7,6 +7,13 @@
 namespace yuragi::daemon::sensing {
 namespace {
 
+/// Before its second reading nobody knows how often a station speaks; all but a few speak within this.
+constexpr double kSecondReadingWithin_s = 120.0;
+
+bool awaits_second_reading(const wind::SourceReport& report) {
+  return report.interval_s <= 0.0 && report.age_s <= kSecondReadingWithin_s;
+}
+
 std::string connecting_text(const SensorEvidence& evidence) {
   if (evidence.link == wind::LinkState::kConnected) {
     return "the device is connected, but has sent no reading yet: " + std::string(evidence.link_detail);
@@ -18,6 +25,10 @@ std::string live_text(const SensorEvidence& evidence) {
   std::string text = evidence.report.interval_s > 0.0
                          ? fmt::format("a reading every {}", settings::duration_text(evidence.report.interval_s))
                          : std::string("first reading received");
+  if (evidence.report.is_overdue) {
+    text += fmt::format("; none for {}, which says that nothing has changed",
+                        settings::duration_text(evidence.report.age_s));
+  }
   if (evidence.vote == wind::judging::Vote::kDisputed && evidence.others_m_s) {
     text += fmt::format(
         "; but its mean of 5 min is {:.1f} m/s, that of the other sensors {:.1f} m/s. Check each sensor, and correct "
@@ -76,8 +87,12 @@ wind::judging::SensorState state_of(const SensorEvidence& evidence) {
                                             : wind::judging::SensorState::kConnecting;
     case wind::SourceHealth::kStale:
       if (!is_connected) return wind::judging::SensorState::kDisconnected;
-      return makes_no_sense ? wind::judging::SensorState::kImplausible : wind::judging::SensorState::kStale;
+      if (makes_no_sense) return wind::judging::SensorState::kImplausible;
+      if (!awaits_second_reading(evidence.report)) return wind::judging::SensorState::kStale;
+      break;
     case wind::SourceHealth::kLive:
+      // Nothing explains the silence of a device that has gone.
+      if (evidence.report.is_overdue && !is_connected) return wind::judging::SensorState::kDisconnected;
       break;
   }
   if (evidence.fault == wind::judging::ReadingFault::kFrozen) return wind::judging::SensorState::kFrozen;

@@ -31,7 +31,8 @@ struct SensorEvidence {
 };
 
 /// The state. While readings arrive, a fault takes precedence over the kind of source (simulated, replayed). Once they
-/// are stale, a lost link takes precedence over faults, and only implausible readings count as one. Pure.
+/// are stale, a lost link takes precedence over faults, and only implausible readings count as one. A station that has
+/// sent one reading is not stale before two minutes: nobody knows yet how often it speaks. Pure.
 wind::judging::SensorState state_of(const SensorEvidence& evidence);
 
 /// Why it is in this state and what to do about it, for a person. Pure.

@@ -1,6 +1,7 @@
 #include "daemon/sensing/sensor_hub.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -24,6 +25,12 @@ bool is_disputed(wind::judging::SensorState state, wind::judging::Vote vote) {
 std::uint32_t key_of(wind::judging::SensorState state, wind::judging::Vote vote) {
   constexpr std::uint32_t kDisputedBit = 1U << 8U;
   return static_cast<std::uint32_t>(state) | (is_disputed(state, vote) ? kDisputedBit : 0U);
+}
+/// The key of a link for the ChangeGate: the state; while it is connected, what is said of it, too.
+std::uint32_t key_of(const LinkReport& link) {
+  const auto state = static_cast<std::uint32_t>(link.state);
+  if (link.state != wind::LinkState::kConnected) return state;
+  return state | static_cast<std::uint32_t>(std::hash<std::string>{}(link.detail) << 8U);
 }
 wind::judging::SensorState state_in(std::uint32_t key) {
   return static_cast<wind::judging::SensorState>(key & 0xFFU);
@@ -106,6 +113,7 @@ SensorHub::SensorHub(const settings::Config& config, const drivers::sensor::Cloc
     const std::optional<wind::judging::JudgeSettings>& judged_by = channel.config.judge;
     channel.judge = wind::judging::ReadingJudge(judged_by.value_or(wind::judging::JudgeSettings{}));
     channel.is_compared = is_compared(channel.config);
+    channel.record = wind::blend::SourceRecord(channel.config.blend.unchanged_for_s);
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_, thread);
     channels_.push_back(std::move(channel));
   }
@@ -184,13 +192,23 @@ void SensorHub::take(std::size_t index, const wind::WindReading& raw) {
     estimator_.accept(index, reading);
     return;
   }
-  channel.record.take(reading);
+  const bool repeats = channel.record.has_reading() && wind::says_the_same(reading, *channel.record.last());
+  if (!channel.record.take(reading) && repeats) {
+    // A message that is said again has been judged.
+    if (channel.is_last_believed) {
+      estimator_.accept(index, reading);
+    } else {
+      ++channel.not_believed;
+    }
+    return;
+  }
 
   // Simulated readings are not judged: they may be constant.
   const bool is_judged = channel.config.judge && reading.quality != wind::ReadingQuality::kSimulated;
   const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
   if (makes_sense) vote_.accept(index, reading.time.mono, reading.speed_m_s);
-  if (makes_sense && vote_.vote_on(index) != wind::judging::Vote::kOutvoted) {
+  channel.is_last_believed = makes_sense && vote_.vote_on(index) != wind::judging::Vote::kOutvoted;
+  if (channel.is_last_believed) {
     estimator_.accept(index, reading);
   } else {
     ++channel.not_believed;
@@ -234,15 +252,14 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
           .others_m_s = vote_.others_m_s(index)};
 }
 
-/// Logs changes of the link's state, but not each failed attempt.
+/// Logs changes of the link's state, and what a connected sensor says anew of it, but not each failed attempt.
 void SensorHub::log_link(Channel& channel, MonoTime now) const {
   if (const std::uint64_t reports = channel.runner->link_reports(); reports != channel.link_reports) {
     channel.link = channel.runner->link();
     channel.link_reports = reports;
     spdlog::debug("sensor {}: {}: {}", channel.config.name, name_of(channel.link.state), channel.link.detail);
   }
-  if (channel.link_reports == 0 || !channel.link_gate.offer(static_cast<std::uint32_t>(channel.link.state), now))
-    return;
+  if (channel.link_reports == 0 || !channel.link_gate.offer(key_of(channel.link), now)) return;
   spdlog::info("sensor {}: {}: {}{}", channel.config.name, name_of(channel.link.state), channel.link.detail,
                passed_over_text(channel.link_gate));
 }

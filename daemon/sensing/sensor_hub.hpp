@@ -95,6 +95,7 @@ class SensorHub {
     bool is_compared = false;
     std::unique_ptr<SensorRunner> runner;
     wind::blend::SourceRecord record;  ///< calibrated, believed or not
+    bool is_last_believed = false;     ///< of the last reading that was judged
     std::uint64_t readings = 0;
     std::uint64_t not_believed = 0;  ///< plausible readings that were left out of the wind
     std::uint64_t impossible = 0;    ///< readings that were refused as implausible

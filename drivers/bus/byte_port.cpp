@@ -33,7 +33,7 @@ std::string describe(const BytePortAddress& address) {
 
 std::string sole_device_of(const BytePortAddress& address) {
   if (address.kind == BytePortKind::kSerial) return serial_device_of(address.path);
-  if (address.kind != BytePortKind::kUdp) return {};
+  if (address.kind != BytePortKind::kUdp || address.is_port_shared) return {};
   boost::system::error_code error;
   const auto local = boost::asio::ip::make_address(address.host, error);
   if (!error && local.is_multicast()) return {};

@@ -36,6 +36,9 @@ struct BytePortAddress {
   std::string host = {};
   std::uint16_t port = 10110;
   std::string senders = {};  ///< UDP: take datagrams of these addresses and nets only (SenderFilter); empty: of any
+  /// UDP: other programs that ask for the same (SO_REUSEADDR) may listen at the port, too. All of them get what is
+  /// broadcast; what is sent to this machine alone only the last one that came gets.
+  bool is_port_shared = false;
 
   /// File: from its beginning to its end, once. Otherwise from the first line that is appended to it, without end,
   /// also when it is truncated or replaced. A named pipe is always read without end, by any number of writers.
@@ -48,7 +51,7 @@ struct BytePortAddress {
 std::string describe(const BytePortAddress& address);
 
 /// The identity of a port that cannot be open twice: a serial port's device file behind its links, a UDP port that is
-/// not a multicast group's. Empty: others may open it, too.
+/// neither shared nor a multicast group's. Empty: others may open it, too.
 std::string sole_device_of(const BytePortAddress& address);
 
 enum class ByteStatus : std::uint8_t {
@@ -89,7 +92,8 @@ class BytePort {
   /// Sends all of it (serial and TCP). False: the port is lost, takes nothing for a second, or cannot be written to.
   virtual bool write(std::span<const std::uint8_t> bytes) = 0;
 
-  /// Ends a read(), write() or open() that waits and makes all later work end at once.
+  /// Ends a read(), write() or open() that waits and makes all later work end at once. What a port takes without a wait
+  /// can still be written: a last word to the device.
   virtual void interrupt() noexcept = 0;
 };
 

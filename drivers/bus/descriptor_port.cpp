@@ -31,13 +31,13 @@ ByteArrival DescriptorPort::read(std::span<std::uint8_t> buffer, Nanoseconds tim
 bool DescriptorPort::write(std::span<const std::uint8_t> bytes) {
   while (!bytes.empty()) {
     if (descriptor() < 0) return false;
-    if (interruption_.wait(descriptor(), WaitFor::kWritable, kWritePatience) != WaitEnd::kReady) return false;
     const ssize_t size = ::write(descriptor(), bytes.data(), bytes.size());
     if (size > 0) {
       bytes = bytes.subspan(static_cast<std::size_t>(size));
-    } else if (errno != EAGAIN && errno != EINTR) {
-      return false;
+      continue;
     }
+    if (errno != EAGAIN && errno != EINTR) return false;
+    if (interruption_.wait(descriptor(), WaitFor::kWritable, kWritePatience) != WaitEnd::kReady) return false;
   }
   return true;
 }

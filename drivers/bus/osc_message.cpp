@@ -18,7 +18,8 @@ using OscBytes = std::span<const std::uint8_t>;
 
 /// "#bundle", a time of 8 bytes, and then elements: their size in 4 bytes, and that many of a message or a bundle.
 constexpr std::array<std::uint8_t, 8> kBundleMark = {'#', 'b', 'u', 'n', 'd', 'l', 'e', 0};
-constexpr std::size_t kBundleHead = 16;
+constexpr std::size_t kTimeTag = 8;
+constexpr std::size_t kBundleHead = kBundleMark.size() + kTimeTag;
 constexpr std::size_t kElementHead = 4;
 /// The deepest nesting of bundles that is accepted.
 constexpr int kDeepestBundle = 8;
@@ -57,13 +58,30 @@ std::optional<double> osc_number(char type, const void* argument) {
   return std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
+/// Of 8 bytes: seconds, and a fraction of one, as NTP counts them.
+std::optional<UtcTime> osc_time(OscBytes tag) {
+  constexpr std::uint64_t kAtOnce = 1;
+  constexpr std::int64_t kFrom1900To1970_s = 2'208'988'800;
+  constexpr std::int64_t kFrom1900To2036_s = std::int64_t{1} << 32U;
+  constexpr std::uint64_t kNanosecondsPerSecond = 1'000'000'000;
+  std::uint64_t number = 0;
+  for (const std::uint8_t byte : tag) number = number << 8U | byte;
+  if (number <= kAtOnce) return std::nullopt;
+  const auto counted_s = static_cast<std::int64_t>(number >> 32U);
+  const bool is_before_2036 = number >> 63U != 0;
+  const std::int64_t since_1970_s = counted_s - kFrom1900To1970_s + (is_before_2036 ? 0 : kFrom1900To2036_s);
+  const std::uint64_t fraction_ns = ((number & 0xffff'ffffU) * kNanosecondsPerSecond) >> 32U;
+  return UtcTime(std::chrono::seconds(since_1970_s) + Nanoseconds(static_cast<std::int64_t>(fraction_ns)));
+}
+
 /// Appends the message. False: it is invalid.
-bool take_message(OscBytes bytes, std::vector<OscMessage>& messages) {
+bool take_message(OscBytes bytes, std::optional<UtcTime> meant_for, std::vector<OscMessage>& messages) {
   // liblo converts the byte order in place.
   std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
   const LibloMessage message(lo_message_deserialise(copy.data(), copy.size(), nullptr));
   if (!message) return false;
   OscMessage& taken = messages.emplace_back();
+  taken.meant_for = meant_for;
   taken.address.assign(copy.begin(), std::ranges::find(copy, std::uint8_t{0}));
   const char* const types = lo_message_get_types(message.get());
   lo_arg** const arguments = lo_message_get_argv(message.get());
@@ -72,19 +90,21 @@ bool take_message(OscBytes bytes, std::vector<OscMessage>& messages) {
   return true;
 }
 
-/// Appends what is in it: a message, or a bundle `depth` bundles deep. False: any of it is neither.
-bool take_element(OscBytes bytes, int depth, std::vector<OscMessage>& messages) {
+/// Appends what is in it: a message, or a bundle `depth` bundles deep, in bundles for `meant_for`. False: any of it is
+/// neither.
+bool take_element(OscBytes bytes, int depth, std::optional<UtcTime> meant_for, std::vector<OscMessage>& messages) {
   const bool is_bundle =
       bytes.size() >= kBundleMark.size() && std::equal(kBundleMark.begin(), kBundleMark.end(), bytes.begin());
-  if (!is_bundle) return !bytes.empty() && take_message(bytes, messages);
+  if (!is_bundle) return !bytes.empty() && take_message(bytes, meant_for, messages);
   if (bytes.size() < kBundleHead || depth >= kDeepestBundle) return false;
+  meant_for = std::max(meant_for, osc_time(bytes.subspan(kBundleMark.size(), kTimeTag)));
   bytes = bytes.subspan(kBundleHead);
   while (!bytes.empty()) {
     if (bytes.size() < kElementHead) return false;
     const std::size_t size =
         std::size_t{bytes[0]} << 24U | std::size_t{bytes[1]} << 16U | std::size_t{bytes[2]} << 8U | bytes[3];
     bytes = bytes.subspan(kElementHead);
-    if (size > bytes.size() || !take_element(bytes.first(size), depth + 1, messages)) return false;
+    if (size > bytes.size() || !take_element(bytes.first(size), depth + 1, meant_for, messages)) return false;
     bytes = bytes.subspan(size);
   }
   return true;
@@ -95,7 +115,7 @@ bool take_element(OscBytes bytes, int depth, std::vector<OscMessage>& messages) 
 Result<std::vector<OscMessage>, decode::Refusal> decode_osc(OscBytes datagram) {
   if (datagram.empty()) return decode::Refusal::kTooShort;
   std::vector<OscMessage> messages;
-  if (!take_element(datagram, 0, messages)) return decode::Refusal::kMalformed;
+  if (!take_element(datagram, 0, std::nullopt, messages)) return decode::Refusal::kMalformed;
   return messages;
 }
 

@@ -124,13 +124,12 @@ class UdpBytePort final : public DescriptorPort {
     const int yes = 1;
     setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RXQ_OVFL, &yes, sizeof yes);  // without it nothing is counted
     dropped_ = 0;
-    if (!local.is_multicast()) {
-      // Not shared: the last one to bind would get everything, and the others nothing, without an error.
-      socket_.bind(endpoint, error);
-      return error;
-    }
-    if (socket_.set_option(udp::socket::reuse_address(true), error) || socket_.bind(endpoint, error)) return error;
-    socket_.set_option(ip::multicast::join_group(local), error);
+    // Not shared unless that is asked for: the last one to bind would get all that is sent to this machine alone, and
+    // the others nothing, without an error.
+    const bool is_shared = local.is_multicast() || address().is_port_shared;
+    if (is_shared && socket_.set_option(udp::socket::reuse_address(true), error)) return error;
+    if (socket_.bind(endpoint, error)) return error;
+    if (local.is_multicast()) socket_.set_option(ip::multicast::join_group(local), error);
     return error;
   }
 

@@ -40,6 +40,7 @@ class AcuriteStation final : public HidStation {
     if (first == last_) return wait_for_news(next, begin);
     const auto wind = decode::hid::decode_acurite(first.span());
     if (wind && exchange.publish(*wind)) {
+      exchange.publish(decode::hid::decode_acurite_quantities(first.span()));
       failures_ = 0;
       last_ = first;
       last_new_ = begin;

@@ -30,7 +30,9 @@ class Te923Station final : public HidStation {
 
     if (size_ == 0)
       return fail(exchange, decode::Refusal::kTimeout, "does not reply: check the console's power and its cable");
-    const auto wind = decode::hid::decode_te923(decode::ByteSpan(block_).first(size_));
+    const auto block = decode::ByteSpan(block_).first(size_);
+    exchange.publish(decode::hid::decode_te923_quantities(block));
+    const auto wind = decode::hid::decode_te923(block);
     if (wind && exchange.publish(*wind)) {
       failures_ = 0;
       return StationStep::well(begin + timing_.interval_or(kTe923Every));

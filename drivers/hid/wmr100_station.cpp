@@ -38,6 +38,7 @@ class Wmr100Station final : public HidStation {
  private:
   /// A frame ended.
   void judge(const Result<decode::DecodedWind, decode::Refusal>& frame, HidExchange& exchange, StationStep& step) {
+    exchange.publish(decode::hid::decode_wmr100_quantities(decode::hid::ended_wmr100_frame(stream_)));
     if (frame || frame.error() == decode::Refusal::kNotMine) received_at_ = step.next;
     if (!frame) {
       exchange.refuse(frame.error());

@@ -51,6 +51,7 @@ class Wmr300Station final : public HidStation {
     }
 
     const auto acknowledgement = decode::hid::encode_wmr300_acknowledgement(packet);
+    exchange.publish(decode::hid::decode_wmr300_quantities(packet));
     const auto wind = decode::hid::decode_wmr300(packet);
     if (is_sound) data_ = step.next;
     if (!wind) {

@@ -99,6 +99,13 @@ void MicrophoneSensor::take(const decode::microphone::MicBlock& block, const Ins
     return;
   }
   sink.refused(estimate.error());
+  if (const auto& twins = estimator_->twins()) {
+    return report_unusable(
+        sink,
+        fmt::format("{}: channels {} and {} carry the same signal, as a mono input does that is opened as stereo: set "
+                    "channels = 1, or choose the input that has all microphones (`yuragi mic-worker --list`)",
+                    hello_->device, (*twins)[0] + 1, (*twins)[1] + 1));
+  }
   report_unusable(sink, fmt::format("{}: {}", hello_->device,
                                     estimate.error() == decode::Refusal::kImplausible
                                         ? "noise at full scale, which is not wind: check cable, plug and sample format"

@@ -188,6 +188,24 @@ std::vector<sensor::DeviceClaim> modbus_claims(const ParameterValues& values) {
   return claims;
 }
 
+/// Every profile that can be found by name. One that cannot be read says why.
+std::vector<sensor::KnownDevice> known_modbus_devices() {
+  std::vector<sensor::KnownDevice> devices;
+  for (const std::string& name : modbus_profile_names("")) {
+    try {
+      const ModbusProfile profile = load_modbus_profile(name, "");
+      sensor::KnownDevice device = {.name = name, .device = profile.name, .unconfirmed = profile.unconfirmed};
+      for (const ProfileEvidence evidence : profile.confirmed_by) {
+        device.confirmed_by.push_back(kProfileEvidenceNames.at(static_cast<std::size_t>(evidence)));
+      }
+      devices.push_back(std::move(device));
+    } catch (const std::runtime_error& error) {
+      devices.push_back({.name = name, .device = "a profile that cannot be read", .unconfirmed = error.what()});
+    }
+  }
+  return devices;
+}
+
 /// Any serial port may have a Modbus line behind it: `yuragi sensors probe modbus` finds out.
 std::vector<sensor::FoundDevice> find_modbus() {
   std::vector<sensor::FoundDevice> found;
@@ -209,6 +227,7 @@ const sensor::DriverDescription kModbusDriver{
     .parameters = kModbusParameters,
     .open = open_modbus,
     .find = find_modbus,
-    .claims = modbus_claims};
+    .claims = modbus_claims,
+    .known_devices = known_modbus_devices};
 
 }  // namespace yuragi::drivers::modbus

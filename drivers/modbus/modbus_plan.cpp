@@ -7,24 +7,21 @@ namespace yuragi::drivers::modbus {
 namespace {
 
 ModbusRead read_of(const ModbusProfile& profile, ModbusMeasure measure) {
-  const decode::modbus::ModbusQuantity& quantity = quantity_of(profile, measure);
-  return {.request = {.transaction = 0,
-                      .unit = quantity.slave,
-                      .function = quantity.function,
-                      .address = quantity.address,
-                      .count = static_cast<std::uint16_t>(decode::modbus::register_count(quantity.type))},
-          .measures = {measure}};
+  return {.request = request_for(quantity_of(profile, measure)), .measures = {measure}, .stations = {}};
+}
+
+bool has_side_effect(const ModbusProfile& profile, const ModbusRead& read) {
+  return std::ranges::any_of(
+             read.measures,
+             [&](ModbusMeasure measure) { return quantity_of(profile, measure).read_has_side_effect; }) ||
+         std::ranges::any_of(read.stations,
+                             [&](std::size_t i) { return profile.quantities[i].quantity.read_has_side_effect; });
 }
 
 /// One read instead of two, if possible.
 std::optional<ModbusRead> merged(const ModbusProfile& profile, const ModbusRead& one, const ModbusRead& other) {
-  const auto has_side_effect = [&profile](ModbusMeasure measure) {
-    return quantity_of(profile, measure).read_has_side_effect;
-  };
   if (one.request.unit != other.request.unit || one.request.function != other.request.function) return std::nullopt;
-  if (std::ranges::any_of(one.measures, has_side_effect) || std::ranges::any_of(other.measures, has_side_effect)) {
-    return std::nullopt;
-  }
+  if (has_side_effect(profile, one) || has_side_effect(profile, other)) return std::nullopt;
 
   // Registers from the first to the last of both, and how many of them are not needed.
   const int begin = std::min(one.request.address, other.request.address);
@@ -37,6 +34,7 @@ std::optional<ModbusRead> merged(const ModbusProfile& profile, const ModbusRead&
   read.request.address = static_cast<std::uint16_t>(begin);
   read.request.count = static_cast<std::uint16_t>(count);
   read.measures.insert(read.measures.end(), other.measures.begin(), other.measures.end());
+  read.stations.insert(read.stations.end(), other.stations.begin(), other.stations.end());
   return read;
 }
 
@@ -64,10 +62,22 @@ std::vector<ModbusRead> plan_modbus_reads(const ModbusProfile& profile, bool is_
   std::vector<ModbusRead> reads = {read_of(profile, ModbusMeasure::kSpeed)};
   if (profile.direction && !is_direction_apart) reads.push_back(read_of(profile, ModbusMeasure::kDirection));
   if (profile.gust) reads.push_back(read_of(profile, ModbusMeasure::kGust));
+  for (std::size_t i = 0; i < profile.quantities.size(); ++i) {
+    reads.push_back({.request = request_for(profile.quantities[i].quantity), .measures = {}, .stations = {i}});
+  }
   while (profile.block_read && merge_two(profile, reads)) {
   }
   if (profile.direction && is_direction_apart) reads.push_back(read_of(profile, ModbusMeasure::kDirection));
+  std::stable_partition(reads.begin(), reads.end(), [](const ModbusRead& read) { return read.has_wind(); });
   return reads;
+}
+
+decode::modbus::ModbusRequest request_for(const decode::modbus::ModbusQuantity& quantity) {
+  return {.transaction = 0,
+          .unit = quantity.slave,
+          .function = quantity.function,
+          .address = quantity.address,
+          .count = static_cast<std::uint16_t>(decode::modbus::register_count(quantity.type))};
 }
 
 const decode::modbus::ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure) {

@@ -15,14 +15,21 @@ enum class ModbusMeasure : std::uint8_t { kSpeed, kDirection, kGust };
 struct ModbusRead {
   decode::modbus::ModbusRequest request;
   std::vector<ModbusMeasure> measures;
+  std::vector<std::size_t> stations;  ///< which of ModbusProfile::quantities
 
   bool contains(ModbusMeasure measure) const;
+  /// Does it bring something of the wind, and not only other quantities?
+  bool has_wind() const { return !measures.empty(); }
 };
 
-/// The requests that read all quantities of a profile, the speed first: as few as the profile allows, so that
-/// adjoining registers of one slave are read together, and those whose reading has side effects alone.
+/// The requests that read all quantities of a profile, the speed first, those without any wind last: as few as the
+/// profile allows, so that adjoining registers of one slave are read together, and those whose reading has side effects
+/// alone.
 /// `is_direction_apart`: the direction is on a line of its own.
 std::vector<ModbusRead> plan_modbus_reads(const ModbusProfile& profile, bool is_direction_apart = false);
+
+/// The request that reads this quantity alone.
+decode::modbus::ModbusRequest request_for(const decode::modbus::ModbusQuantity& quantity);
 
 /// The quantity of `measure` in the profile, which must have it.
 const decode::modbus::ModbusQuantity& quantity_of(const ModbusProfile& profile, ModbusMeasure measure);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -21,18 +22,52 @@ constexpr Nanoseconds kProbeQuiet = std::chrono::milliseconds(20);
 constexpr std::array kKnocks = {decode::modbus::ModbusRequest{.function = 3, .address = 0, .count = 1},
                                 decode::modbus::ModbusRequest{.function = 4, .address = 0, .count = 1}};
 
+/// Below this a value counts as 0: a float that is read in a wrong order of words can be 1e-40.
+constexpr double kLeastLive = 0.005;
+
+/// From so many m/s on the wind has 1, 2, ... 12 Beaufort (WMO No. 306, code table 1100).
+constexpr std::array kBeaufortFrom_m_s = {0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7};
+
 bool has_side_effects(const ModbusProfile& profile) {
   return profile.speed.read_has_side_effect || (profile.direction && profile.direction->read_has_side_effect) ||
-         (profile.gust && profile.gust->read_has_side_effect);
+         (profile.gust && profile.gust->read_has_side_effect) ||
+         std::ranges::any_of(profile.quantities, [](const ModbusStationQuantity& station) {
+           return station.quantity.read_has_side_effect;
+         });
+}
+
+/// The device's own force, and what it says of the speed. Devices round, and average, in ways of their own.
+void judge_by_force(const ModbusProfile& profile, const Registers& reply, ModbusFit& fit) {
+  if (!reply || !fit.speed_m_s) return;
+  const auto force = decode::modbus::decode_number(*profile.beaufort, reply->span());
+  if (!force || *force < 0.0 || *force > static_cast<double>(kBeaufortFrom_m_s.size())) return;
+  fit.beaufort = *force;
+  if (*force == 0.0) return;  // a calm, or a register that is never written
+  const auto reached =
+      std::ranges::count_if(kBeaufortFrom_m_s, [&fit](double from_m_s) { return *fit.speed_m_s >= from_m_s; });
+  const bool agrees = std::abs(static_cast<double>(reached) - *force) <= 1.0;
+  fit.verdict = agrees ? ForceVerdict::kAgrees : ForceVerdict::kContradicts;
+}
+
+/// Do both read the same register as a speed, and something else in it?
+bool differ_in_scale(const ModbusProfile& one, const ModbusProfile& other) {
+  const auto place = [](const decode::modbus::ModbusQuantity& speed) {
+    return std::tuple(speed.function, speed.address, speed.type, speed.order);
+  };
+  const auto meaning = [](const decode::modbus::ModbusQuantity& speed) {
+    return std::tuple(speed.scale, speed.offset, speed.unit);
+  };
+  return place(one.speed) == place(other.speed) && meaning(one.speed) != meaning(other.speed);
 }
 
 bool has_one_slave(const ModbusProfile& profile) {
   return !profile.direction || profile.direction->slave == profile.speed.slave;
 }
 
+/// Stop bits make no difference here: whoever sends two is heard by those who expect one, and the other way round.
 bool is_home_of(const bus::ModbusLine& line, const ModbusProfile& profile) {
   return line.framing == decode::modbus::ModbusFraming::kTcp ||
-         (line.baud == profile.baud && line.parity == profile.parity && line.stop_bits == profile.stop_bits);
+         (line.baud == profile.baud && line.parity == profile.parity);
 }
 
 /// One open line. Replies are cached, so that nothing is requested twice.
@@ -117,13 +152,26 @@ std::optional<ModbusFit> fit_of(const std::string& name, const ModbusProfile& pr
                 .speed_m_s = {},
                 .direction_deg = {},
                 .gust_m_s = {},
+                .beaufort = {},
                 .speed_slave = profile.speed.slave,
                 .direction_slave = {}};
   if (profile.direction) fit.direction_slave = profile.direction->slave;
   for (const ModbusRead& read : reads) {
+    if (!read.has_wind()) continue;
     const Registers registers = line.cached_exchange(read.request);
     if (!registers || !take(profile, read, *registers, fit)) return std::nullopt;
   }
+  if (profile.beaufort) judge_by_force(profile, line.cached_exchange(request_for(*profile.beaufort)), fit);
+  return fit;
+}
+
+/// The reading of a pair's cup, if it had this id and its vane were elsewhere.
+std::optional<ModbusFit> cup_fit_of(const NamedModbusProfile& named, std::uint8_t id, ProbedLine& line) {
+  ModbusProfile profile = named.profile;
+  profile.direction.reset();
+  set_slave(profile, id);
+  auto fit = fit_of(named.name, profile, plan_modbus_reads(profile), line);
+  if (fit) fit->direction_slave = named.profile.direction->slave;
   return fit;
 }
 
@@ -169,21 +217,42 @@ std::vector<ModbusFit> fits_of(std::uint8_t id, const bus::ModbusLine& settings,
     fits.push_back(*std::move(fit));
   }
 
-  // No fit: it may be the vane of a pair whose cup is elsewhere.
-  const bool may_be_vane = fits.empty();
+  // No fit: it may be one half of a pair whose other half is elsewhere.
+  const bool may_be_half = fits.empty();
   for (const NamedModbusProfile& named : plan.profiles) {
-    if (!may_be_vane || has_side_effects(named.profile) || has_one_slave(named.profile)) continue;
+    if (!may_be_half || has_side_effects(named.profile) || has_one_slave(named.profile)) continue;
+    if (auto fit = cup_fit_of(named, id, line)) fits.push_back(*std::move(fit));
     if (auto fit = vane_fit_of(named, id, line)) fits.push_back(*std::move(fit));
   }
 
-  // The fits with the most quantities come first, and among them those with factory settings.
   std::ranges::stable_sort(fits, std::greater<>(), [](const ModbusFit& fit) {
-    return std::tuple(fit.direction_deg.has_value(), fit.gust_m_s.has_value(), fit.is_at_home);
+    return std::tuple(is_live(fit), fit.verdict != ForceVerdict::kContradicts, fit.direction_deg.has_value(),
+                      fit.gust_m_s.has_value(), fit.is_at_home);
   });
   return fits;
 }
 
+/// ModbusHit::scale_doubts.
+std::vector<std::string> scale_doubts_of(const std::vector<ModbusFit>& fits, const ModbusProbePlan& plan) {
+  if (fits.empty() || !fits.front().speed_m_s || fits.front().verdict == ForceVerdict::kAgrees) return {};
+  const auto profile_of = [&plan](const ModbusFit& fit) -> const ModbusProfile& {
+    return std::ranges::find(plan.profiles, fit.profile, &NamedModbusProfile::name)->profile;
+  };
+  std::vector<std::string> doubts = {fits.front().profile};
+  for (const ModbusFit& fit : std::span(fits).subspan(1)) {
+    const bool is_possible = fit.speed_m_s && fit.verdict != ForceVerdict::kContradicts;
+    if (is_possible && differ_in_scale(profile_of(fits.front()), profile_of(fit))) doubts.push_back(fit.profile);
+  }
+  if (doubts.size() == 1) doubts.clear();
+  return doubts;
+}
+
 }  // namespace
+
+bool is_live(const ModbusFit& fit) {
+  return std::max({fit.speed_m_s.value_or(0.0), fit.direction_deg.value_or(0.0), fit.gust_m_s.value_or(0.0)}) >=
+         kLeastLive;
+}
 
 Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbeProgress& progress,
                                   const ModbusProbeFound& found, const bus::Interruption& interruption) {
@@ -198,7 +267,9 @@ Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbe
       progress(settings, id, done++ / all);
       if (!replies_at_all(id, settings, plan, line)) continue;
       ++hits;
-      found({.line = settings, .id = id, .fits = fits_of(id, settings, plan, line, interruption)});
+      auto fits = fits_of(id, settings, plan, line, interruption);
+      auto doubts = scale_doubts_of(fits, plan);
+      found({.line = settings, .id = id, .fits = std::move(fits), .scale_doubts = std::move(doubts)});
     }
     if (hits > 0 && !plan.tries_all_lines) break;
   }

@@ -27,24 +27,42 @@ struct ModbusProbePlan {
   bool tries_all_lines = false;  ///< continue after a line on which a slave replied
 };
 
+/// What the device's own wind force says of the speed that a profile reads.
+enum class ForceVerdict : std::uint8_t {
+  kNone,         ///< there is none, or it is 0: nothing can be said
+  kAgrees,       ///< they are the same, to within one Beaufort
+  kContradicts,  ///< the profile's scale is wrong
+};
+
 /// A profile for whose registers a device replies with plausible values.
 struct ModbusFit {
   std::string profile;  ///< by the name that a configuration uses
   std::string device;
   std::optional<double> speed_m_s;  ///< empty: only the vane of a pair
+  /// Empty beside a `direction_slave`: only the cup of a pair, or no direction at present.
   std::optional<double> direction_deg;
   std::optional<double> gust_m_s;
+  std::optional<double> beaufort;  ///< the device's own wind force
+  ForceVerdict verdict = ForceVerdict::kNone;
   std::uint8_t speed_slave = 1;
   std::optional<std::uint8_t> direction_slave;
   bool is_at_home = false;  ///< line settings and ids are those of the profile itself
 };
 
+/// Is anything but 0 in it? A profile of another device often reads zeros.
+bool is_live(const ModbusFit& fit);
+
 /// A slave that replied.
 struct ModbusHit {
   bus::ModbusLine line;
   std::uint8_t id = 0;
-  std::vector<ModbusFit>
-      fits;  ///< the best first; none: a device that no profile knows. Vanes only where nothing else fits
+  /// The best first: those that read anything but zeros, those that the device's own wind force does not contradict,
+  /// those with most quantities, those with factory settings. None: a device that no profile knows. One half of a pair
+  /// only where nothing else fits.
+  std::vector<ModbusFit> fits;
+  /// The best of them and these read the same register with different scales, and the device says nothing by which to
+  /// tell who is right: the names of the profiles, the best one's first. Empty: there is no such doubt.
+  std::vector<std::string> scale_doubts;
 };
 
 /// Called with the progress: what is about to be tried, and the part of all that is done, 0 to 1.

@@ -79,6 +79,22 @@ class TableReader {
     return value;
   }
 
+  /// A list of texts, each of which is one of `choices`: which they are.
+  std::vector<std::size_t> choice_list(std::string_view key, std::span<const std::string_view> choices) {
+    std::string allowed = "a list of";
+    for (const std::string_view one : choices) allowed.append(" \"").append(one).append("\"");
+    const toml::node* node = take(key, false, allowed);
+    if (!node->is_array()) fail(key, "is not a list; allowed: " + allowed);
+    std::vector<std::size_t> chosen;
+    for (const toml::node& element : *node->as_array()) {
+      const auto* value = element.as_string();
+      const auto found = value != nullptr ? std::ranges::find(choices, value->get()) : choices.end();
+      if (found == choices.end()) fail(key, "holds something else; allowed: " + allowed);
+      chosen.push_back(static_cast<std::size_t>(found - choices.begin()));
+    }
+    return chosen;
+  }
+
   double number(std::string_view key, double min, double max, double fallback) {
     std::ostringstream allowed;
     allowed << "a finite number";
@@ -222,6 +238,33 @@ decode::modbus::ModbusQuantity read_direction(TableReader reader, std::int64_t a
   return direction;
 }
 
+/// A number without a unit, or whose name tells it.
+decode::modbus::ModbusQuantity read_number(TableReader reader, std::int64_t address_base) {
+  decode::modbus::ModbusQuantity quantity = read_quantity(reader, address_base);
+  reader.finish();
+  return quantity;
+}
+
+/// The tables [quantities.NAME].
+void read_station_quantities(TableReader reader, std::int64_t address_base, ModbusProfile& profile) {
+  for (const wind::StationQuantity& what : wind::kStationQuantities) {
+    const bool is_there = reader.has(what.name);
+    TableReader table = reader.table(what.name, false);
+    if (is_there) profile.quantities.push_back({what, read_number(std::move(table), address_base)});
+  }
+  reader.finish();
+}
+
+void read_evidence(TableReader& reader, ModbusProfile& profile) {
+  for (const std::size_t index : reader.choice_list("confirmed_by", kProfileEvidenceNames)) {
+    profile.confirmed_by.push_back(static_cast<ProfileEvidence>(index));
+  }
+  profile.unconfirmed = reader.text("unconfirmed");
+  if (profile.confirmed_by.empty() && profile.unconfirmed.empty()) {
+    reader.fail("unconfirmed", "is empty, and nobody confirms the profile; allowed: a text that says what is open");
+  }
+}
+
 void read_serial(TableReader reader, ModbusProfile& profile) {
   static constexpr std::string_view kParities[] = {"none", "even", "odd"};
   profile.baud = static_cast<int>(reader.whole_among("baud", kModbusBauds, profile.baud));
@@ -237,6 +280,7 @@ void read_timing(TableReader reader, ModbusProfile& profile) {
   profile.byte_timeout = reader.duration("byte_timeout_s", 0.001, 1.0, profile.byte_timeout);
   profile.delay_after_open = reader.duration("delay_after_open_s", 0.0, 60.0, profile.delay_after_open);
   profile.warm_up = reader.duration("warm_up_s", 0.0, 600.0, profile.warm_up);
+  profile.quantities_interval = reader.duration("quantities_interval_s", 1.0, 3600.0, profile.quantities_interval);
   reader.finish();
 }
 
@@ -257,6 +301,7 @@ ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file)
   ModbusProfile profile;
   profile.name = reader.text("name");
   profile.source = reader.text("source");
+  read_evidence(reader, profile);
   profile.revision = reader.text("revision", "");
 
   static constexpr std::string_view kTransports[] = {"rtu", "tcp"};
@@ -278,6 +323,10 @@ ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file)
   const bool has_gust = reader.has("gust");
   TableReader gust = reader.table("gust", false);
   if (has_gust) profile.gust = read_speed(std::move(gust), address_base);
+  const bool has_beaufort = reader.has("beaufort");
+  TableReader beaufort = reader.table("beaufort", false);
+  if (has_beaufort) profile.beaufort = read_number(std::move(beaufort), address_base);
+  read_station_quantities(reader.table("quantities", false), address_base, profile);
   reader.finish();
   return profile;
 }
@@ -286,6 +335,10 @@ void set_slave(ModbusProfile& profile, std::uint8_t id) {
   const std::uint8_t before = std::exchange(profile.speed.slave, id);
   if (profile.direction && profile.direction->slave == before) profile.direction->slave = id;
   if (profile.gust && profile.gust->slave == before) profile.gust->slave = id;
+  if (profile.beaufort && profile.beaufort->slave == before) profile.beaufort->slave = id;
+  for (ModbusStationQuantity& station : profile.quantities) {
+    if (station.quantity.slave == before) station.quantity.slave = id;
+  }
 }
 
 }  // namespace yuragi::drivers::modbus

@@ -9,18 +9,32 @@
 
 #include "drivers/decode/modbus/modbus_quantity.hpp"
 #include "engine/base/time.hpp"
+#include "engine/wind/station_quantities.hpp"
 
 namespace yuragi::drivers::modbus {
 
 /// The rates that a serial line may have, bit/s.
 inline constexpr std::array<std::int64_t, 8> kModbusBauds = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 
+/// Who says that a register map is right, from strong to weak: bytes that a real device sent, the maker's own document,
+/// a program that its users run with the device, a seller's text. The texts are those of profiles; drivers/SOURCES.md.
+enum class ProfileEvidence : std::uint8_t { kRecording, kMaker, kDecoder, kSeller };
+inline constexpr std::array<std::string_view, 4> kProfileEvidenceNames = {"recording", "maker", "decoder", "seller"};
+
+/// A quantity besides the wind, and where the device has it.
+struct ModbusStationQuantity {
+  wind::StationQuantity what{};  ///< one of wind::kStationQuantities
+  decode::modbus::ModbusQuantity quantity;
+};
+
 /// A device's register map and request timing: one TOML file in drivers/modbus/profiles.
 /// drivers/modbus/profiles/README.md lists the keys, drivers/SOURCES.md S1 the devices and their documents.
 struct ModbusProfile {
-  std::string name;      ///< of the device, for people
-  std::string source;    ///< the document with its register map
-  std::string revision;  ///< of the device or its firmware, where the map differs among them
+  std::string name;    ///< of the device, for people
+  std::string source;  ///< the document with its register map
+  std::vector<ProfileEvidence> confirmed_by;
+  std::string unconfirmed;  ///< what nobody confirms, for people; empty: nothing
+  std::string revision;     ///< of the device or its firmware, where the map differs among them
 
   bool is_serial = true;  ///< its native transport; a serial device can also be reached over TCP, through a gateway
   int baud = 9600;
@@ -33,6 +47,7 @@ struct ModbusProfile {
   Nanoseconds byte_timeout = std::chrono::milliseconds(50);       ///< serial line: silence that ends a message
   Nanoseconds delay_after_open{0};                                ///< from opening to the first request
   Nanoseconds warm_up{0};                                         ///< from opening until readings are valid
+  Nanoseconds quantities_interval = std::chrono::seconds(10);     ///< between two looks at `quantities`
 
   bool block_read = true;         ///< registers that adjoin may be read by one request
   int block_gap = 0;              ///< so many registers between two quantities may be read along with them
@@ -41,6 +56,10 @@ struct ModbusProfile {
   decode::modbus::ModbusQuantity speed;
   std::optional<decode::modbus::ModbusQuantity> direction;
   std::optional<decode::modbus::ModbusQuantity> gust;  ///< the device's own gust: its strongest recent speed
+  /// The wind force that the device itself makes of its speed, in Beaufort: not read in service, but probing judges the
+  /// speed's scale by it.
+  std::optional<decode::modbus::ModbusQuantity> beaufort;
+  std::vector<ModbusStationQuantity> quantities;
 };
 
 /// Reads a profile's text. Throws std::runtime_error "file:line:column: key: what is wrong, what is allowed"; `file` is

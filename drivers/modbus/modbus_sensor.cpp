@@ -11,6 +11,8 @@ namespace {
 
 constexpr Nanoseconds kFirstSlaveWait = std::chrono::milliseconds(250);
 constexpr Nanoseconds kLongestSlaveWait = std::chrono::seconds(10);
+/// For what is recorded only, so that a device without it is hardly asked for it.
+constexpr Nanoseconds kLongestQuantitiesWait = std::chrono::minutes(10);
 
 /// Does a gateway report that a slave does not reply?
 bool is_silence_by_proxy(const ModbusTrouble& trouble) {
@@ -19,7 +21,12 @@ bool is_silence_by_proxy(const ModbusTrouble& trouble) {
 }
 
 /// "without direction and gust", for the quantities of this read.
-std::string without(const ModbusRead& read) {
+std::string without(const ModbusProfile& profile, const ModbusRead& read) {
+  if (!read.has_wind()) {
+    std::vector<std::string_view> names;
+    for (const std::size_t station : read.stations) names.push_back(profile.quantities[station].what.name);
+    return fmt::format("without {}", fmt::join(names, " and "));
+  }
   const bool has_direction = read.contains(ModbusMeasure::kDirection);
   const bool has_gust = read.contains(ModbusMeasure::kGust);
   return fmt::format("without {}{}{}", has_direction ? "direction" : "", has_direction && has_gust ? " and " : "",
@@ -38,11 +45,14 @@ ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus
   for (const ModbusRead& what : plan_modbus_reads(profile_, is_direction_apart)) {
     ModbusBus* const line =
         is_direction_apart && what.contains(ModbusMeasure::kDirection) ? direction_bus_.get() : bus_.get();
-    reads_.push_back({.what = what,
-                      .bus = line,
-                      .backoff = bus::Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed),
-                      .trouble = {}});
+    const bus::Backoff backoff =
+        what.has_wind() ? bus::Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed)
+                        : bus::Backoff(profile_.quantities_interval,
+                                       std::max(profile_.quantities_interval, kLongestQuantitiesWait), ++seed);
+    reads_.push_back({.what = what, .bus = line, .backoff = backoff, .trouble = {}});
   }
+  wind_reads_ =
+      static_cast<std::size_t>(std::ranges::count_if(reads_, [](const Read& read) { return read.what.has_wind(); }));
   bus_->keep_gap(profile_.min_gap);
   direction_bus_->keep_gap(profile_.min_gap);
 }
@@ -64,7 +74,7 @@ Result<MonoTime, Failure> ModbusSensor::open(const sensor::Clock& clock) {
 Result<MonoTime, Failure> ModbusSensor::work(const sensor::Clock& clock, sensor::SensorSink& sink) {
   if (step_ > 0) {
     read_more(reads_[step_], clock, sink);
-    return go_on(clock.now().mono, sink);
+    return go_on(clock.now(), sink);
   }
   // The line may have been reopened since, by another sensor or after silence.
   const MonoTime opened_before = opened_at_;
@@ -103,14 +113,16 @@ Result<MonoTime, Failure> ModbusSensor::read_first(const sensor::Clock& clock, s
               .direction_deg = {},
               .gust_m_s = {},
               .quality = wind::ReadingQuality::kGood};
+  takes_quantities_ = !profile_.quantities.empty() && round_start_ >= quantities_due_;
+  quantities_ = {};
   take(read, *reply, sink);
-  return go_on(now.mono, sink);
+  return go_on(now, sink);
 }
 
 void ModbusSensor::read_more(Read& read, const sensor::Clock& clock, sensor::SensorSink& sink) {
   // The vane's own line, where it has one, is opened here; without it there is no direction.
   if (const auto opened = read.bus->open(interruption_, clock); !opened) {
-    read.trouble = without(read.what) + ": " + opened.error().message;
+    read.trouble = without(profile_, read.what) + ": " + opened.error().message;
     read.not_before = clock.now().mono + read.backoff.next();
     return;
   }
@@ -120,7 +132,7 @@ void ModbusSensor::read_more(Read& read, const sensor::Clock& clock, sensor::Sen
     take(read, *reply, sink);
     return;
   }
-  read.trouble = without(read.what) + ": " + explain(read, reply.error());
+  read.trouble = without(profile_, read.what) + ": " + explain(read, reply.error());
   read.not_before = clock.now().mono + read.backoff.next();
 }
 
@@ -130,19 +142,24 @@ ModbusBus::Reply ModbusSensor::exchange(const Read& read, const sensor::Clock& c
   return read.bus->exchange(read.what.request, patience, interruption_, clock, sink);
 }
 
-MonoTime ModbusSensor::go_on(MonoTime now, sensor::SensorSink& sink) {
-  // The reads that are due and have not been made in this round.
-  while (++step_ < reads_.size()) {
+MonoTime ModbusSensor::go_on(const Instant& now, sensor::SensorSink& sink) {
+  // The reads that are due and have not been made in this round. The wind does not wait for the rest.
+  for (++step_; step_ <= reads_.size(); ++step_) {
+    if (step_ == wind_reads_) publish_wind(sink);
+    if (step_ == reads_.size() || (step_ >= wind_reads_ && !takes_quantities_)) break;
     const Read& read = reads_[step_];
-    const bool is_due = now >= read.not_before && now >= read.bus->ready_at(read.what.request.unit);
-    if (is_due) return read.bus == bus_.get() ? now + profile_.min_gap : now;
+    const bool is_due = now.mono >= read.not_before && now.mono >= read.bus->ready_at(read.what.request.unit);
+    if (is_due) return read.bus == bus_.get() ? now.mono + profile_.min_gap : now.mono;
   }
-  step_ = 0;
+  return end_round(now, sink);
+}
 
-  // All values of the round are published together.
+/// All of the wind that came in this round, together.
+void ModbusSensor::publish_wind(sensor::SensorSink& sink) {
   if (reading_.time.mono < opened_at_ + profile_.warm_up) {
     report_connected(sink, profile_.name + " at " + bus_->where() + " is warming up");
-    return next_round(now);
+    takes_quantities_ = false;
+    return;
   }
   std::string detail = profile_.name + " at " + bus_->where();
   for (const Read& read : reads_) {
@@ -150,7 +167,16 @@ MonoTime ModbusSensor::go_on(MonoTime now, sensor::SensorSink& sink) {
   }
   report_connected(sink, detail);
   sink.reading(reading_);
-  return next_round(now);
+}
+
+MonoTime ModbusSensor::end_round(const Instant& now, sensor::SensorSink& sink) {
+  step_ = 0;
+  if (takes_quantities_) {
+    quantities_due_ = round_start_ + profile_.quantities_interval;
+    quantities_.time = now;
+    if (const auto told = wind::plausible_part(quantities_)) sink.quantities(*told);
+  }
+  return next_round(now.mono);
 }
 
 MonoTime ModbusSensor::next_round(MonoTime now) const {
@@ -164,6 +190,10 @@ void ModbusSensor::take(Read& read, const decode::modbus::ModbusRegisters& regis
   };
   if (read.what.contains(ModbusMeasure::kDirection)) take_direction(read, part(*profile_.direction), sink);
   if (read.what.contains(ModbusMeasure::kGust)) take_gust(read, part(*profile_.gust), sink);
+  if (!takes_quantities_) return;
+  for (const std::size_t station : read.what.stations) {
+    take_station(profile_.quantities[station], part(profile_.quantities[station].quantity), sink);
+  }
 }
 
 void ModbusSensor::take_direction(Read& read, std::span<const std::uint16_t> registers, sensor::SensorSink& sink) {
@@ -187,6 +217,16 @@ void ModbusSensor::take_gust(Read& read, std::span<const std::uint16_t> register
     return;
   }
   reading_.gust_m_s = *gust_m_s;
+}
+
+void ModbusSensor::take_station(const ModbusStationQuantity& station, std::span<const std::uint16_t> registers,
+                                sensor::SensorSink& sink) {
+  const auto value = decode::modbus::decode_number(station.quantity, registers);
+  if (value) {
+    quantities_.*station.what.value = *value;
+  } else if (value.error() != decode::Refusal::kInvalid) {
+    sink.refused(value.error());
+  }
 }
 
 std::string ModbusSensor::explain(const Read& read, const ModbusTrouble& trouble) const {

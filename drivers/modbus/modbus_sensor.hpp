@@ -19,6 +19,10 @@ namespace yuragi::drivers::modbus {
 /// direction or gust it goes without. A slave that gives no valid reply (silence, damaged bytes, another
 /// protocol, an exception) gets fewer requests, so that it neither slows the others down nor is flooded itself: after
 /// waits that double from 0.25 s up to 10 s, until the next valid reply.
+///
+/// The station's other quantities are published once in the profile's `quantities_interval`. Those that stand beside
+/// the wind come along with it; the others are asked for in that round, after its wind has been published, and, where
+/// no valid reply comes, after waits that double up to 10 minutes.
 class ModbusSensor final : public sensor::ReopeningSensor {
  public:
   /// `direction_bus`: the vane's own line; nullptr where it is on the same. `seed` makes the waits of several sensors
@@ -48,24 +52,34 @@ class ModbusSensor final : public sensor::ReopeningSensor {
   void read_more(Read& read, const sensor::Clock& clock, sensor::SensorSink& sink);
   ModbusBus::Reply exchange(const Read& read, const sensor::Clock& clock, sensor::SensorSink& sink);
   /// The next read of this round that is due, or the end of the round.
-  MonoTime go_on(MonoTime now, sensor::SensorSink& sink);
+  MonoTime go_on(const Instant& now, sensor::SensorSink& sink);
+  void publish_wind(sensor::SensorSink& sink);
+  MonoTime end_round(const Instant& now, sensor::SensorSink& sink);
   MonoTime next_round(MonoTime now) const;
 
   void take(Read& read, const decode::modbus::ModbusRegisters& registers, sensor::SensorSink& sink);
   void take_direction(Read& read, std::span<const std::uint16_t> registers, sensor::SensorSink& sink);
   void take_gust(Read& read, std::span<const std::uint16_t> registers, sensor::SensorSink& sink);
+  /// A model without that instrument marks the value as none, which is no fault.
+  void take_station(const ModbusStationQuantity& station, std::span<const std::uint16_t> registers,
+                    sensor::SensorSink& sink);
   std::string explain(const Read& read, const ModbusTrouble& trouble) const;
 
   const ModbusProfile profile_;
   const std::shared_ptr<ModbusBus> bus_;
   const std::shared_ptr<ModbusBus> direction_bus_;
   bus::Interruption interruption_;
-  std::vector<Read> reads_;  ///< the first one reads the speed
+  std::vector<Read> reads_;     ///< the first one reads the speed
+  std::size_t wind_reads_ = 0;  ///< so many of them bring the wind; the others only other quantities
 
   MonoTime opened_at_{};
   MonoTime round_start_{};
   std::size_t step_ = 0;       ///< which of the reads is next
   wind::WindReading reading_;  ///< of the present round
+
+  MonoTime quantities_due_{};
+  bool takes_quantities_ = false;       ///< in the present round
+  wind::StationQuantities quantities_;  ///< of the present round
 };
 
 }  // namespace yuragi::drivers::modbus

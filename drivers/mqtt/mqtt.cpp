@@ -1,16 +1,6 @@
 // Wind that somebody publishes on an MQTT broker (OASIS, "MQTT Version 3.1.1", 2014): a home's weather station, a
 // gateway, a microcontroller. Speed, direction and gust may come in one JSON message or each on a topic of its own.
-// Common publishers have a preset, which single settings override:
-//
-//   preset     topic               speed                 direction           gust              unit
-//   number     (yours, one each)   the payload is the number                                   m/s
-//   tasmota    tele/+/SENSOR       /TX23/Speed/Act       /TX23/Dir/Deg       /TX23/Speed/Max   km/h
-//   rtl_433    rtl_433/+/events    /wind_avg_m_s         /wind_dir_deg       /wind_max_m_s     m/s
-//   windnerd   (yours)             /wind_instant_speed   /wind_instant_dir                     m/s
-//
-// Sources: Home Assistant's mqtt_statestream publishes numbers on homeassistant/sensor/NAME/state; arendst/Tasmota
-// tasmota/xsns_35_tx20.ino, Tx2xShow (TX20 in place of TX23 for the older sensor; its SpeedUnit is km/h unless it was
-// changed); merbanan/rtl_433 src/devices/fineoffset_ws80.c, as for most wind sensors; windnerd.net/docs, MQTT.
+// Common publishers have a preset (mqtt_preset.cpp), which single settings override.
 //
 // A retained message was kept by the broker for later subscribers: its age is unknown, and it is never taken for the
 // live wind.
@@ -23,11 +13,14 @@
 #include "drivers/bus/mqtt_client.hpp"
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/mqtt/mqtt_payload.hpp"
+#include "drivers/mqtt/mqtt_preset.hpp"
+#include "drivers/mqtt/station_identity.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/sensor/secret_source.hpp"
 #include "drivers/sensor/speed_unit.hpp"
+#include "engine/base/printable_text.hpp"
 
 namespace yuragi::drivers::mqtt {
 namespace {
@@ -35,20 +28,6 @@ namespace {
 /// A look at the clock at least so often.
 constexpr Nanoseconds kMqttWait = std::chrono::milliseconds(250);
 
-struct MqttPreset {
-  std::string_view name;
-  std::string_view topic;
-  std::string_view speed;
-  std::string_view direction;
-  std::string_view gust;
-  std::string_view unit;
-};
-constexpr std::array<MqttPreset, 4> kMqttPresets = {
-    {{"number", "", "", "", "", "m/s"},
-     {"tasmota", "tele/+/SENSOR", "/TX23/Speed/Act", "/TX23/Dir/Deg", "/TX23/Speed/Max", "km/h"},
-     {"rtl_433", "rtl_433/+/events", "/wind_avg_m_s", "/wind_dir_deg", "/wind_max_m_s", "m/s"},
-     {"windnerd", "", "/wind_instant_speed", "/wind_instant_dir", "", "m/s"}}};
-constexpr std::array<std::string_view, 4> kMqttPresetNames = {"number", "tasmota", "rtl_433", "windnerd"};
 constexpr std::array<std::string_view, 6> kMqttUnits = {"preset", "m/s", "km/h", "kn", "mph", "ft/s"};
 
 const std::array kMqttParameters = {
@@ -84,6 +63,21 @@ const std::array kMqttParameters = {
               .default_value = std::string("number"),
               .help = "settings for a common publisher; topics, paths and unit that are set override them",
               .choices = kMqttPresetNames},
+    Parameter{.name = "model",
+              .unit = "",
+              .default_value = std::string(""),
+              .help =
+                  "with rtl_433: the model of the station that is read, such as Acurite-5n1; empty: any. Of several "
+                  "stations on the topic the first that is heard is read, until it falls silent"},
+    Parameter{.name = "id",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "with rtl_433: the id of the station that is read; empty: any. Many stations have another one "
+                      "after a change of batteries"},
+    Parameter{.name = "channel",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "with rtl_433: the channel of the station that is read, such as A or 1; empty: any"},
     Parameter{
         .name = "topic",
         .unit = "",
@@ -108,20 +102,27 @@ const std::array kMqttParameters = {
     Parameter{.name = "speed_unit",
               .unit = "",
               .default_value = std::string("preset"),
-              .help = "the unit of speed and gust; \"preset\" takes the preset's",
+              .help = "the unit of speed and gust, where the message does not say it (Tasmota's SpeedUnit, rtl_433's "
+                      "keys); \"preset\" takes the preset's",
               .choices = kMqttUnits},
     Parameter{.name = "hold",
               .unit = "s",
               .default_value = 60.0,
               .min = 0.1,
               .max = 86400.0,
-              .help = "a direction or gust from a topic of its own is used for this long"},
+              .help = "a direction or gust is used for this long with speeds that come without one"},
     Parameter{.name = "silence",
               .unit = "s",
               .default_value = 900.0,
               .min = 0.1,
               .max = 86400.0,
               .help = "without a message for this long the publisher counts as stopped"},
+    Parameter{.name = "on_change",
+              .unit = "",
+              .default_value = false,
+              .help =
+                  "the publisher speaks on change only (Home Assistant's statestream): a silence says that the wind "
+                  "is unchanged, for as long as `silence`, which has to be longer than the longest calm"},
     Parameter{.name = "keep_alive",
               .unit = "s",
               .default_value = std::int64_t{15},
@@ -130,27 +131,61 @@ const std::array kMqttParameters = {
               .help = "a broker that sends nothing for this long is pinged"},
 };
 
-/// Where one quantity comes from: a topic of its own, or the speed's.
+/// One place in a message where a quantity can stand.
+struct MqttPlace {
+  std::string pointer;             ///< a JSON pointer; empty: the payload is the number
+  std::optional<double> factor{};  ///< of a speed to m/s, where the key says its unit; nothing: unit_of() the message
+
+  bool is_json() const noexcept { return !pointer.empty(); }
+};
+
+/// Where one quantity comes from: a topic of its own, or the speed's. Of several places the first that a message has
+/// counts.
 struct MqttSource {
-  std::string topic;   ///< empty: this quantity is not published
-  PayloadPlace place;  ///< in its messages
+  std::string topic;  ///< empty: this quantity is not published
+  std::vector<MqttPlace> places;
 };
 
 struct MqttSettings {
   bus::MqttSubscription subscription;
+  const MqttPreset* preset = nullptr;
   MqttSource speed;
   MqttSource direction;
   MqttSource gust;
-  double metres_per_second = 1.0;
+  StationIdentity station;         ///< which ones are read
+  double metres_per_second = 1.0;  ///< where the message does not say it
+  bool has_own_unit = false;       ///< it was set, and holds also where the message's unit is not known
   Nanoseconds hold = std::chrono::seconds(60);
   Nanoseconds silence = std::chrono::minutes(15);
 };
 
-/// A value from a topic of its own, and when it came.
+/// A direction or gust that has come, and when. It is kept for the speeds that come without one.
 struct HeldValue {
   std::optional<double> value;
   MonoTime since{};
 };
+
+/// A text of somebody else's as the status can show it.
+std::string shown(const std::string& text) {
+  std::string printable = text;
+  make_printable(printable);
+  return shortened(printable, 20);
+}
+
+/// Does any of the sources read JSON?
+PayloadForm form_of(const MqttSettings& settings) {
+  for (const MqttSource* const source : {&settings.speed, &settings.direction, &settings.gust}) {
+    if (std::ranges::any_of(source->places, &MqttPlace::is_json)) return PayloadForm::kJson;
+  }
+  return PayloadForm::kText;
+}
+
+/// The first of the source's places that the message has; nullptr where it has none.
+const MqttPlace* place_in(const Payload& payload, const MqttSource& source) {
+  const auto place =
+      std::ranges::find_if(source.places, [&](const auto& each) { return !payload.lacks(each.pointer); });
+  return place == source.places.end() ? nullptr : &*place;
+}
 
 class MqttSensor final : public sensor::ReopeningSensor {
  public:
@@ -159,7 +194,9 @@ class MqttSensor final : public sensor::ReopeningSensor {
         settings_(std::move(settings)),
         where_(fmt::format("topic {} of MQTT broker {}:{}", settings_.speed.topic, settings_.subscription.host,
                            settings_.subscription.port)),
-        client_(bus::make_mqtt_client(settings_.subscription)) {}
+        client_(bus::make_mqtt_client(settings_.subscription)),
+        form_(form_of(settings_)),
+        stations_(settings_.silence) {}
 
   void interrupt() noexcept override { client_->interrupt(); }
 
@@ -168,13 +205,17 @@ class MqttSensor final : public sensor::ReopeningSensor {
     if (const auto connected = client_->connect(); !connected) return connected.error();
     direction_ = {};
     gust_ = {};
+    is_impossible_ = false;
+    note_.clear();
+    stations_.restart();
     has_received_ = false;
     received_at_ = clock.now().mono;
     return received_at_;
   }
 
   Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
-    if (!has_received_) report_unusable(sink, "waits for wind on " + where_ + ": retained messages do not count");
+    if (!has_received_)
+      report_unusable(sink, "waits for wind on " + where_ + ": retained messages do not count" + note_);
     bus::MqttMessage message;
     const bus::MqttStatus status = client_->receive(message, kMqttWait);
     const Instant now = clock.now();
@@ -184,8 +225,8 @@ class MqttSensor final : public sensor::ReopeningSensor {
     if (now.mono - received_at_ >= settings_.silence) {
       has_received_ = true;  // the status now reports more than waiting
       report_unusable(
-          sink, fmt::format("no wind has been received on {} for {:g} s: check that its publisher is running", where_,
-                            seconds(settings_.silence)));
+          sink, fmt::format("no wind has been received on {} for {:g} s: check that its publisher is running{}", where_,
+                            seconds(settings_.silence), note_));
     }
     return now.mono;
   }
@@ -197,41 +238,114 @@ class MqttSensor final : public sensor::ReopeningSensor {
     sink.raw(sensor::RawDirection::kReceived, message.payload);
     if (message.is_too_long) return sink.refused(decode::Refusal::kMalformed);
     if (message.is_retained) return sink.refused(decode::Refusal::kInvalid);
-    const std::string_view payload(reinterpret_cast<const char*>(message.payload.data()), message.payload.size());
-
-    // A direction and a gust are kept until the next speed; one that cannot be read still replaces the last one.
-    for (const auto& [source, held] : {std::pair{&settings_.direction, &direction_}, {&settings_.gust, &gust_}}) {
-      if (!bus::mqtt_topic_matches(message.topic, source->topic)) continue;
-      const auto number = number_in(payload, source->place);
-      *held = {number ? *number : std::nullopt, now.mono};
-      if (!number && source->topic != settings_.speed.topic) sink.refused(number.error());
+    const Payload payload({reinterpret_cast<const char*>(message.payload.data()), message.payload.size()}, form_);
+    if (bus::mqtt_topic_matches(message.topic, settings_.speed.topic)) {
+      if (settings_.speed.places.front().is_json() && payload.json().is_discarded())
+        return sink.refused(decode::Refusal::kMalformed);
+      if (!is_of_the_station(payload, now.mono)) return sink.refused(decode::Refusal::kNotMine);
     }
-    if (bus::mqtt_topic_matches(message.topic, settings_.speed.topic)) take_speed(payload, now, sink);
+    const auto unit = unit_of(payload);
+    if (!unit) return sink.refused(unit.error());
+
+    const auto direction = said_in(settings_.direction, message.topic, payload, 1.0, now.mono, sink);
+    if (direction) hold_direction(*direction, sink);
+    const auto gust = said_in(settings_.gust, message.topic, payload, *unit, now.mono, sink);
+    if (gust && !hold_gust(*gust)) return sink.refused(decode::Refusal::kImplausible);
+    if (!bus::mqtt_topic_matches(message.topic, settings_.speed.topic)) return;
+    const MqttPlace* const speed = place_in(payload, settings_.speed);
+    const bool names_it = speed != nullptr || settings_.preset->names_stations;
+    const bool has_quantities = names_it && take_quantities(payload, now, sink);
+    if (speed != nullptr)
+      return take_speed(payload.number_at(speed->pointer), speed->factor.value_or(*unit), now, sink);
+    if (!direction && !gust && !has_quantities) sink.refused(decode::Refusal::kNotMine);
   }
 
-  void take_speed(std::string_view payload, Instant now, sensor::SensorSink& sink) {
-    const auto speed = number_in(payload, settings_.speed.place);
+  /// Does the message come from the station that is read? Where publishers name none, always.
+  bool is_of_the_station(const Payload& payload, MonoTime now) {
+    if (!settings_.preset->names_stations || !payload.json().is_object()) return true;
+    const StationIdentity station = station_of(payload);
+    if (!settings_.station.covers(station)) {
+      if (note_.empty()) note_ = "; it hears " + describe(station) + ", which is not the station that is set";
+      return false;
+    }
+    const bool has_wind = place_in(payload, settings_.speed) != nullptr || place_in(payload, settings_.gust) != nullptr;
+    return has_wind ? stations_.offer(station, now) : stations_.is_read(station);
+  }
+
+  /// The factor to m/s of this message's speeds; kInvalid where it says a unit that is not known, and none is set.
+  Result<double, decode::Refusal> unit_of(const Payload& payload) {
+    if (settings_.preset->unit_pointer.empty()) return settings_.metres_per_second;
+    const auto word = payload.text_at(std::string(settings_.preset->unit_pointer));
+    if (!word) return settings_.metres_per_second;
+    if (const auto known = metres_per_second_of_word(*word)) return *known;
+    if (settings_.has_own_unit) return settings_.metres_per_second;
+    note_ = fmt::format("; it says its speed in \"{}\", which is not known: set speed_unit", shown(*word));
+    return decode::Refusal::kInvalid;
+  }
+
+  /// A direction or gust, as this message says it: without a value where that cannot be read, or is said to be
+  /// unknown; nothing where the message has no place for it.
+  std::optional<HeldValue> said_in(const MqttSource& source, const std::string& topic, const Payload& payload,
+                                   double unit, MonoTime now, sensor::SensorSink& sink) const {
+    if (!bus::mqtt_topic_matches(topic, source.topic)) return std::nullopt;
+    const MqttPlace* const place = place_in(payload, source);
+    if (place == nullptr) return std::nullopt;
+    HeldValue said = {.value = std::nullopt, .since = now};
+    const auto number = payload.number_at(place->pointer);
+    if (number && *number) said.value = **number * place->factor.value_or(unit);
+    if (!number && source.topic != settings_.speed.topic) sink.refused(number.error());
+    return said;
+  }
+
+  /// An impossible direction is none; the speed beside it counts.
+  void hold_direction(const HeldValue& said, sensor::SensorSink& sink) {
+    direction_ = said;
+    if (said.value) direction_.value = decode::wrapped_direction_deg(*said.value);
+    is_impossible_ = said.value && !direction_.value;
+    if (is_impossible_) sink.refused(decode::Refusal::kImplausible);
+  }
+  /// False: it is impossible, and not kept.
+  bool hold_gust(const HeldValue& said) {
+    gust_ = said;
+    if (!said.value) return true;
+    decode::DecodedWind wind;
+    wind.gust_m_s = said.value;
+    if (decode::checked(wind)) return true;
+    gust_.value.reset();
+    return false;
+  }
+
+  bool take_quantities(const Payload& payload, Instant now, sensor::SensorSink& sink) const {
+    if (settings_.preset->quantities == nullptr) return false;
+    auto quantities = settings_.preset->quantities(payload);
+    if (!quantities) return false;
+    quantities->time = now;
+    sink.quantities(*quantities);
+    return true;
+  }
+
+  void take_speed(const Result<std::optional<double>, decode::Refusal>& speed, double metres_per_second, Instant now,
+                  sensor::SensorSink& sink) {
     if (!speed) return sink.refused(speed.error());
     if (!*speed) return sink.refused(decode::Refusal::kNotMine);
     decode::DecodedWind wind;
-    wind.speed_m_s = **speed * settings_.metres_per_second;
-    if (const auto gust = still_held(gust_, now)) wind.gust_m_s = *gust * settings_.metres_per_second;
-    if (const auto direction_deg = still_held(direction_, now)) {
-      wind.direction_deg = decode::wrapped_direction_deg(*direction_deg);
-      if (!wind.direction_deg) return sink.refused(decode::Refusal::kImplausible);
-    }
+    wind.speed_m_s = **speed * metres_per_second;
+    wind.gust_m_s = still_held(gust_, now);
+    wind.direction_deg = still_held(direction_, now);
     const auto plausible = decode::checked(wind);
     if (!plausible) return sink.refused(plausible.error());
     if (!limit_.admits(now.mono)) return sink.refused(decode::Refusal::kTooFrequent);
 
     has_received_ = true;
     received_at_ = now.mono;
-    report_connected(sink, where_);
+    report_connected(sink, where_ + stations_.warning(now.mono));
     sink.reading({.time = now,
                   .speed_m_s = *plausible->speed_m_s,
                   .direction_deg = plausible->direction_deg,
                   .gust_m_s = plausible->gust_m_s,
-                  .quality = wind::ReadingQuality::kGood});
+                  .quality = is_impossible_ && now.mono - direction_.since <= settings_.hold
+                                 ? wind::ReadingQuality::kUncertain
+                                 : wind::ReadingQuality::kGood});
   }
 
   std::optional<double> still_held(const HeldValue& held, Instant now) const {
@@ -241,8 +355,12 @@ class MqttSensor final : public sensor::ReopeningSensor {
   MqttSettings settings_;
   std::string where_;
   std::unique_ptr<bus::MqttClient> client_;
+  PayloadForm form_;
   HeldValue direction_;
-  HeldValue gust_;
+  HeldValue gust_;              // m/s
+  bool is_impossible_ = false;  // the last direction was none
+  StationChoice stations_;
+  std::string note_;  // what keeps messages from being read, as the status says it; empty: nothing does
   sensor::ReadingLimit limit_;
   bool has_received_ = false;  // of the wind, since it connected
   MonoTime received_at_{};     // or since when it could have
@@ -255,10 +373,11 @@ void check_source(std::string_view name, const MqttSource& source) {
         fmt::format("{}topic: \"{}\" is not a topic; # is allowed at the end only, and + in place of a whole level",
                     name, source.topic));
   }
-  if (!is_json_pointer(source.place.pointer)) {
+  for (const MqttPlace& place : source.places) {
+    if (is_json_pointer(place.pointer)) continue;
     throw std::runtime_error(
         fmt::format("{}path: \"{}\" is not a JSON pointer, which begins with a slash, as in /TX23/Speed/Act",
-                    name.empty() ? "speed_" : name, source.place.pointer));
+                    name.empty() ? "speed_" : name, place.pointer));
   }
 }
 
@@ -280,26 +399,46 @@ Secret password_of(const ParameterValues& values) {
   return password;
 }
 
+/// The places of a quantity: the one that is set, or the preset's. Of a speed a known key says the unit, unless
+/// `own_unit` was set with the path.
+std::vector<MqttPlace> places_of(const std::string& path, std::span<const PresetPlace> known, bool has_own_unit) {
+  std::vector<MqttPlace> places;
+  for (const PresetPlace& place : known) {
+    if (!path.empty() && path != place.pointer) continue;
+    const bool says_unit = path.empty() || !has_own_unit;
+    places.push_back({.pointer = std::string(place.pointer),
+                      .factor = says_unit ? metres_per_second_of_word(place.unit) : std::nullopt});
+  }
+  if (places.empty() && !path.empty()) places.push_back({.pointer = path});
+  return places;
+}
+
 MqttSettings mqtt_settings_of(const ParameterValues& values) {
-  const auto preset = std::ranges::find(kMqttPresets, values.text("preset"), &MqttPreset::name);
-  const auto text_or = [&values](std::string_view name, std::string_view otherwise) {
-    return values.text(name).empty() ? std::string(otherwise) : values.text(name);
-  };
   MqttSettings settings;
-  settings.speed = MqttSource{text_or("topic", preset->topic), {text_or("speed_path", preset->speed)}};
+  settings.preset = &mqtt_preset_of(values.text("preset"));
+  const MqttPreset& preset = *settings.preset;
+  const std::string& unit = values.text("speed_unit");
+  settings.has_own_unit = unit != "preset";
+  settings.metres_per_second = sensor::metres_per_second_in(settings.has_own_unit ? unit : preset.unit);
+
+  settings.speed.topic = values.text("topic").empty() ? std::string(preset.topic) : values.text("topic");
   if (settings.speed.topic.empty())
     throw std::runtime_error("topic: is missing; give the topic that the speed is published on");
+  settings.speed.places = places_of(values.text("speed_path"), preset.speed, settings.has_own_unit);
+  if (settings.speed.places.empty()) settings.speed.places.emplace_back();
 
-  // Without a topic of its own a quantity comes with the speed, if its place in the message is configured.
-  const auto source_of = [&](std::string_view topic, std::string_view path, std::string_view preset_path) {
-    MqttSource source = {values.text(topic), {text_or(path, preset_path)}};
-    if (source.topic.empty() && source.place.is_json()) source.topic = settings.speed.topic;
+  // Without a topic of its own a quantity comes with the speed, if its place in the message is known.
+  const auto source_of = [&](std::string_view topic, std::string_view path, std::span<const PresetPlace> known) {
+    MqttSource source = {values.text(topic), places_of(values.text(path), known, settings.has_own_unit)};
+    if (source.topic.empty() && !source.places.empty()) source.topic = settings.speed.topic;
+    if (source.places.empty()) source.places.emplace_back();
     return source;
   };
-  settings.direction = source_of("direction_topic", "direction_path", preset->direction);
-  settings.gust = source_of("gust_topic", "gust_path", preset->gust);
-  const std::string& unit = values.text("speed_unit");
-  settings.metres_per_second = sensor::metres_per_second_in(unit == "preset" ? preset->unit : unit);
+  settings.direction = source_of("direction_topic", "direction_path", preset.direction);
+  settings.gust = source_of("gust_topic", "gust_path", preset.gust);
+  settings.station = {.model = values.text("model"), .id = values.text("id"), .channel = values.text("channel")};
+  if (!settings.station.is_empty() && !preset.names_stations)
+    throw std::runtime_error("model, id, channel: are for preset \"rtl_433\" alone; leave them out");
   settings.hold = from_seconds(values.number("hold"));
   settings.silence = from_seconds(values.number("silence"));
 
@@ -328,6 +467,10 @@ std::unique_ptr<sensor::Sensor> open_mqtt(const ParameterValues& values) {
   return std::make_unique<MqttSensor>(std::move(settings));
 }
 
+double mqtt_unchanged_for_s(const ParameterValues& values) {
+  return values.flag("on_change") ? values.number("silence") : 0.0;
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kMqttDriver;
@@ -335,6 +478,7 @@ const sensor::DriverDescription kMqttDriver{
     .name = "mqtt",
     .summary = "wind that is published on an MQTT broker, as a number or in JSON",
     .parameters = kMqttParameters,
-    .open = open_mqtt};
+    .open = open_mqtt,
+    .unchanged_for_s = mqtt_unchanged_for_s};
 
 }  // namespace yuragi::drivers::mqtt

@@ -5,8 +5,6 @@
 #include <charconv>
 #include <cmath>
 
-#include <nlohmann/json.hpp>
-
 #include "drivers/decode/text_fields.hpp"
 
 namespace yuragi::drivers::mqtt {
@@ -36,21 +34,50 @@ bool is_json_pointer(const std::string& text) {
   }
 }
 
-Result<std::optional<double>, decode::Refusal> number_in(std::string_view payload, const PayloadPlace& place) {
-  if (!place.is_json()) return number_of_text(payload);
+Payload::Payload(std::string_view bytes, PayloadForm form)
+    : bytes_(bytes),
+      json_(form == PayloadForm::kJson ? Json::parse(bytes, nullptr, false) : Json(Json::value_t::discarded)) {}
+
+/// Throws Json::exception for an index that no array can have.
+const Json* Payload::find(const std::string& pointer) const {
+  const Json::json_pointer place(pointer);
+  return json_.contains(place) ? &json_.at(place) : nullptr;
+}
+
+bool Payload::lacks(const std::string& pointer) const {
+  if (pointer.empty() || json_.is_discarded()) return false;
   try {
-    const Json json = Json::parse(payload, nullptr, false);
-    if (json.is_discarded()) return decode::Refusal::kMalformed;
-    const Json::json_pointer pointer(place.pointer);
-    if (!json.contains(pointer)) return std::optional<double>();
-    const Json& value = json.at(pointer);
-    if (value.is_null()) return std::optional<double>();
-    if (value.is_string()) return number_of_text(value.get_ref<const std::string&>());
-    if (!value.is_number()) return decode::Refusal::kMalformed;
-    return std::optional(value.get<double>());
+    return find(pointer) == nullptr;
   } catch (const Json::exception&) {
-    return decode::Refusal::kMalformed;  // an index that no array can have
+    return false;
   }
+}
+
+Result<std::optional<double>, decode::Refusal> Payload::number_at(const std::string& pointer) const {
+  if (pointer.empty()) return number_of_text(bytes_);
+  if (json_.is_discarded()) return decode::Refusal::kMalformed;
+  try {
+    const Json* const value = find(pointer);
+    if (value == nullptr || value->is_null()) return std::optional<double>();
+    if (value->is_string()) return number_of_text(value->get_ref<const std::string&>());
+    if (!value->is_number()) return decode::Refusal::kMalformed;
+    return std::optional(value->get<double>());
+  } catch (const Json::exception&) {
+    return decode::Refusal::kMalformed;
+  }
+}
+
+std::optional<std::string> Payload::text_at(const std::string& pointer) const {
+  if (json_.is_discarded()) return std::nullopt;
+  try {
+    const Json* const value = find(pointer);
+    if (value == nullptr) return std::nullopt;
+    if (value->is_string()) return value->get<std::string>();
+    if (value->is_number_integer()) return value->dump();
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 }  // namespace yuragi::drivers::mqtt

@@ -1,28 +1,53 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include <nlohmann/json.hpp>
 
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
 
 namespace yuragi::drivers::mqtt {
 
-/// Where in a message's payload a number stands.
-struct PayloadPlace {
-  std::string pointer;  ///< a JSON pointer (RFC 6901), such as /TX23/Speed/Act; empty: the payload is the number
+/// How the payload of a message is read.
+enum class PayloadForm : std::uint8_t {
+  kJson,
+  kText,  ///< of one number: JSON in it is not looked for, nor paid for
+};
 
-  bool is_json() const noexcept { return !pointer.empty(); }
+/// The payload of one message, of any bytes: JSON, or the text of one number. It is parsed once. A place in it is a
+/// JSON pointer (RFC 6901), such as /TX23/Speed/Act; the empty one is the payload itself. Thread-safe: reading is.
+class Payload {
+ public:
+  /// `bytes` must outlive it. Never throws for any bytes.
+  explicit Payload(std::string_view bytes, PayloadForm form = PayloadForm::kJson);
+
+  /// Is it JSON that does not have the place? Payloads that are not JSON lack none: whether they can be read,
+  /// number_at() says.
+  bool lacks(const std::string& pointer) const;
+
+  /// The number at that place; nothing where a JSON payload does not have the place, or has null there. Text that reads
+  /// as a number counts as one, in JSON too. kInvalid: a text that stands for no value, as Home Assistant sends it
+  /// (unavailable, unknown, none, an empty payload). kMalformed: not JSON, or something else there.
+  Result<std::optional<double>, decode::Refusal> number_at(const std::string& pointer) const;
+
+  /// The text at that place, or a whole number as text, as identifiers are sent; nothing where neither is there.
+  std::optional<std::string> text_at(const std::string& pointer) const;
+
+  /// All of it; discarded (is_discarded()) where it is not JSON.
+  const nlohmann::json& json() const noexcept { return json_; }
+
+ private:
+  const nlohmann::json* find(const std::string& pointer) const;
+
+  std::string_view bytes_;
+  nlohmann::json json_;
 };
 
 /// Is it a JSON pointer, or empty?
 bool is_json_pointer(const std::string& text);
-
-/// The number at that place; nothing where a JSON payload does not have the place, or has null there. Text that reads
-/// as a number counts as one, in JSON too. kInvalid: a text that stands for no value, as Home Assistant sends it
-/// (unavailable, unknown, none, an empty payload). kMalformed: not JSON, or something else there. Never throws for any
-/// payload. Thread-safe: yes.
-Result<std::optional<double>, decode::Refusal> number_in(std::string_view payload, const PayloadPlace& place);
 
 }  // namespace yuragi::drivers::mqtt

@@ -6,6 +6,9 @@
 // A message proves nothing about its sender. By default only programs of this machine are heard; whoever listens to
 // others names them (`host` and `from`). No more readings are taken than sensor::ReadingLimit allows.
 //
+// A bundle says for which time it is meant. Wind of the future is no wind: what is meant for later than the clocks of
+// two machines and a sender's latency explain is refused. Everything else is the wind when it comes.
+//
 // Address and order of the arguments are configurable; they are numbers of any of OSC's types. An argument that is no
 // number, or missing, is an unknown value.
 #include <array>
@@ -27,6 +30,8 @@ namespace {
 
 /// A look at the clock at least so often.
 constexpr Nanoseconds kOscWait = std::chrono::milliseconds(250);
+/// The time tag of a message may be so far ahead of our clock.
+constexpr Nanoseconds kFarthestAhead = std::chrono::seconds(1);
 
 const std::array kOscParameters = {
     Parameter{.name = "port",
@@ -128,13 +133,15 @@ class OscSensor final : public sensor::ReopeningSensor {
     if (const auto opened = port_->open(); !opened) return opened.error();
     has_received_ = false;
     strangers_.clear();
+    future_.clear();
     received_at_ = clock.now().mono;
     return received_at_;
   }
 
   Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
     if (!has_received_)
-      report_unusable(sink, fmt::format("waits for OSC messages {} at {}{}", settings_.address, where_, strangers_));
+      report_unusable(
+          sink, fmt::format("waits for OSC messages {} at {}{}", settings_.address, where_, strangers_ + future_));
     const bus::ByteArrival arrival = port_->read(buffer_, kOscWait);
     if (arrival.overrun > 0) sink.refused(decode::Refusal::kOverrun, arrival.overrun);
     const Instant now = clock.now();
@@ -148,7 +155,7 @@ class OscSensor final : public sensor::ReopeningSensor {
       report_unusable(sink, fmt::format("no wind has been received on {} for {:g} s: check that the sender is running, "
                                         "that it sends {} there, and "
                                         "that no firewall stops it{}",
-                                        where_, seconds(settings_.silence), settings_.address, strangers_));
+                                        where_, seconds(settings_.silence), settings_.address, strangers_ + future_));
     }
     return now.mono;
   }
@@ -162,6 +169,15 @@ class OscSensor final : public sensor::ReopeningSensor {
     if (strangers_.empty()) strangers_ = "; refuses " + sender + ", which is not in `from`";
   }
 
+  /// The status names the first one only, as above.
+  void refuse_future(const bus::OscMessage& message, Instant now, sensor::SensorSink& sink) {
+    sink.refused(decode::Refusal::kInvalid);
+    if (future_.empty()) {
+      future_ = fmt::format("; refuses messages that are meant for {:.0f} s later: compare the clocks of both machines",
+                            seconds(*message.meant_for - now.utc));
+    }
+  }
+
   void take_datagram(std::span<const std::uint8_t> datagram, Instant now, sensor::SensorSink& sink) {
     sink.raw(sensor::RawDirection::kReceived, datagram);
     const auto messages = bus::decode_osc(datagram);
@@ -171,12 +187,13 @@ class OscSensor final : public sensor::ReopeningSensor {
 
   void take(const bus::OscMessage& message, Instant now, sensor::SensorSink& sink) {
     if (!bus::osc_address_matches(message.address, settings_.address)) return sink.refused(decode::Refusal::kNotMine);
+    if (message.meant_for && *message.meant_for - now.utc > kFarthestAhead) return refuse_future(message, now, sink);
     const auto wind = wind_of(message, settings_);
     if (!wind) return sink.refused(wind.error());
     if (!limit_.admits(now.mono)) return sink.refused(decode::Refusal::kTooFrequent);
     has_received_ = true;
     received_at_ = now.mono;
-    report_connected(sink, fmt::format("OSC messages {} at {}{}", settings_.address, where_, strangers_));
+    report_connected(sink, fmt::format("OSC messages {} at {}{}", settings_.address, where_, strangers_ + future_));
     sink.reading({.time = now,
                   .speed_m_s = *wind->speed_m_s,
                   .direction_deg = wind->direction_deg,
@@ -190,6 +207,7 @@ class OscSensor final : public sensor::ReopeningSensor {
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kLargestDatagram);
   sensor::ReadingLimit limit_;
   std::string strangers_;      // who was refused first, as the status says it; empty: nobody
+  std::string future_;         // how far ahead the first was that was refused for its time; empty: none
   bool has_received_ = false;  // of the wind, since it has the port
   MonoTime received_at_{};     // or since when it could have
 };

@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -19,6 +20,14 @@ class LineInUse : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A device that a driver knows by name, and who says that what the driver knows of it is right.
+struct KnownDevice {
+  std::string name;    ///< in a configuration
+  std::string device;  ///< for people
+  std::vector<std::string_view> confirmed_by = {};
+  std::string unconfirmed = {};  ///< what nobody confirms; empty: nothing
+};
+
 /// A family of sensors: one constant `kXDriver` in its own file, listed in drivers/CMakeLists.txt.
 struct DriverDescription {
   std::string_view name;
@@ -33,6 +42,11 @@ struct DriverDescription {
   /// The devices that a sensor of these values has to itself, without touching them, of values that open() takes;
   /// nullptr: none. Two sensors that claim the same device are refused.
   std::vector<DeviceClaim> (*claims)(const ParameterValues& values) = nullptr;
+  /// The devices that it knows by name; nullptr: none.
+  std::vector<KnownDevice> (*known_devices)() = nullptr;
+  /// A sensor of these values speaks on change only: for how long, s, its silence says that nothing has changed; 0, or
+  /// nullptr: it does not. A longer silence is one.
+  double (*unchanged_for_s)(const ParameterValues& values) = nullptr;
   /// It plays a recording: never to be taken for the live wind.
   bool plays_recordings = false;
   /// A relative sensor: only the fluctuations of its readings are valid, not their scale, which depends on where it

@@ -1,5 +1,6 @@
 #include "drivers/text/chosen_wind.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -8,6 +9,11 @@ namespace yuragi::drivers::text {
 namespace {
 
 constexpr std::array<std::string_view, 4> kChosenFrames = {"auto", "north", "relative", "true"};
+
+/// In a slower wind no vane turns.
+constexpr double kCalm_m_s = 0.5;
+/// A direction of another source holds for so long, or for one and a half of its own pauses.
+constexpr Nanoseconds kDirectionHolds = std::chrono::seconds(2);
 
 WindFrame frame_of_reference(decode::WindReference reference) {
   switch (reference) {
@@ -64,15 +70,26 @@ Result<std::optional<wind::WindReading>, decode::Refusal> ChosenWind::offer(cons
                                                                             const decode::DecodedWind& wind,
                                                                             const Instant& now) {
   using Offered = std::optional<wind::WindReading>;
-  const auto verdict = choice_.offer({.name = source, .frame = frame_of_reference(wind.reference)}, now.mono);
+  const WindChoice::Said said = {.has_speed = wind.speed_m_s.has_value(),
+                                 .has_direction = wind.direction_deg.has_value(),
+                                 .is_calm = wind.speed_m_s && *wind.speed_m_s < kCalm_m_s};
+  const auto verdict = choice_.offer({.name = source, .frame = frame_of_reference(wind.reference)}, said, now.mono);
   if (verdict == WindChoice::Verdict::kForeign) return decode::Refusal::kNotMine;
+
+  // The speed may be another source's than the direction.
+  std::optional<double> direction_deg = choice_.takes_direction() ? from_north_deg(wind) : std::nullopt;
+  if (direction_deg) {
+    kept_direction_ = KeptDirection{source, *direction_deg, now.mono};
+    if (held_ && !held_->direction_deg) held_->direction_deg = direction_deg;
+  }
   if (verdict == WindChoice::Verdict::kPass) return Offered();
+  if (!direction_deg) direction_deg = direction_for(source, now.mono);
 
   const bool is_uncertain = wind.status == decode::DecodedStatus::kUncertain;
   const wind::WindReading reading = {
       .time = now,
       .speed_m_s = wind.speed_m_s.value(),
-      .direction_deg = choice_.has_direction() ? from_north_deg(wind) : std::nullopt,
+      .direction_deg = direction_deg,
       .gust_m_s = wind.gust_m_s,
       .quality = is_uncertain ? wind::ReadingQuality::kUncertain : wind::ReadingQuality::kGood};
   taken_ = source;
@@ -92,6 +109,13 @@ std::optional<wind::WindReading> ChosenWind::take_held() {
 void ChosenWind::restart() {
   choice_.restart();
   held_.reset();
+  kept_direction_.reset();
+}
+
+std::optional<double> ChosenWind::direction_for(const std::string& source, MonoTime now) const {
+  const Nanoseconds longest = std::max<Nanoseconds>(kDirectionHolds, choice_.direction_pause() * 3 / 2);
+  const bool holds = kept_direction_ && kept_direction_->source != source && now - kept_direction_->time <= longest;
+  return holds ? std::optional(kept_direction_->direction_deg) : std::nullopt;
 }
 
 std::optional<double> ChosenWind::from_north_deg(const decode::DecodedWind& wind) const {

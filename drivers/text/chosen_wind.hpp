@@ -41,11 +41,20 @@ class ChosenWind {
   const std::string& taken() const noexcept { return taken_; }
 
  private:
+  struct KeptDirection {
+    std::string source;
+    double direction_deg = 0.0;
+    MonoTime time{};
+  };
+
+  /// What another source said last, as long as it holds.
+  std::optional<double> direction_for(const std::string& source, MonoTime now) const;
   std::optional<double> from_north_deg(const decode::DecodedWind& wind) const;
 
   ChosenWindSettings settings_;
   WindChoice choice_;
   std::optional<wind::WindReading> held_;
+  std::optional<KeptDirection> kept_direction_;
   std::string taken_;
 };
 

@@ -15,8 +15,11 @@
 namespace yuragi::drivers::text {
 namespace {
 
-/// A direction and a speed that come in two messages belong together if they come so close.
+/// A direction and a speed that come in two messages belong together if they come so close, or within one pause and a
+/// half of the directions.
 constexpr Nanoseconds kJoinTime = std::chrono::seconds(2);
+/// Below this anemometers leave out the direction.
+constexpr double kVaneCalm_m_s = 0.5;
 
 /// The format of a line. Gill's begin with one letter, and have an ETX before the checksum.
 NmeaFormat format_by_look(std::string_view line) {
@@ -32,22 +35,31 @@ NmeaFormat format_by_look(std::string_view line) {
   return sentence.find(",WVP=") != std::string_view::npos ? NmeaFormat::kFt : NmeaFormat::kNmea;
 }
 
-/// Talker and sentence of a decoded line.
+/// Talker and sentence of a decoded line, in capitals but for other formats than NMEA's.
 struct MessageName {
-  std::string_view talker;
-  std::string_view sentence;
+  std::string talker;
+  std::string sentence;
 };
+
+std::string in_capitals(std::string_view text) {
+  std::string capitals(text);
+  for (char& c : capitals) {
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  }
+  return capitals;
+}
+
 MessageName name_of_message(NmeaFormat format, std::string_view line) {
   const std::string_view text = decode::trimmed(line);
   const std::size_t dollar = text.rfind('$');
   const std::string_view sentence = dollar == std::string_view::npos ? text : text.substr(dollar + 1);
   const std::string_view word = sentence.substr(0, sentence.find(','));
-  if (format == NmeaFormat::kWxt) return {.talker = word.substr(0, 1), .sentence = "WXT"};
-  if (dollar == std::string_view::npos) return {.talker = word, .sentence = "Gill"};
-  if (sentence.starts_with(' ')) return {.talker = decode::split_fields(text, ' ')[1], .sentence = "UMB"};
-  if (format == NmeaFormat::kFt && word.size() == 2) return {.talker = word, .sentence = "WVP"};
+  if (format == NmeaFormat::kWxt) return {.talker = std::string(word.substr(0, 1)), .sentence = "WXT"};
+  if (dollar == std::string_view::npos) return {.talker = std::string(word), .sentence = "Gill"};
+  if (sentence.starts_with(' ')) return {.talker = std::string(decode::split_fields(text, ' ')[1]), .sentence = "UMB"};
+  if (format == NmeaFormat::kFt && word.size() == 2) return {.talker = std::string(word), .sentence = "WVP"};
   const std::size_t talker_size = std::min<std::size_t>(2, word.size());
-  return {.talker = word.substr(0, talker_size), .sentence = word.substr(talker_size)};
+  return {.talker = in_capitals(word.substr(0, talker_size)), .sentence = in_capitals(word.substr(talker_size))};
 }
 
 /// The frame of MWD and MDA follows from the sentence: in a calm they leave out the direction, and its letter.
@@ -66,7 +78,7 @@ NmeaSensor::NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<bus::BytePor
 void NmeaSensor::begin() {
   choice_.restart();
   held_.reset();
-  lone_direction_.reset();
+  kept_direction_.reset();
 }
 
 Result<decode::DecodedWind, decode::Refusal> NmeaSensor::decode(NmeaFormat format, std::string_view line) const {
@@ -110,20 +122,20 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
   // Publish it, or has another source sent the same?
   const WindChoice::Source source = {.name = fmt::format("{} of {}", message.sentence, message.talker),
                                      .frame = frame_of(message.sentence, wind->reference)};
-  const auto verdict = choice_.offer(source, now.mono);
+  const bool is_calm = wind->speed_m_s && *wind->speed_m_s < kVaneCalm_m_s;
+  const WindChoice::Said said = {
+      .has_speed = wind->speed_m_s.has_value(), .has_direction = wind->direction_deg.has_value(), .is_calm = is_calm};
+  const auto verdict = choice_.offer(source, said, now.mono);
   if (verdict == WindChoice::Verdict::kForeign) return decode::Refusal::kNotMine;
-  if (verdict == WindChoice::Verdict::kPass) return std::optional<wind::WindReading>();
 
-  // A direction alone is kept until its speed comes.
-  std::optional<double> direction_deg = choice_.has_direction() ? north_direction_deg(*wind) : std::nullopt;
-  if (!wind->speed_m_s) {
-    if (direction_deg) lone_direction_ = LoneDirection{source.name, *direction_deg, now.mono};
-    return std::optional<wind::WindReading>();
+  // The speed may come in another message than the direction.
+  std::optional<double> direction_deg = choice_.takes_direction() ? north_direction_deg(*wind) : std::nullopt;
+  if (direction_deg) {
+    kept_direction_ = KeptDirection{source.name, *direction_deg, now.mono, !said.has_speed};
+    if (held_ && !held_->direction_deg) held_->direction_deg = direction_deg;
   }
-  const auto waiting = std::exchange(lone_direction_, std::nullopt);
-  if (!direction_deg && waiting && waiting->source == source.name && now.mono - waiting->time <= kJoinTime) {
-    direction_deg = waiting->direction_deg;
-  }
+  if (verdict == WindChoice::Verdict::kPass) return std::optional<wind::WindReading>();
+  if (!direction_deg) direction_deg = direction_for(source.name, now.mono);
 
   const bool is_uncertain = wind->status == decode::DecodedStatus::kUncertain;
   const wind::WindReading reading = {
@@ -132,7 +144,7 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
       .direction_deg = direction_deg,
       .gust_m_s = wind->gust_m_s,
       .quality = is_uncertain ? wind::ReadingQuality::kUncertain : wind::ReadingQuality::kGood};
-  taken_ = source.name;
+  name_sources(source.name, reading, is_calm);
   const bool comes_in_bursts = settings().poll_interval == Nanoseconds::zero();
   if (verdict == WindChoice::Verdict::kHold && comes_in_bursts) {
     held_ = reading;
@@ -142,14 +154,51 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
   return std::optional(reading);
 }
 
+/// The direction that belongs to a speed whose own message has none. In a calm a message leaves it out on purpose: then
+/// the one before does not hold.
+std::optional<double> NmeaSensor::direction_for(const std::string& source, MonoTime now) {
+  if (!kept_direction_) return std::nullopt;
+  const KeptDirection kept = *kept_direction_;
+  if (kept.came_alone) kept_direction_.reset();
+  const Nanoseconds longest = std::max<Nanoseconds>(kJoinTime, choice_.direction_pause() * 3 / 2);
+  if (now - kept.time > longest || (kept.source == source && !kept.came_alone)) return std::nullopt;
+  return kept.direction_deg;
+}
+
+/// What speed and direction are taken from: a change of it is logged.
+void NmeaSensor::name_sources(const std::string& source, const wind::WindReading& reading, bool is_calm) {
+  const std::string& direction_source = choice_.direction_source();
+  if (direction_source.empty() || direction_source == source) {
+    taken_ = source;
+  } else if (reading.direction_deg) {
+    taken_ = fmt::format("{} with the direction of {}", source, direction_source);
+  } else if (!is_calm) {
+    taken_ = fmt::format("{} without a direction, since {} gives none", source, direction_source);
+  }
+}
+
 /// Of any sentence of the talker: `sentences` says where the wind is taken from.
 std::optional<wind::StationQuantities> NmeaSensor::quantities_of(std::string_view line) const {
   const NmeaFormat format = settings_.format == NmeaFormat::kAuto ? format_by_look(line) : settings_.format;
-  if (format != NmeaFormat::kNmea && format != NmeaFormat::kWxt) return {};
   if (!settings_.talker.empty() && name_of_message(format, line).talker != settings_.talker) return {};
-  if (format == NmeaFormat::kWxt) return decode::text::decode_wxt_quantities({.checksum = settings_.checksum}, line);
-  return decode::text::decode_nmea_quantities(
-      {.checksum = settings_.checksum, .status = settings_.status, .xdr_first_id = settings_.xdr_first_id}, line);
+  switch (format) {
+    case NmeaFormat::kNmea:
+      return decode::text::decode_nmea_quantities(
+          {.checksum = settings_.checksum, .status = settings_.status, .xdr_first_id = settings_.xdr_first_id}, line);
+    case NmeaFormat::kGill: {
+      decode::text::GillOptions options;
+      options.checksum = settings_.makers_checksum;
+      options.status = settings_.status;
+      return decode::text::decode_gill_quantities(options, line);
+    }
+    case NmeaFormat::kWxt:
+      return decode::text::decode_wxt_quantities({.checksum = settings_.checksum}, line);
+    case NmeaFormat::kAuto:
+    case NmeaFormat::kFt:
+    case NmeaFormat::kUmb:
+      break;
+  }
+  return {};
 }
 
 std::optional<wind::WindReading> NmeaSensor::take_held() {

@@ -60,18 +60,21 @@ class NmeaSensor final : public TextSensor {
   Result<decode::DecodedWind, decode::Refusal> decode(NmeaFormat format, std::string_view line) const;
   std::optional<double> north_direction_deg(const decode::DecodedWind& wind) const;
 
-  /// A direction that came in a message of its own, kept until the speed of the same source.
-  struct LoneDirection {
+  /// The last direction that was taken, kept for the speeds that follow.
+  struct KeptDirection {
     std::string source;
     double direction_deg = 0.0;
     MonoTime time{};
+    bool came_alone = false;  ///< in a message without a speed
   };
+  std::optional<double> direction_for(const std::string& source, MonoTime now);
+  void name_sources(const std::string& source, const wind::WindReading& reading, bool is_calm);
 
   NmeaSensorSettings settings_;
   WindChoice choice_;
   std::optional<wind::WindReading> held_;
-  std::optional<LoneDirection> lone_direction_;
-  std::string taken_;  // the name of the source that was taken last
+  std::optional<KeptDirection> kept_direction_;
+  std::string taken_;  // the sources that were taken last, for people
 };
 
 }  // namespace yuragi::drivers::text

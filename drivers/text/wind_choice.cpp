@@ -8,34 +8,63 @@ namespace {
 /// A source that misses so many of its own pauses has fallen silent.
 constexpr int kMissedPauses = 3;
 constexpr Nanoseconds kShortestAbsence = std::chrono::seconds(3);
+/// The same, before a direction in another frame is taken in place of its own.
+constexpr int kMissedPausesOfFrame = 10;
+constexpr Nanoseconds kShortestAbsenceOfFrame = std::chrono::seconds(60);
 
 }  // namespace
 
-WindChoice::Verdict WindChoice::offer(const Source& source, MonoTime now) {
-  if (wanted_ && source.frame != *wanted_) return Verdict::kForeign;
-  best_frame_ = best_frame_ ? std::min(*best_frame_, source.frame) : source.frame;
+void WindChoice::Chosen::hear(MonoTime now) noexcept {
+  pause = now - last;
+  last = now;
+}
 
-  if (current_ == source) {
-    pause_ = now - last_;
-    last_ = now;
+bool WindChoice::Chosen::is_silent(MonoTime now, int pauses, Nanoseconds at_least) const noexcept {
+  return now - last > std::max(at_least, pauses * pause);
+}
+
+WindChoice::Verdict WindChoice::offer(const Source& source, const Said& said, MonoTime now) {
+  takes_direction_ = false;
+  if (wanted_ && source.frame != *wanted_) return Verdict::kForeign;
+  if (said.has_direction) {
+    takes_direction_ = offer_direction(source, now);
+  } else if (said.is_calm && direction_.source == source) {
+    direction_.hear(now);
+  }
+  return said.has_speed ? offer_speed(source, now) : Verdict::kPass;
+}
+
+bool WindChoice::offer_direction(const Source& source, MonoTime now) {
+  if (direction_.source == source) {
+    direction_.hear(now);
+    return true;
+  }
+  const WindFrame frame = direction_.source.frame;
+  const bool is_silent = source.frame == frame
+                             ? direction_.is_silent(now, kMissedPauses, kShortestAbsence)
+                             : direction_.is_silent(now, kMissedPausesOfFrame, kShortestAbsenceOfFrame);
+  if (direction_.is_any() && source.frame >= frame && !is_silent) return false;
+  direction_ = {.source = source, .last = now};
+  return true;
+}
+
+WindChoice::Verdict WindChoice::offer_speed(const Source& source, MonoTime now) {
+  if (speed_.source == source) {
+    speed_.hear(now);
     is_settled_ = true;
     return Verdict::kTake;
   }
-
-  const bool is_first = !current_;
-  const bool is_better = current_ && source.frame < current_->frame;
-  const bool is_silent = current_ && now - last_ > std::max(kShortestAbsence, kMissedPauses * pause_);
-  if (!is_first && !is_better && !is_silent) return Verdict::kPass;
-  current_ = source;
-  last_ = now;
-  pause_ = {};
+  const bool is_better = source.frame < speed_.source.frame;
+  const bool is_silent = speed_.is_any() && speed_.is_silent(now, kMissedPauses, kShortestAbsence);
+  if (speed_.is_any() && !is_better && !is_silent) return Verdict::kPass;
+  speed_ = {.source = source, .last = now};
   if (is_silent) return Verdict::kTake;
   // Later than in the first burst: the other source has sent this measurement already.
   return is_settled_ ? Verdict::kPass : Verdict::kHold;
 }
 
 void WindChoice::restart() noexcept {
-  current_.reset();
+  speed_ = {};
   is_settled_ = false;
 }
 

@@ -18,8 +18,11 @@ enum class WindFrame : std::uint8_t {
 /// Selects which of a device's messages to publish. A device with several sentences repeats one measurement in each of
 /// them, in one burst; taking all would publish it several times, in different frames.
 ///
-/// The best source (sentence and talker) is taken, and another only when that one has fallen silent. Directions are in
-/// one frame throughout, the best one received so far: in another they would differ by the angle between the two.
+/// Speed and direction are chosen each by itself, since a sentence may have one of them only. The best source (sentence
+/// and talker) is taken, and another only when that one has fallen silent: has not given its quantity for three of its
+/// own pauses, at least 3 s. A direction in another frame, which differs by the angle between the two, is taken only
+/// after ten pauses, at least a minute, and until the better one comes back. A direction that is left out in a calm is
+/// not silent.
 class WindChoice {
  public:
   /// Talker, sentence and frame of a message.
@@ -29,10 +32,18 @@ class WindChoice {
     bool operator==(const Source&) const = default;
   };
 
+  /// What a message says.
+  struct Said {
+    bool has_speed = false;
+    bool has_direction = false;
+    bool is_calm = false;  ///< by its speed: no vane turns in it
+  };
+
+  /// On the speed.
   enum class Verdict : std::uint8_t {
     kTake,     ///< this is the wind
     kHold,     ///< this is the wind, unless a better one comes in the same burst
-    kPass,     ///< the same measurement as another source's
+    kPass,     ///< the same measurement as another source's, or none
     kForeign,  ///< not in the configured frame
   };
 
@@ -40,21 +51,40 @@ class WindChoice {
   explicit WindChoice(std::optional<WindFrame> frame) : wanted_(frame) {}
 
   /// A message of `source` has come.
-  Verdict offer(const Source& source, MonoTime now);
+  Verdict offer(const Source& source, const Said& said, MonoTime now);
   /// The first burst is over: what was held is the wind.
   void settle() noexcept { is_settled_ = true; }
-  /// Is the direction of what was just taken in the one frame?
-  bool has_direction() const noexcept { return current_ && current_->frame == best_frame_; }
-  /// The device was opened again: its sources begin anew. Its frame stays.
+
+  /// Is the direction of what was just offered the wind's?
+  bool takes_direction() const noexcept { return takes_direction_; }
+  /// The name of the source of the direction; empty: there was no direction yet.
+  const std::string& direction_source() const noexcept { return direction_.source.name; }
+  /// Between the last two of its directions; zero before.
+  Nanoseconds direction_pause() const noexcept { return direction_.pause; }
+
+  /// The device was opened again: its sources of the speed begin anew. Its frame of direction stays.
   void restart() noexcept;
 
  private:
+  /// The source of a quantity, and when it last gave it.
+  struct Chosen {
+    Source source;  ///< without a name: none
+    MonoTime last{};
+    Nanoseconds pause{};  ///< between the last two
+
+    bool is_any() const noexcept { return !source.name.empty(); }
+    void hear(MonoTime now) noexcept;
+    bool is_silent(MonoTime now, int pauses, Nanoseconds at_least) const noexcept;
+  };
+
+  bool offer_direction(const Source& source, MonoTime now);
+  Verdict offer_speed(const Source& source, MonoTime now);
+
   std::optional<WindFrame> wanted_;
-  std::optional<Source> current_;
-  std::optional<WindFrame> best_frame_;
+  Chosen speed_;
+  Chosen direction_;
+  bool takes_direction_ = false;
   bool is_settled_ = false;
-  MonoTime last_{};
-  Nanoseconds pause_{};  // between the last two of the current source
 };
 
 }  // namespace yuragi::drivers::text

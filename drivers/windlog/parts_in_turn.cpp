@@ -148,12 +148,18 @@ Result<void, Failure> PartsInTurn::add(const std::filesystem::path& file) {
   if (!opened && is_blank_file(file)) return {};
   if (!opened) return opened.error();
   const StoredReadings& own = *opened->readings;
-  if (own.sessions.empty()) return {};
+  const auto begun = own.sessions.empty() ? own.begun_without_readings : std::optional(own.sessions.front().first.utc);
+  if (!begun) return {};
 
   Part part{.file = file, .first_sensor = sensors.size(), .sensor_count = own.sensors.size()};
   if (!sessions.empty()) {
-    const Nanoseconds gap = own.sessions.front().first.utc - sessions.back().last.utc;
+    const Nanoseconds gap = *begun - sessions.back().last.utc;
     part.log_begin = sessions.back().log_end() + std::max(gap, Nanoseconds{0});
+  } else if (own.sessions.empty()) {
+    if (!parts_.empty()) part.log_begin = std::max(*begun - parts_.front().last, Nanoseconds{0});
+  } else {
+    // Log time begins with the first reading. What was said before has a log time below zero.
+    for (Part& earlier : parts_) earlier.log_begin = earlier.log_end = std::min(earlier.last - *begun, Nanoseconds{0});
   }
   std::map<std::int64_t, std::int64_t> number_of;  // of a session, by its id in the file
   for (LoggedSession session : own.sessions) {
@@ -168,8 +174,8 @@ Result<void, Failure> PartsInTurn::add(const std::filesystem::path& file) {
     sensor.session = number == number_of.end() ? 0 : number->second;  // 0: of a session without readings
     sensors.push_back(std::move(sensor));
   }
-  part.log_end = sessions.back().log_end();
-  part.last = sessions.back().last.utc;
+  part.log_end = own.sessions.empty() ? part.log_begin : sessions.back().log_end();
+  part.last = own.sessions.empty() ? *begun : sessions.back().last.utc;
   parts_.push_back(std::move(part));
   return {};
 }
@@ -220,15 +226,16 @@ Result<std::size_t, Failure> PartsInTurn::each_quantities(Nanoseconds from, Nano
     const Part& part = parts_[index];
     const bool is_last = index + 1 == parts_.size();
     if (part.log_begin >= to) break;
-    if (!is_last && parts_[index + 1].log_begin <= from) continue;
+    if (from > Nanoseconds{0} && !is_last && parts_[index + 1].log_begin <= from) continue;
     auto file = open_part(part);
     if (!file) return file.error();
-    const auto passed = file->readings->each_quantities(
-        from - part.log_begin, to == Nanoseconds::max() ? to : to - part.log_begin, [&](LoggedQuantities logged) {
-          logged.log_time += part.log_begin;
-          logged.sensor += part.first_sensor;
-          use(logged);
-        });
+    const auto passed = file->readings->each_quantities(from <= Nanoseconds{0} ? Nanoseconds{0} : from - part.log_begin,
+                                                        to == Nanoseconds::max() ? to : to - part.log_begin,
+                                                        [&](LoggedQuantities logged) {
+                                                          logged.log_time += part.log_begin;
+                                                          logged.sensor += part.first_sensor;
+                                                          use(logged);
+                                                        });
     if (passed) {
       skipped += *passed;
     } else if (!leave_out_rest(part, std::nullopt, passed.error())) {

@@ -18,8 +18,8 @@ namespace yuragi::drivers::windlog {
 /// between two (at least zero). Its ids of sessions count through all files. Only the file that is read is open.
 class PartsInTurn final : public StoredReadings {
  public:
-  /// Opens each file, oldest first, for what it contains. A file without readings adds none, nor one that is damaged;
-  /// fails where no file can be read, and with the first failure.
+  /// Opens each file, oldest first, for what it contains. A file without readings adds its quantities alone, and one
+  /// that is damaged nothing; fails where no file can be read, and with the first failure.
   static Result<std::unique_ptr<PartsInTurn>, Failure> open(const std::vector<std::filesystem::path>& files,
                                                             const std::stop_token& stop);
 
@@ -39,7 +39,7 @@ class PartsInTurn final : public StoredReadings {
     Nanoseconds log_end{0};
     std::size_t first_sensor = 0;
     std::size_t sensor_count = 0;
-    UtcTime last{};  ///< its last reading
+    UtcTime last{};  ///< its last reading; without any, when it was begun
   };
 
   std::vector<std::string> damage() const override { return damage_; }

@@ -56,7 +56,9 @@ class SeriesTables final : public StoredReadings {
   Result<void, Failure> load() {
     if (auto loaded = load_starts(); !loaded) return loaded;
     if (auto loaded = load_sensors(); !loaded) return loaded;
-    return load_sessions();
+    if (auto loaded = load_sessions(); !loaded) return loaded;
+    if (sessions.empty() && !starts_.empty() && has_quantities()) begun_without_readings = starts_.front().started.utc;
+    return {};
   }
 
   Result<std::vector<std::unique_ptr<ReadingBlocks>>, Failure> blocks(
@@ -97,6 +99,7 @@ class SeriesTables final : public StoredReadings {
   Result<void, Failure> load_starts();
   Result<void, Failure> load_sensors();
   Result<void, Failure> load_sessions();
+  bool has_quantities() const;
   Result<std::optional<Place>, Failure> edge_of(const Start& start, bool is_last) const;
   Result<std::optional<Place>, Failure> edge_of(const Start& start, std::int64_t series, bool is_last) const;
   Result<std::optional<std::int64_t>, Failure> first_after(const Start& start, std::int64_t series,
@@ -247,6 +250,15 @@ Result<std::size_t, Failure> SeriesTables::each_quantities(Nanoseconds from, Nan
   }
   if (step == Statement::Step::kFailed) return database_.failure();
   return skipped;
+}
+
+/// Also where they cannot be read.
+bool SeriesTables::has_quantities() const {
+  const auto tables = database_.integer("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = '" +
+                                        std::string(kQuantityTable) + "'");
+  if (!tables || *tables == 0) return false;
+  const auto found = database_.integer("SELECT EXISTS (SELECT 1 FROM " + std::string(kQuantityTable) + ")");
+  return !found || *found != 0;
 }
 
 /// One series, through all sessions.

@@ -38,6 +38,8 @@ class StoredReadings {
   /// As of the opening: sessions that have readings, in order, and the sensors of all sessions.
   std::vector<LoggedSession> sessions;
   std::vector<LoggedSensor> sensors;
+  /// When the first session was begun, of a file that has quantities and no reading; else nothing.
+  std::optional<UtcTime> begun_without_readings;
 
   /// Of a series of files, those that are damaged, each with the span that is left out, as sentences. What is found
   /// while it is read comes to them.

@@ -164,7 +164,21 @@ Result<std::int64_t, Failure> WindlogWriter::begin_of_next_session(UtcTime start
       __builtin_add_overflow(time_ns, std::max<std::int64_t>(gap_ns, 1), &begin_ns) || begin_ns >= kMaxTime_ns) {
     return Failure{database_.file().string() + ": its times leave no room for another session; choose another file"};
   }
+  // Nor before what stations said last: the clock may have been set back since.
+  if (const auto said_ns = last_quantities_ns(); said_ns && *said_ns < kMaxTime_ns - 1) {
+    begin_ns = std::max(begin_ns, *said_ns + 1);
+  }
   return begin_ns;
+}
+
+/// The place of the last quantities on the recording's time line; nothing where there are none, or their table is
+/// damaged.
+std::optional<std::int64_t> WindlogWriter::last_quantities_ns() {
+  const std::string table(kQuantityTable);
+  auto last = database_.prepare("SELECT time_ns FROM " + table + " WHERE typeof(time_ns) = 'integer' AND time_ns < " +
+                                std::to_string(kMaxTime_ns) + " ORDER BY time_ns DESC LIMIT 1");
+  if (!last || last->step() != sqlite::Statement::Step::kRow) return std::nullopt;
+  return last->integer(0);
 }
 
 Result<std::int64_t, Failure> WindlogWriter::add_sensor(std::string_view name, std::string_view driver,
@@ -331,7 +345,7 @@ Result<std::optional<UtcTime>, Failure> WindlogWriter::began() {
     if (!found) return found.error();
     has_readings = *found;
   }
-  if (has_readings == 0) return std::optional<UtcTime>{};
+  if (has_readings == 0 && !last_quantities_ns()) return std::optional<UtcTime>{};
   const auto utc_ns = database_.integer("SELECT started_utc_ns FROM session ORDER BY begin_ns LIMIT 1");
   if (!utc_ns) return utc_ns.error();
   return std::optional(UtcTime(Nanoseconds(*utc_ns)));

@@ -56,7 +56,7 @@ class WindlogWriter {
   /// sensor, or the file's table for it is damaged. A failure is one of the disk.
   Result<bool, Failure> append(std::int64_t sensor, const wind::StationQuantities& quantities);
 
-  /// When the first session of a file that has readings was begun; nothing where it has none.
+  /// When the first session of a file that has readings or quantities was begun; nothing where it has none.
   Result<std::optional<UtcTime>, Failure> began();
 
   /// Makes everything so far durable.
@@ -87,6 +87,7 @@ class WindlogWriter {
   Result<void, Failure> prepare_insert(std::int64_t sensor, std::int64_t series);
   Result<void, Failure> begin_transaction();
   bool prepare_quantities();
+  std::optional<std::int64_t> last_quantities_ns();
   Result<void, Failure> write(sqlite::Statement& statement);
   Result<void, Failure> undo();
   void release();

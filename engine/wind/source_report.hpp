@@ -13,14 +13,15 @@ namespace yuragi::wind {
 enum class SourceHealth : std::uint8_t {
   kSilent,  ///< has not spoken yet
   kLive,
-  kStale,  ///< silent for longer than its own measured interval explains
+  kStale,  ///< silent for longer than its own measured interval explains, or what else is known of it
 };
 inline constexpr std::size_t kSourceHealthCount = 3;
 
 struct SourceReport {
   SourceHealth health = SourceHealth::kSilent;
-  double interval_s = 0.0;  ///< measured: the median of the last intervals; 0 before the second reading
+  double interval_s = 0.0;  ///< measured: between new readings; 0 before the second reading
   double age_s = 0.0;       ///< of its last reading
+  bool is_overdue = false;  ///< live, but not by its interval: its silence is explained otherwise
   std::optional<WindReading> last;
 };
 

@@ -34,4 +34,7 @@ inline constexpr double kMaxPlausibleSpeed_m_s = 120.0;
 /// Is everything in the reading finite and within physical range?
 bool is_plausible(const WindReading& reading) noexcept;
 
+/// Have both the same speed, direction and gust, bit for bit?
+bool says_the_same(const WindReading& a, const WindReading& b) noexcept;
+
 }  // namespace yuragi::wind

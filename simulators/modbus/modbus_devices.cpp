@@ -17,6 +17,12 @@ namespace {
 
 constexpr double kTenths = 10.0;
 
+/// The wind force of the Beaufort scale (WMO): the first force has the first of these speeds as its least.
+double beaufort_of(double speed_m_s) {
+  constexpr std::array kLeast_m_s = {0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7};
+  return static_cast<double>(std::ranges::upper_bound(kLeast_m_s, speed_m_s) - kLeast_m_s.begin());
+}
+
 double compass_point_of(double direction_deg, int points) {
   return static_cast<double>(std::lround(direction_deg * points / 360.0) % points);
 }
@@ -43,17 +49,60 @@ void measure_sen0482_v1(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set(0x0000, compass_point_of(air.direction_deg, 16));
 }
 
-/// Renke multi-station: 500 speed, 501 Beaufort (left at 0 here), 502 eight points, 503 degrees.
+/// Renke multi-station: 500 speed, 501 Beaufort, 502 eight points, 503 degrees, 504 humidity, 505 temperature, 506 to
+/// 508 noise and dust, 509 pressure, 510 to 512 light, 513 rain.
 void measure_multi_station(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set(500, kTenths * air.speed_m_s);
-  registers.set(501, 0.0);
+  registers.set(501, beaufort_of(air.speed_m_s));
   registers.set(502, compass_point_of(air.direction_deg, 8));
   registers.set(503, air.direction_deg);
+  registers.set(504, kTenths * air.humidity_percent);
+  registers.set(505, kTenths * air.temperature_c);
+  for (int i = 506; i <= 512; ++i) registers.set(i, 0.0);
+  registers.set(509, air.pressure_hpa);
+  registers.set(513, kTenths * air.rain_mm);
 }
 
-/// SenseCAP ONE: from 0x0008 direction, from 0x000E speed, each least, most, mean; thousandths.
+/// The same of makers who write hundredths.
+void measure_multi_station_x100(const ModbusAir& air, ModbusRegisterBank& registers) {
+  measure_multi_station(air, registers);
+  registers.set(500, 100.0 * air.speed_m_s);
+}
+
+/// SEN0657: the wind force is not among its documented registers.
+void measure_sen0657(const ModbusAir& air, ModbusRegisterBank& registers) {
+  measure_multi_station(air, registers);
+  registers.set(501, 0.0);
+}
+
+/// WN90LP: from 0x0160 model, baud rate, id, serial number; from 0x0165 light, UV, temperature with 400 added,
+/// humidity, speed, gust, direction, rain, pressure, rain in hundredths.
+void measure_wn90lp(const ModbusAir& air, ModbusRegisterBank& registers) {
+  registers.set(0x0160, 0x90);
+  registers.set(0x0161, 2);
+  registers.set(0x0162, 0x90);
+  registers.set(0x0163, 0x1234);
+  registers.set(0x0164, 0x5678);
+  registers.set(0x0165, 1767.0);
+  registers.set(0x0166, 13.0);
+  registers.set(0x0167, kTenths * air.temperature_c + 400.0);
+  registers.set(0x0168, air.humidity_percent);
+  registers.set(0x0169, kTenths * air.speed_m_s);
+  registers.set(0x016A, kTenths * air.gust_m_s);
+  registers.set(0x016B, air.direction_deg);
+  registers.set(0x016C, kTenths * air.rain_mm);
+  registers.set(0x016D, kTenths * air.pressure_hpa);
+  registers.set(0x016E, 100.0 * air.rain_mm);
+}
+
+/// SenseCAP ONE: 0x0000 temperature, 0x0002 humidity, 0x0004 pressure in Pa; from 0x0008 direction, from 0x000E speed,
+/// each least, most, mean; thousandths.
 void measure_sensecap(const ModbusAir& air, ModbusRegisterBank& registers) {
   constexpr double kThousandths = 1000.0;
+  registers.set_two(0x0000, kThousandths * air.temperature_c);
+  registers.set_two(0x0002, kThousandths * air.humidity_percent);
+  registers.set_two(0x0004, kThousandths * 100.0 * air.pressure_hpa);
+  registers.set_two(0x0006, 0.0);
   for (int i = 0; i < 3; ++i) registers.set_two(0x0008 + 2 * i, kThousandths * air.direction_deg);
   registers.set_two(0x000E, kThousandths * air.lull_m_s);
   registers.set_two(0x0010, kThousandths * air.gust_m_s);
@@ -70,8 +119,14 @@ void measure_calypso(const ModbusAir& air, ModbusRegisterBank& registers) {
   }
 }
 
-/// Lufft UMB: 42 actual, 43 least, 44 most, 45 mean, 46 vectorial mean, 47 fast.
+/// Lufft UMB: from 10 humidity, from 14 pressure, from 18 direction, 31 temperature; speed: 42 actual, 43 least, 44
+/// most, 45 mean, 46 vectorial mean, 47 fast. It has all of 0 to 124; what this model does not measure is an error.
 void measure_lufft(const ModbusAir& air, ModbusRegisterBank& registers) {
+  for (int i = 0; i <= 124; ++i) registers.set(i, 0x7FFF);
+  for (int i = 10; i <= 13; ++i) registers.set(i, kTenths * air.humidity_percent);
+  for (int i = 14; i <= 17; ++i) registers.set(i, kTenths * air.pressure_hpa);
+  for (int i = 18; i <= 22; ++i) registers.set(i, kTenths * air.direction_deg);
+  registers.set(31, kTenths * air.temperature_c);
   registers.set(42, kTenths * air.mean_m_s);
   registers.set(43, kTenths * air.lull_m_s);
   registers.set(44, kTenths * air.gust_m_s);
@@ -80,16 +135,17 @@ void measure_lufft(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set(47, kTenths * air.speed_m_s);
 }
 
-/// WM80: floats; speed and direction in turn: sample, instant, mean; lull; gust; direction of the mean, of the gust.
+/// WM80: floats, their low words first; speed and direction in turn: sample, instant, mean; lull; gust; direction of
+/// the mean, of the gust.
 void measure_wm80(const ModbusAir& air, ModbusRegisterBank& registers) {
   for (int i = 0x0000; i <= 0x0008; i += 4) {
-    registers.set_float(i, i == 0x0008 ? air.mean_m_s : air.speed_m_s);
-    registers.set_float(i + 2, air.direction_deg);
+    registers.set_float_low_word_first(i, i == 0x0008 ? air.mean_m_s : air.speed_m_s);
+    registers.set_float_low_word_first(i + 2, air.direction_deg);
   }
-  registers.set_float(0x000C, air.lull_m_s);
-  registers.set_float(0x000E, air.gust_m_s);
-  registers.set_float(0x0010, air.direction_deg);
-  registers.set_float(0x0012, air.direction_deg);
+  registers.set_float_low_word_first(0x000C, air.lull_m_s);
+  registers.set_float_low_word_first(0x000E, air.gust_m_s);
+  registers.set_float_low_word_first(0x0010, air.direction_deg);
+  registers.set_float_low_word_first(0x0012, air.direction_deg);
 }
 
 /// MaxiMet GMX: 40001 node letter, 40003 DIR, 40005 SPEED, 40007 CDIR, less 40001 each.
@@ -106,22 +162,30 @@ void measure_metsens(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set_float(2, air.speed_m_s);
 }
 
-/// Lambrecht: from 30001 speed now, mean, most, least; from 30201 direction likewise.
-void measure_lambrecht(const ModbusAir& air, ModbusRegisterBank& registers) {
+/// Lambrecht: from 30001 speed now, mean, most, least.
+void measure_lambrecht_cup(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set(30001, kTenths * air.speed_m_s);
   registers.set(30002, kTenths * air.mean_m_s);
   registers.set(30003, kTenths * air.gust_m_s);
   registers.set(30004, kTenths * air.lull_m_s);
+}
+
+/// Lambrecht: from 30201 direction now, mean, most, least.
+void measure_lambrecht_vane(const ModbusAir& air, ModbusRegisterBank& registers) {
   for (int i = 30201; i <= 30204; ++i) registers.set(i, kTenths * air.direction_deg);
 }
 
-/// Thies: 30001 speed now, 30003 mean, 30011 gust; 30203 direction, 30211 that of the gust; two registers each.
+/// Thies: 30001 speed now, 30003 mean, 30011 gust; 30203 direction, 30211 that of the gust; 30401 temperature, 30601
+/// humidity, 30801 pressure in hundredths; two registers each.
 void measure_thies(const ModbusAir& air, ModbusRegisterBank& registers) {
   registers.set_two(30001, kTenths * air.speed_m_s);
   registers.set_two(30003, kTenths * air.speed_m_s);
   registers.set_two(30011, kTenths * air.gust_m_s);
   registers.set_two(30203, kTenths * air.direction_deg);
   registers.set_two(30211, kTenths * air.direction_deg);
+  registers.set_two(30401, kTenths * air.temperature_c);
+  registers.set_two(30601, kTenths * air.humidity_percent);
+  registers.set_two(30801, 100.0 * air.pressure_hpa);
 }
 
 constexpr std::array kRenkeCup = {ModbusSlave{1, 3, measure_cup}};
@@ -130,13 +194,17 @@ constexpr std::array kDfrobotCup = {ModbusSlave{2, 3, measure_cup}};
 constexpr std::array kDfrobotPair = {ModbusSlave{2, 3, measure_cup}, ModbusSlave{3, 3, measure_sen0482}};
 constexpr std::array kDfrobotPairV1 = {ModbusSlave{2, 3, measure_cup}, ModbusSlave{3, 3, measure_sen0482_v1}};
 constexpr std::array kMultiStation = {ModbusSlave{1, 3, measure_multi_station}};
+constexpr std::array kMultiStationX100 = {ModbusSlave{1, 3, measure_multi_station_x100}};
+constexpr std::array kSen0657 = {ModbusSlave{1, 3, measure_sen0657}};
+constexpr std::array kWn90lp = {ModbusSlave{0x90, 3, measure_wn90lp}};
 constexpr std::array kSensecap = {ModbusSlave{1, 4, measure_sensecap}};
 constexpr std::array kCalypso = {ModbusSlave{1, 3, measure_calypso}};
 constexpr std::array kLufft = {ModbusSlave{1, 4, measure_lufft}};
 constexpr std::array kWm80 = {ModbusSlave{1, 3, measure_wm80}};
 constexpr std::array kGmx = {ModbusSlave{1, 3, measure_gmx}};
 constexpr std::array kMetsens = {ModbusSlave{1, 3, measure_metsens}};
-constexpr std::array kLambrecht = {ModbusSlave{1, 4, measure_lambrecht, 30002}};
+constexpr std::array kLambrecht = {ModbusSlave{1, 4, measure_lambrecht_cup, 30002},
+                                   ModbusSlave{2, 4, measure_lambrecht_vane, 30202}};
 constexpr std::array kThies = {ModbusSlave{1, 4, measure_thies}};
 constexpr std::array kVane = {ModbusSlave{1, 3, measure_renke_vane}};
 constexpr std::array kDfrobotVane = {ModbusSlave{2, 3, measure_sen0482}};
@@ -145,7 +213,7 @@ struct DeviceEntry {
   std::string_view name;
   std::span<const ModbusSlave> slaves;
 };
-constexpr std::array<DeviceEntry, 18> kModbusDevices = {{
+constexpr std::array<DeviceEntry, 21> kModbusDevices = {{
     {"renke-rs-fsjt-rs-fxjt-n01", kRenkePair},
     {"renke-rs-fsjt-n01", kRenkeCup},
     {"renke-rs-fxjt-n01", kVane},
@@ -154,6 +222,9 @@ constexpr std::array<DeviceEntry, 18> kModbusDevices = {{
     {"dfrobot-sen0483-sen0482", kDfrobotPair},
     {"dfrobot-sen0483-sen0482-v1", kDfrobotPairV1},
     {"renke-multi-station", kMultiStation},
+    {"renke-multi-station-x100", kMultiStationX100},
+    {"dfrobot-sen0657", kSen0657},
+    {"ecowitt-wn90lp", kWn90lp},
     {"seeed-sensecap-one", kSensecap},
     {"calypso-ulp", kCalypso},
     {"lufft-umb", kLufft},
@@ -191,6 +262,12 @@ void ModbusRegisterBank::set_float(int address, double value) {
   const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
   set_bits(address, static_cast<std::uint16_t>(bits >> 16U));
   set_bits(address + 1, static_cast<std::uint16_t>(bits & 0xFFFFU));
+}
+
+void ModbusRegisterBank::set_float_low_word_first(int address, double value) {
+  const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
+  set_bits(address, static_cast<std::uint16_t>(bits & 0xFFFFU));
+  set_bits(address + 1, static_cast<std::uint16_t>(bits >> 16U));
 }
 
 std::optional<std::uint16_t> ModbusRegisterBank::at(std::uint16_t address) const {

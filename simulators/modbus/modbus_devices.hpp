@@ -18,14 +18,20 @@ struct ModbusAir {
   double gust_m_s = 0.0;       ///< the strongest of the last seconds
   double lull_m_s = 0.0;       ///< the weakest of them
   double mean_m_s = 0.0;
+  // What does not change: for stations that measure more than wind.
+  double temperature_c = -3.7;
+  double humidity_percent = 64.0;
+  double pressure_hpa = 1009.0;
+  double rain_mm = 12.6;
 };
 
 /// The content of a device's registers: 16 bits for each address, as on the wire.
 class ModbusRegisterBank {
  public:
-  void set(int address, double value);      ///< as a whole number of 16 bits, negative ones in two's complement
-  void set_two(int address, double value);  ///< as a whole number of 32 bits in two registers, the high one first
-  void set_float(int address, double value);
+  void set(int address, double value);        ///< as a whole number of 16 bits, negative ones in two's complement
+  void set_two(int address, double value);    ///< as a whole number of 32 bits in two registers, the high one first
+  void set_float(int address, double value);  ///< in two registers, the high one first
+  void set_float_low_word_first(int address, double value);  ///< the low one first
   void set_bits(int address, std::uint16_t bits) { registers_[static_cast<std::uint16_t>(address)] = bits; }
 
   /// Empty: there is no such register.
@@ -37,7 +43,7 @@ class ModbusRegisterBank {
 
 /// One slave of a simulated bus.
 struct ModbusSlave {
-  std::uint8_t id = 1;
+  std::uint8_t id = 1;        ///< from the factory
   std::uint8_t function = 3;  ///< the only one that it supports: 3 or 4
   void (*measure)(const ModbusAir& air, ModbusRegisterBank& registers) = nullptr;
   /// A register whose reading clears lull, mean and gust; 0 where there is none.

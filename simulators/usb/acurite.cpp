@@ -7,6 +7,8 @@
 //                           78                       ... | temperature, high 4 bits      temperature, humidity
 //
 // Report 2, 25 bytes: the console's own sensors. The speed n is 0.8278 n + 1 km/h; the direction is a code's number.
+// The others do not change here: 12 tips of 0.01 inch of rain; 8 << 7 | 0x1f, less 720, eighteenths of a degree
+// Celsius; 83 %.
 #include "simulators/usb/acurite.hpp"
 
 #include <algorithm>

@@ -5,7 +5,9 @@
 // of all 33. The host acknowledges with 24 af ... A request with a wrong check byte gets no reply.
 //
 // Memory from 0x020001 on (counted from the header as byte 0): 26, 27 gust; 28, 29 speed, decimal digits of 0.1 mph:
-// ones and tenths, then tens (and 0x10: a hundred); 30 point of the compass. New every 33 s.
+// ones and tenths, then tens (and 0x10: a hundred); 30 point of the compass. New every 33 s. And what does not change
+// here: 4, 5 temperature of channel 1, digits as above with 0x80: above zero, 0x40: valid, 0x20: 0.05 more; 6 its
+// humidity, two digits; 21, 22 pressure, 1/16 hPa, low byte first; 31, 32 tips of the rain gauge, low byte first.
 #include "simulators/usb/te923.hpp"
 
 #include <algorithm>
@@ -44,6 +46,11 @@ class Te923 final : public HidModel {
     // Before the first message of its anemometer.
     constexpr std::array<std::uint8_t, 4> kNoSensor = {0xEE, 0x8E, 0xEE, 0x8E};
     std::ranges::copy(kNoSensor, readings_.begin() + 25);
+    constexpr std::array<std::uint8_t, 3> kChannel1 = {0x96, 0xE1, 0x58};  // 19.65 degrees Celsius, 58 %
+    std::ranges::copy(kChannel1, readings_.begin() + 3);
+    constexpr std::array<std::uint8_t, 2> kPressure = {0xD0, 0x3E};  // 1005 hPa
+    std::ranges::copy(kPressure, readings_.begin() + 20);
+    readings_[30] = 36;  // an inch of rain
   }
 
  protected:

@@ -6,9 +6,10 @@
 //
 //   every     frame (first byte: flags; second: kind)
 //   14 s      48 wind, 11 bytes: point of the compass; 0c; gust, 12 bits, and average, 12 bits, 0.1 m/s; chill 2 bytes
-//   47 s      42 temperature, 12 bytes
+//   47 s      42 temperature, 12 bytes: channel (1, outdoors), 0.1 degrees Celsius, %: 19.6 degrees and 58 %
 //   60 s      60 clock, 12 bytes
-//   73 s      46 pressure, 8 bytes
+//   73 s      46 pressure, 8 bytes: 1005 hPa at the station, and at sea level
+//   49 s      41 rain, 17 bytes: rate, last hour, day, all, 0.01 inch; since when: 2.50 inch in all
 #include "simulators/usb/wmr100.hpp"
 
 #include <algorithm>
@@ -30,7 +31,8 @@ struct FrameKind {
   std::uint8_t kind;
   double every_s;
 };
-constexpr std::array<FrameKind, 4> kFrameKinds = {{{0x48, 14.0}, {0x42, 47.0}, {0x60, 60.0}, {0x46, 73.0}}};
+constexpr std::array<FrameKind, 5> kFrameKinds = {
+    {{0x48, 14.0}, {0x42, 47.0}, {0x60, 60.0}, {0x46, 73.0}, {0x41, 49.0}}};
 
 class Wmr100 final : public HidModel {
  public:
@@ -82,6 +84,9 @@ class Wmr100 final : public HidModel {
       }
       case 0x42:
         bytes = {0x00, 0x42, 0xD1, 0xC4, 0x00, 0x3A, 0x65, 0x00, 0x00, 0x20};
+        break;
+      case 0x41:
+        bytes = {0x00, 0x41, 0x00, 0x00, 0x00, 0x00, 0x0C, 0x00, 0xFA, 0x00, 0x00, 0x0C, 0x01, 0x01, 0x09};
         break;
       case 0x60:
         bytes = {0x00, 0x60, 0x00, 0x00, 0x14, 0x09, 0x1C, 0x04, 0x09, 0x01};

@@ -7,8 +7,9 @@
 //
 //   every     packet
 //   2.75 s    d4 wind, 54 bytes, big-endian from 8 on: gust 0.1 m/s, its direction, average 0.1 m/s, its direction
-//   11 s      d3 temperature, 61 bytes
-//   22 s      d5 rain, 40 bytes
+//   11 s      d3 temperature, 61 bytes: 8 0.1 degrees Celsius, 10 %: -3.6 degrees (two's complement) and 58 %
+//   22 s      d5 rain, 40 bytes: 15 all, 17 rate, 0.01 inch (an hour): 2.50 and 0.10 inch
+//   900 s     d6 pressure, 46 bytes: 8 at the station, 10 at sea level, 0.1 hPa: 981.7 and 1015.3 hPa
 #include "simulators/usb/wmr300.hpp"
 
 #include <algorithm>
@@ -31,7 +32,8 @@ struct PacketKind {
   std::uint8_t size;
   double every_s;
 };
-constexpr std::array<PacketKind, 3> kPacketKinds = {{{0xD4, 54, 2.75}, {0xD3, 61, 11.0}, {0xD5, 40, 22.0}}};
+constexpr std::array<PacketKind, 4> kPacketKinds = {
+    {{0xD4, 54, 2.75}, {0xD3, 61, 11.0}, {0xD5, 40, 22.0}, {0xD6, 46, 900.0}}};
 
 class Wmr300 final : public HidModel {
  public:
@@ -100,6 +102,15 @@ class Wmr300 final : public HidModel {
       put(14, std::fmod(std::round(wind().direction_deg), 360.0));
       put(18, 0x7FFD);  // no wind chill
       gust_m_s_ = 0.0;
+    } else if (kind.kind == 0xD3) {
+      put(8, 0x10000 - 36);
+      bytes[10] = 58;
+    } else if (kind.kind == 0xD5) {
+      put(15, 250);
+      put(17, 10);
+    } else {
+      put(8, 9817);
+      put(10, 10153);
     }
     unsigned sum = 0;
     for (const std::uint8_t byte : bytes) sum += byte;

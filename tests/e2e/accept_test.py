@@ -14,15 +14,10 @@ import sys
 import tempfile
 import unittest
 
-from programs import HANG_S, Program
+from programs import HANG_S, Program, free_port
 
 BIN = os.path.abspath(sys.argv.pop(1))
 YURAGI = os.path.join(BIN, "yuragi")
-
-
-def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]
 
 
 class Accept(unittest.TestCase):

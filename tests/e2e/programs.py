@@ -2,10 +2,17 @@
 import os
 import re
 import signal
+import socket
 import subprocess
 import threading
 
 HANG_S = 60.0  # so long waits only who waits for something that hangs
+
+
+def free_port():
+    """One of the loopback that nobody listens on."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return listener.getsockname()[1]
 
 
 class Program:

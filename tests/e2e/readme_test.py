@@ -30,6 +30,7 @@ NOT_RUN = (
     (r"^yuragi-viewer\b", "needs a display"),
     (r"/dev/ttyUSB|^yuragi calibrate (zero|north)", "needs a device"),
     (r"--usbip", "needs a kernel with USB/IP"),
+    (r"--broker \d", "needs a broker"),
 )
 DAEMON = r"\byuragi (run|replay(?!.*--rate max))\b"
 RUNS_ON = (

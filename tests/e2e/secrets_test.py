@@ -4,7 +4,6 @@
 usage: secrets_test.py FOLDER_OF_PROGRAMS FOLDER_OF_SCHEMA_MODULES
 """
 import os
-import socket
 import sqlite3
 import stat
 import subprocess
@@ -13,7 +12,7 @@ import tempfile
 import unittest
 
 import pose_client
-from programs import HANG_S, Program
+from programs import HANG_S, Program, free_port
 
 BIN, SCHEMA_MODULES = (os.path.abspath(word) for word in (sys.argv.pop(1), sys.argv.pop(1)))
 YURAGI = os.path.join(BIN, "yuragi")
@@ -22,11 +21,6 @@ PASSWORD = "hunter2-correct-horse"
 
 def run(*arguments):
     return subprocess.run([YURAGI, *map(str, arguments)], capture_output=True, text=True, timeout=HANG_S, check=False)
-
-
-def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]
 
 
 class Secrets(unittest.TestCase):

@@ -1,10 +1,12 @@
 // Any bytes for every decoder of USB stations and DAQs; sums and heads are mended on request, so that values are
 // reached.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "drivers/decode/hid/acurite.hpp"
@@ -16,6 +18,7 @@
 #include "drivers/decode/usb/labjack.hpp"
 #include "drivers/decode/usb/mcc1208.hpp"
 #include "drivers/decode/usb/potentiometer_vane.hpp"
+#include "engine/wind/station_quantities.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace {
@@ -31,10 +34,24 @@ void require_physical(const Result<decode::DecodedWind, decode::Refusal>& decode
   require(!decoded || decode::checked(*decoded).has_value());
 }
 
+/// Whatever is said can be recorded, or dropped.
+void require_recordable(const std::optional<wind::StationQuantities>& said) {
+  if (!said) return;
+  const auto part = wind::plausible_part(*said);
+  for (const wind::StationQuantity& each : wind::kStationQuantities) {
+    const auto& value = (*said).*each.value;
+    const bool is_kept = part && ((*part).*each.value).has_value();
+    require(!is_kept || (*((*part).*each.value) >= each.least && *((*part).*each.value) <= each.greatest));
+    require(!value || std::isfinite(*value));
+  }
+}
+
 void read_stream(decode::ByteSpan bytes) {
   decode::hid::Wmr100Stream stream;
   for (const std::uint8_t byte : bytes) {
-    if (const auto result = decode::hid::take_wmr100_byte(stream, byte)) require_physical(*result);
+    const auto result = decode::hid::take_wmr100_byte(stream, byte);
+    if (result) require_physical(*result);
+    require_recordable(decode::hid::decode_wmr100_quantities(decode::hid::ended_wmr100_frame(stream)));
     require(stream.size <= decode::hid::kWmr100LongestFrame + 1);
   }
   if (const auto result = decode::hid::finish_wmr100(stream)) require_physical(*result);
@@ -48,7 +65,11 @@ void read_frames(std::vector<std::uint8_t> bytes, bool is_mended) {
   require_physical(decode::hid::decode_te923(bytes));
   require_physical(decode::hid::decode_acurite(bytes));
   require_physical(decode::hid::decode_fineoffset_record(bytes));
-  static_cast<void>(decode::hid::decode_fineoffset_quantities(bytes));
+  require_recordable(decode::hid::decode_wmr100_quantities(bytes));
+  require_recordable(decode::hid::decode_wmr300_quantities(bytes));
+  require_recordable(decode::hid::decode_te923_quantities(bytes));
+  require_recordable(decode::hid::decode_acurite_quantities(bytes));
+  require_recordable(decode::hid::decode_fineoffset_quantities(bytes));
   static_cast<void>(decode::hid::encode_wmr300_acknowledgement(bytes));
   for (const auto model : {decode::hid::FineOffsetModel::kWh1080, decode::hid::FineOffsetModel::kWh3080}) {
     if (const auto fixed = decode::hid::decode_fineoffset_fixed_block(bytes, model)) {
@@ -65,6 +86,27 @@ void read_frames(std::vector<std::uint8_t> bytes, bool is_mended) {
     frame[10] = static_cast<std::uint8_t>(sum >> 8U);
     require_physical(decode::hid::decode_wmr100_frame(frame));
   }
+  constexpr std::array<std::array<std::size_t, 2>, 3> kWmr100Weather = {{{0x41, 17}, {0x42, 12}, {0x46, 8}}};
+  for (const auto& [kind, size] : kWmr100Weather) {
+    if (bytes.size() < size) continue;
+    std::vector<std::uint8_t> frame(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    frame[1] = static_cast<std::uint8_t>(kind);
+    const auto sum = decode::sum_16(decode::ByteSpan(frame).first(size - 2));
+    frame[size - 2] = static_cast<std::uint8_t>(sum & 0xFFU);
+    frame[size - 1] = static_cast<std::uint8_t>(sum >> 8U);
+    require_recordable(decode::hid::decode_wmr100_quantities(frame));
+  }
+  constexpr std::array<std::array<std::size_t, 2>, 3> kWmr300Weather = {{{0xD3, 61}, {0xD5, 40}, {0xD6, 46}}};
+  for (const auto& [kind, size] : kWmr300Weather) {
+    if (bytes.size() < size) continue;
+    std::vector<std::uint8_t> packet = bytes;
+    packet[0] = static_cast<std::uint8_t>(kind);
+    packet[1] = static_cast<std::uint8_t>(size);
+    const auto sum = decode::sum_16(decode::ByteSpan(packet).first(size - 2));
+    packet[size - 2] = static_cast<std::uint8_t>(sum >> 8U);
+    packet[size - 1] = static_cast<std::uint8_t>(sum & 0xFFU);
+    require_recordable(decode::hid::decode_wmr300_quantities(packet));
+  }
   if (bytes.size() >= decode::hid::kTe923Block) {
     std::vector<std::uint8_t> block(bytes.begin(), bytes.begin() + decode::hid::kTe923Block);
     block[0] = 0x5A;
@@ -72,6 +114,7 @@ void read_frames(std::vector<std::uint8_t> bytes, bool is_mended) {
     const auto decoded = decode::hid::decode_te923(block);
     require(decoded || decoded.error() == decode::Refusal::kInvalid);
     require_physical(decoded);
+    require_recordable(decode::hid::decode_te923_quantities(block));
   }
   if (bytes.size() >= decode::hid::kWmr300WindPacket) {
     bytes[0] = 0xD4;

@@ -19,16 +19,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   // Half of the inputs have a header that is understood, so that the rows are reached.
   std::string text = (data[0] & 32) != 0 ? "" : "time,speed,direction,gust\n";
-  if ((data[0] & 64) != 0) text = "time;u_kn;v_kn\n";
+  if ((data[0] & 64) != 0) text = "time;u_kn;v_kn;temp;w\n";
+  if ((data[0] & 128) != 0) text = "# FF : speed (in 0.1 m/s)\n# STN,YYYYMMDD,HH,DD,FF\n";
   for (std::size_t i = 1; i < size; ++i) text += static_cast<char>(data[i]);
 
   std::istringstream in(text);
   MonoTime last{};
-  const auto report =
-      daemon::tools::csv::import_csv(in, "fuzz", options, [&](std::string_view, const wind::WindReading& reading) {
+  const auto report = daemon::tools::csv::import_csv(
+      in, "fuzz", options, {.reading = [&](std::string_view, const wind::WindReading& reading) {
         if (!drivers::windlog::is_recordable(reading) || reading.time.mono < last) std::abort();
         last = reading.time.mono;
-      });
+      }});
   if (report && report->taken > report->rows) std::abort();
   return 0;
 }

@@ -12,8 +12,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const daemon::tools::decode::UnitFormat& format = formats[data[0] % formats.size()];
   const auto bit = [&](unsigned number) { return ((data[1] >> number) & 1U) != 0; };
   daemon::tools::decode::UnitDecoderOptions options;
-  if (bit(0)) options.checksum = drivers::decode::WhenMissing::kAccept;
-  if (bit(1)) options.status = drivers::decode::WhenMissing::kAccept;
+  if (bit(0)) options.makers_checksum = drivers::decode::WhenMissing::kAccept;
+  if (bit(1)) options.checksum = options.status = drivers::decode::WhenMissing::kRefuse;
   options.are_reports = bit(2);
   if (bit(3)) options.interval_s = 0.5;
   if (bit(4)) options.vane_reference_v = 5.0;

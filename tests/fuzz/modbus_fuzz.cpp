@@ -1,4 +1,5 @@
 // Any bytes as an answer to any request, on both framings, read through any quantity; and any text as a profile.
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
@@ -41,6 +42,7 @@ void decode_reply(std::span<const std::uint8_t> input) {
     if (const auto speed_m_s = decode::modbus::decode_speed_m_s(quantity, registers->span())) {
       require(*speed_m_s >= 0.0 && *speed_m_s <= wind::kMaxPlausibleSpeed_m_s);
     }
+    if (const auto number = decode::modbus::decode_number(quantity, registers->span())) require(std::isfinite(*number));
     if (const auto direction_deg = decode::modbus::decode_direction_deg(quantity, registers->span())) {
       require(*direction_deg >= 0.0 && *direction_deg < 360.0);
     }
@@ -56,14 +58,16 @@ void check_plan(const modbus::ModbusProfile& profile) {
       require(read.request.count >= 1 && read.request.count <= decode::modbus::kModbusMaxRegisters);
       decode::modbus::ModbusRegisters registers;
       registers.count = read.request.count;
-      for (const modbus::ModbusMeasure measure : read.measures) {
-        const decode::modbus::ModbusQuantity& quantity = modbus::quantity_of(profile, measure);
+      const auto require_in_reply = [&](const decode::modbus::ModbusQuantity& quantity) {
         require(quantity.address >= read.request.address);
         require(quantity.address + decode::modbus::register_count(quantity.type) <=
                 read.request.address + std::size_t{read.request.count});
         require(modbus::registers_of(quantity, read.request, registers).size() ==
                 decode::modbus::register_count(quantity.type));
-      }
+      };
+      require(read.has_wind() || !read.stations.empty());
+      for (const modbus::ModbusMeasure measure : read.measures) require_in_reply(modbus::quantity_of(profile, measure));
+      for (const std::size_t station : read.stations) require_in_reply(profile.quantities.at(station).quantity);
     }
   }
 }

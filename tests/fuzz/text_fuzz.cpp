@@ -1,6 +1,7 @@
 // Any bytes as what a text protocol sends, in pieces of any size, with every policy: lines stay bounded, and a reading
 // has something in it and is physical.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
@@ -57,6 +58,9 @@ void decode_everything(std::string_view line, unsigned choices) {
     static_cast<void>(
         decode::text::decode_nmea_quantities({.checksum = checksum, .status = status, .xdr_first_id = 0}, text));
     require_physical(decode::text::decode_gill(gill, text));
+    if (const auto said = decode::text::decode_gill_quantities(gill, text)) {
+      if (!said->vertical_speed_m_s || !std::isfinite(*said->vertical_speed_m_s)) std::abort();
+    }
     require_physical(decode::text::decode_ft({.checksum = checksum, .status = status}, text));
     require_physical(decode::text::decode_umb({}, text));
     require_physical(decode::text::decode_wxt({.checksum = checksum}, text));

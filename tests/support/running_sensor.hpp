@@ -114,6 +114,9 @@ class RunningSensor final : private drivers::sensor::SensorSink {
   void reading(const wind::WindReading& reading) override {
     change([&](RecordingSink& sink) { sink.reading(reading); });
   }
+  void quantities(const wind::StationQuantities& quantities) override {
+    change([&](RecordingSink& sink) { sink.quantities(quantities); });
+  }
   void refused(drivers::decode::Refusal why, std::uint64_t times) override {
     change([&](RecordingSink& sink) { sink.refused(why, times); });
   }

@@ -10,9 +10,12 @@
 
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/sensor/sensor.hpp"
-#include "simulators/text/text_simulator.hpp"
+#include "simulators/played_wind.hpp"
+#include "simulators/simulator.hpp"
+#include "simulators/text/text_wire.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
+#include "tests/support/still_wind.hpp"
 
 namespace yuragi {
 
@@ -58,16 +61,6 @@ class ObservedWire final : public simulators::text::TextWire {
   bool& has_written_;
 };
 
-/// A wind that stands still.
-class StillWind final : public simulators::PlayedWind {
- public:
-  explicit StillWind(simulators::PlayedMoment moment) : moment_(moment) {}
-  simulators::PlayedMoment at(double /*time_s*/) override { return moment_; }
-
- private:
-  simulators::PlayedMoment moment_;
-};
-
 /// A driver and a simulator with a real wire between them, in a time that the test makes: the seconds pass as fast as
 /// the machine carries the bytes.
 class TextBench {
@@ -80,8 +73,7 @@ class TextBench {
     return std::make_unique<ImpatientPort>(drivers::bus::make_byte_port(address), patience_);
   }
 
-  void put(std::unique_ptr<simulators::text::TextSimulator> simulator,
-           std::unique_ptr<drivers::sensor::Sensor> sensor) {
+  void put(std::unique_ptr<simulators::Simulator> simulator, std::unique_ptr<drivers::sensor::Sensor> sensor) {
     simulator_ = std::move(simulator);
     sensor_ = std::move(sensor);
   }
@@ -99,6 +91,13 @@ class TextBench {
     return holds();
   }
 
+  /// The sensor ends as with the daemon, and the simulator sees what it said last.
+  void close_sensor() {
+    sensor_->interrupt();
+    sensor_.reset();
+    serve({});
+  }
+
   ManualClock clock;
   RecordingSink sink;
 
@@ -109,15 +108,8 @@ class TextBench {
     time_s_ += kStep_s;
     clock.advance(from_seconds(kStep_s));
 
-    std::vector<pollfd> waits;
-    for (const int descriptor : simulator_->descriptors()) waits.push_back({descriptor, POLLIN, 0});
-    poll(waits.data(), waits.size(), 0);
-    std::vector<int> ready;
-    for (const pollfd& wait : waits) {
-      if (wait.revents != 0) ready.push_back(wait.fd);
-    }
     has_written_ = false;
-    simulator_->serve(ready, time_s_, fault);
+    serve(fault);
 
     // What was said is on its way, and arrives in this step also on a machine that has other things to do.
     patience_ = has_written_ ? std::chrono::milliseconds(100) : std::chrono::microseconds(200);
@@ -126,7 +118,18 @@ class TextBench {
     sensor_->poll(clock, sink);
   }
 
-  std::unique_ptr<simulators::text::TextSimulator> simulator_;
+  void serve(std::optional<simulators::FaultKind> fault) {
+    std::vector<pollfd> waits;
+    for (const int descriptor : simulator_->descriptors()) waits.push_back({descriptor, POLLIN, 0});
+    poll(waits.data(), waits.size(), 0);
+    std::vector<int> ready;
+    for (const pollfd& wait : waits) {
+      if (wait.revents != 0) ready.push_back(wait.fd);
+    }
+    simulator_->serve(ready, time_s_, fault);
+  }
+
+  std::unique_ptr<simulators::Simulator> simulator_;
   std::unique_ptr<drivers::sensor::Sensor> sensor_;
   Nanoseconds patience_ = std::chrono::milliseconds(1);
   bool has_written_ = false;

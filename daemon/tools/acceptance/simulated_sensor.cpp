@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "drivers/sensor/driver.hpp"
+#include "engine/base/units.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi::daemon::tools::acceptance {
@@ -24,7 +25,7 @@ constexpr double kSpeedStep_m_s = 0.1;
 constexpr double kDirectionStep_deg = 1.0;
 
 /// `north_offset_deg`: what the driver itself adds to directions.
-ExpectedWind expected_wind(const SensorConfig& sensor, double north_offset_deg) {
+ExpectedWind expected_wind(const SensorConfig& sensor, double north_offset_deg, double step_m_s = kSpeedStep_m_s) {
   const auto calibrated = [&](double speed_m_s) {
     wind::WindReading reading;
     reading.speed_m_s = speed_m_s;
@@ -32,8 +33,8 @@ ExpectedWind expected_wind(const SensorConfig& sensor, double north_offset_deg) 
     return sensor.calibration.applied_to(reading);
   };
   const wind::WindReading middle = calibrated(kSimulatedSpeed_m_s);
-  const double least_m_s = calibrated(kSimulatedSpeed_m_s - kSpeedStep_m_s).speed_m_s;
-  const double most_m_s = calibrated(kSimulatedSpeed_m_s + kSpeedStep_m_s).speed_m_s;
+  const double least_m_s = calibrated(kSimulatedSpeed_m_s - step_m_s).speed_m_s;
+  const double most_m_s = calibrated(kSimulatedSpeed_m_s + step_m_s).speed_m_s;
   return {.speed_m_s = middle.speed_m_s,
           .speed_tolerance_m_s = std::max(most_m_s - middle.speed_m_s, middle.speed_m_s - least_m_s),
           .direction_deg = middle.direction_deg.value(),
@@ -118,6 +119,12 @@ Result<SimulationPlan, Failure> plan_line(const SensorConfig& sensor) {
   return plan;
 }
 
+SimulationPlan plan_davis(const SensorConfig& sensor) {
+  SimulationPlan plan = plan_of(sensor, "davis", {});
+  plan.expected = expected_wind(sensor, 0.0, kMetresPerSecondPerMph);  // it says whole miles per hour
+  return plan;
+}
+
 }  // namespace
 
 Result<SimulationPlan, Failure> plan_simulation(const SensorConfig& sensor) {
@@ -125,6 +132,7 @@ Result<SimulationPlan, Failure> plan_simulation(const SensorConfig& sensor) {
   if (driver == "modbus") return plan_modbus(sensor);
   if (driver == "nmea") return plan_nmea(sensor);
   if (driver == "line") return plan_line(sensor);
+  if (driver == "davis") return plan_davis(sensor);
   constexpr std::array<std::string_view, 3> kNeedDevices = {"hid", "usb", "microphone"};
   if (std::ranges::find(kNeedDevices, driver) != kNeedDevices.end())
     return Failure{fmt::format("a simulated {} needs USB or sound of its own, and rights for it", driver)};

@@ -6,227 +6,306 @@
 
 #include <fmt/format.h>
 
-#include "engine/base/units.hpp"
+#include "daemon/tools/csv/csv_names.hpp"
+#include "daemon/tools/csv/csv_time.hpp"
+#include "daemon/tools/csv/csv_usual_names.hpp"
+#include "daemon/tools/csv/csv_words.hpp"
 
 namespace yuragi::daemon::tools::csv {
 namespace {
 
-constexpr drivers::sensor::SpeedUnit kMetresPerSecond{"m/s", 1.0};
-constexpr drivers::sensor::SpeedUnit kKilometresPerHour{"km/h", kMetresPerSecondPerKmh};
-constexpr drivers::sensor::SpeedUnit kKnots{"kn", kMetresPerSecondPerKnot};
-constexpr drivers::sensor::SpeedUnit kMilesPerHour{"mph", kMetresPerSecondPerMph};
+constexpr std::string_view kByName = "by its name";
+constexpr std::string_view kUtc = "utc";
 
-constexpr std::array<std::pair<std::string_view, drivers::sensor::SpeedUnit>, 14> kSpeedUnits = {
-    {{"ms", kMetresPerSecond},
-     {"ms1", kMetresPerSecond},
-     {"mps", kMetresPerSecond},
-     {"mpers", kMetresPerSecond},
-     {"kmh", kKilometresPerHour},
-     {"kmh1", kKilometresPerHour},
-     {"kph", kKilometresPerHour},
-     {"kmph", kKilometresPerHour},
-     {"kn", kKnots},
-     {"kt", kKnots},
-     {"kts", kKnots},
-     {"knot", kKnots},
-     {"knots", kKnots},
-     {"mph", kMilesPerHour}}};
-
-// Usual names of columns, in lower case, without punctuation and unit. The first that is found is used.
-constexpr std::array<std::string_view, 15> kTimeNames = {"utc",       "utctime",  "timeutc", "datetimeutc", "dateutc",
-                                                         "timestamp", "datetime", "isotime", "time",        "date",
-                                                         "unixtime",  "unix",     "epoch",   "ts",          "t"};
-constexpr std::array<std::string_view, 14> kSpeedNames = {
-    "speed",        "windspeed",    "windspd", "wspeed",        "wspd",          "ws",  "wv", "ff",
-    "windspeedavg", "avgwindspeed", "windavg", "windspeedmean", "meanwindspeed", "wind"};
-constexpr std::array<std::string_view, 10> kDirectionNames = {
-    "direction", "winddirection", "winddir", "wdir", "wd", "dd", "dir", "winddirectionavg", "bearing", "windbearing"};
-constexpr std::array<std::string_view, 9> kGustNames = {
-    "gust", "windgust", "windgusts", "gustspeed", "gusts", "windgustspeed", "wgust", "maxwindspeed", "windspeedmax"};
-constexpr std::array<std::string_view, 6> kUNames = {"u", "uwind", "windu", "ucomponent", "ugrd", "eastward"};
-constexpr std::array<std::string_view, 6> kVNames = {"v", "vwind", "windv", "vcomponent", "vgrd", "northward"};
-
-std::span<const std::string_view> usual_names(CsvRole role) {
-  switch (role) {
-    case CsvRole::kTime:
-      return kTimeNames;
-    case CsvRole::kSpeed:
-      return kSpeedNames;
-    case CsvRole::kDirection:
-      return kDirectionNames;
-    case CsvRole::kGust:
-      return kGustNames;
-    case CsvRole::kU:
-      return kUNames;
-    case CsvRole::kV:
-      return kVNames;
-    case CsvRole::kElapsed:
-    case CsvRole::kQuality:
-    case CsvRole::kSensor:
-      break;  // only in yuragi's own exports
-  }
-  return {};
-}
-
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-bool is_word_sign(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-}
-
-/// The words of a name in lower case: "Wind Speed (km/h)" has wind, speed, km, h.
-std::vector<std::string> words_of(std::string_view name) {
-  std::vector<std::string> words(1);
-  for (const char sign : name) {
-    const char c = lower(sign);
-    if (is_word_sign(c)) {
-      words.back() += c;
-    } else if (!words.back().empty()) {
-      words.emplace_back();
-    }
-  }
-  if (words.back().empty()) words.pop_back();
-  return words;
-}
-
-std::string joined(std::span<const std::string> words) {
-  std::string all;
-  for (const std::string& word : words) all += word;
-  return all;
-}
-
-/// A parsed name: "wind_speed_10m (km/h)" is "windspeed" in "kmh".
-struct NameParts {
-  std::string stem;
-  std::string unit;
-};
-
-NameParts parts_of(std::string_view name) {
-  std::vector<std::string> words = words_of(name);
-  const auto is_unit = [](std::string_view text) {
-    static constexpr std::array<std::string_view, 9> kOthers = {"deg", "degree",  "degrees", "rad",    "radian",
-                                                                "s",   "radians", "sec",     "seconds"};
-    return find_speed_unit(text).has_value() || std::find(kOthers.begin(), kOthers.end(), text) != kOthers.end();
-  };
-
-  // The longest unit at the end: m_s_1 before s_1.
-  NameParts parts;
-  for (std::size_t count = std::min<std::size_t>(3, words.empty() ? 0 : words.size() - 1); count > 0; --count) {
-    const std::string unit = joined(std::span(words).last(count));
-    if (!is_unit(unit)) continue;
-    parts.unit = unit;
-    words.resize(words.size() - count);
-    break;
-  }
-
-  // A height is not part of the name.
-  std::erase_if(words, [](const std::string& word) {
-    return word.size() > 1 && word.back() == 'm' &&
-           std::all_of(word.begin(), word.end() - 1, [](char c) { return c >= '0' && c <= '9'; });
-  });
-  parts.stem = joined(words);
-  return parts;
-}
-
-CsvColumn column_at(const std::vector<std::string>& header, std::size_t index) {
-  const std::string& name = header[index];
-  const NameParts parts = parts_of(name);
-  return {.name = name,
-          .index = index,
-          .unit = find_speed_unit(parts.unit),
-          .is_in_radians = parts.unit.starts_with("rad"),
-          .is_in_ms = parts.unit == "ms"};
-}
-
-bool equal_in_any_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+bool is_any_of(std::string_view text, std::initializer_list<std::string_view> names) {
+  return std::ranges::find(names, text) != names.end();
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
-}  // namespace
-
-std::string_view name_of(CsvRole role) {
-  static constexpr std::array<std::string_view, kCsvRoleCount> kNames = {
-      "time", "elapsed", "speed", "direction", "gust", "u", "v", "quality", "sensor"};
-  return kNames.at(static_cast<std::size_t>(role));
+/// The name of a time's column without its zone: "Date Time, GMT-07:00" is "datetime".
+std::string time_stem(std::string_view name) {
+  std::vector<std::string> words = words_of(name);
+  std::erase_if(words, [](const std::string& word) {
+    return is_any_of(word, {"utc", "gmt", "z", "lt", "hst"}) ||
+           word.find_first_not_of("0123456789") == std::string::npos;
+  });
+  while (words.size() > 1 && is_any_of(words.back(), {"ms", "s", "sec", "seconds", "iso"})) words.pop_back();
+  std::string stem = words.empty() ? "time" : joined(words);
+  if (stem.size() > kUtc.size() && stem.ends_with(kUtc)) stem.resize(stem.size() - kUtc.size());
+  return stem;
 }
 
-std::optional<drivers::sensor::SpeedUnit> find_speed_unit(std::string_view name) {
-  const std::string plain = joined(words_of(name));
-  for (const auto& [known, unit] : kSpeedUnits) {
-    if (known == plain) return unit;
+/// The zone that the name of a time's column says: "GMT-07:00", "UTC"; or that of American standard times.
+std::optional<std::string> zone_in_name(std::string_view name) {
+  const std::string text = lower(name);
+  for (const std::string_view word : {"utc", "gmt"}) {
+    const auto at = text.find(word);
+    if (at == std::string::npos) continue;
+    const auto end = text.find_first_not_of("+-0123456789: ", at + word.size());
+    const std::string_view offset =
+        without_blanks(std::string_view(text).substr(at + word.size(), end - at - word.size()));
+    return offset.starts_with('+') || offset.starts_with('-') ? std::string(offset) : std::string("UTC");
+  }
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kStandardTimes = {
+      {{"est", "-05:00"}, {"cst", "-06:00"}, {"mst", "-07:00"}, {"pst", "-08:00"}}};
+  for (const std::string& word : words_of(name)) {
+    for (const auto& [known, offset] : kStandardTimes) {
+      if (word == known) return std::string(offset);
+    }
   }
   return std::nullopt;
 }
 
-Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& header, const CsvColumnNames& given) {
-  CsvColumns columns;
-  const auto at = [&columns](CsvRole role) -> std::optional<CsvColumn>& {
-    return columns[static_cast<std::size_t>(role)];
-  };
-  const auto is_given = [&given](CsvRole role) { return !given[static_cast<std::size_t>(role)].empty(); };
-
-  // As the user says.
-  for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
-    if (given[role].empty()) continue;
-    const auto found = std::find_if(header.begin(), header.end(),
-                                    [&](const std::string& name) { return equal_in_any_case(name, given[role]); });
-    if (found == header.end()) {
-      return Failure{"there is no column \"" + given[role] + "\"; the columns are " + listed(header)};
+/// One choice of columns.
+class ColumnChoice {
+ public:
+  ColumnChoice(const std::vector<std::string>& header, const CsvColumnNames& given, const std::vector<std::string>& row)
+      : header_(header), given_(given), row_(row), is_taken_(header.size(), false) {
+    for (const std::string& name : header) {
+      names_.push_back(parse_name(name));
+      time_stems_.push_back(time_stem(name));
     }
-    columns[role] = column_at(header, static_cast<std::size_t>(found - header.begin()));
   }
 
-  // By their names. Components are searched for only where there is no speed, and vice versa.
-  const auto guess = [&](CsvRole role) {
-    if (at(role)) return;
+  Result<CsvColumns, Failure> choose() {
+    if (const auto done = take_given(); !done) return done.error();
+    choose_time();
+    if (columns_.time_parts.empty()) return checked();
+    choose_wind();
+    for (const CsvRole role : kQuantityRoles) guess(role);
+    take_exported();
+    return checked();
+  }
+
+ private:
+  bool is_given(CsvRole role) const { return !given_[static_cast<std::size_t>(role)].empty(); }
+
+  Result<void, Failure> take_given() {
+    for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
+      if (given_[role].empty()) continue;
+      const auto found =
+          std::ranges::find_if(header_, [&](const std::string& name) { return lower(name) == lower(given_[role]); });
+      if (found == header_.end()) {
+        return Failure{"there is no column \"" + given_[role] + "\"; the columns are " + listed(header_)};
+      }
+      take(static_cast<CsvRole>(role), static_cast<std::size_t>(found - header_.begin()));
+    }
+    return {};
+  }
+
+  void take(CsvRole role, std::size_t index) {
+    CsvColumn column{.name = header_[index], .index = index, .unit = std::nullopt, .unit_source = {}};
+    const CsvName& name = names_[index];
+    column.unit = find_unit(dimension_of(role), joined(name.unit_words));
+    if (column.unit) column.unit_source = kByName;
+    columns_.at(role) = column;
+    is_taken_[index] = true;
+  }
+
+  /// Takes the first column with one of a role's usual names. Of two directions it is the one in degrees.
+  void guess(CsvRole role) {
+    if (columns_.at(role)) return;
+    if (role == CsvRole::kDirection && take_usual(role, true)) return;
+    if (take_usual(role, false)) return;
+    if (role == CsvRole::kGust) guess_greatest_speed();
+  }
+
+  /// "windspeedmph" is "windspeed" in mph.
+  bool take_usual(CsvRole role, bool is_unit_needed) {
     for (const std::string_view usual : usual_names(role)) {
-      for (std::size_t i = 0; i < header.size(); ++i) {
-        if (!at(role) && parts_of(header[i]).stem == usual) at(role) = column_at(header, i);
+      for (std::size_t i = 0; i < header_.size(); ++i) {
+        if (is_taken_[i]) continue;
+        const CsvName& name = names_[i];
+        const CsvStatistic wanted = role == CsvRole::kGust ? CsvStatistic::kMax : CsvStatistic::kMean;
+        if (name.statistic != CsvStatistic::kMean && name.statistic != wanted) continue;
+        if (name.stem == usual && (!is_unit_needed || !name.unit_words.empty())) {
+          take(role, i);
+          return true;
+        }
+        if (name.stem == usual || !name.stem.starts_with(usual)) continue;
+        const auto unit = find_unit(dimension_of(role), std::string_view(name.stem).substr(usual.size()));
+        if (!unit) continue;
+        take(role, i);
+        columns_.at(role)->unit = unit;
+        columns_.at(role)->unit_source = kByName;
+        return true;
       }
     }
-  };
-  guess(CsvRole::kTime);
-  guess(CsvRole::kGust);
-  const bool wants_components = is_given(CsvRole::kU) || is_given(CsvRole::kV);
-  if (!wants_components) guess(CsvRole::kSpeed);
-  if (at(CsvRole::kSpeed)) {
-    guess(CsvRole::kDirection);
-  } else {
-    guess(CsvRole::kU);
-    guess(CsvRole::kV);
+    return false;
   }
 
-  // yuragi's own exports have further columns.
-  if (fmt::format("{}", fmt::join(header, ",")) == kExportedHeader) {
-    const auto named = [&header](std::string_view name) {
-      return column_at(header, static_cast<std::size_t>(std::ranges::find(header, name) - header.begin()));
-    };
-    if (!is_given(CsvRole::kTime)) at(CsvRole::kElapsed) = named("time_s");
-    at(CsvRole::kSensor) = named("sensor");
-    at(CsvRole::kQuality) = named("quality");
-  }
-
-  if (!at(CsvRole::kTime)) {
-    return Failure{"no column looks like a time; the columns are " + listed(header) + "; name it with --time COLUMN"};
-  }
-  if (!at(CsvRole::kSpeed) && (!at(CsvRole::kU) || !at(CsvRole::kV))) {
-    return Failure{"no column looks like a wind speed, nor two like u and v; the columns are " + listed(header) +
-                   "; name it with --speed COLUMN, or --u COLUMN --v COLUMN"};
-  }
-  for (const auto& column : columns) {
-    if (column && std::ranges::count(header, column->name) > 1) {
-      return Failure{"the column \"" + column->name + "\" is duplicated in the header"};
+  /// A column of greatest speeds is one of gusts: WS_ms_Max.
+  void guess_greatest_speed() {
+    for (const std::string_view usual : usual_names(CsvRole::kSpeed)) {
+      for (std::size_t i = 0; i < header_.size(); ++i) {
+        const CsvName& name = names_[i];
+        if (!is_taken_[i] && name.statistic == CsvStatistic::kMax && name.stem == usual) return take(CsvRole::kGust, i);
+      }
     }
   }
-  return columns;
+
+  /// One that says that it is in UTC, before one that may be in local time.
+  std::optional<std::size_t> find_time_column(CsvRole role) const {
+    for (const bool is_utc_wanted : {true, false}) {
+      for (const std::string_view usual : usual_names(role)) {
+        for (std::size_t i = 0; i < header_.size(); ++i) {
+          const bool is_usual = !is_taken_[i] && !header_[i].empty() && time_stems_[i] == usual;
+          if (is_usual && (!is_utc_wanted || zone_in_name(header_[i]) == "UTC")) return i;
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::string_view first_value(std::size_t index) const {
+    return index < row_.size() ? std::string_view(row_[index]) : std::string_view();
+  }
+
+  void choose_time() {
+    if (!columns_.at(CsvRole::kTime) && !columns_.at(CsvRole::kDate)) {
+      if (choose_calendar_columns()) return;
+      choose_time_by_name();
+    }
+    if (!columns_.at(CsvRole::kTime) && columns_.at(CsvRole::kDate))
+      columns_.at(CsvRole::kTime).swap(columns_.at(CsvRole::kDate));
+    if (!columns_.at(CsvRole::kTime)) return;
+    if (columns_.at(CsvRole::kDate)) columns_.time_parts.push_back(columns_.at(CsvRole::kDate)->index);
+    columns_.time_parts.push_back(columns_.at(CsvRole::kTime)->index);
+    for (const std::size_t part : columns_.time_parts) read_time_name(header_[part]);
+  }
+
+  void choose_time_by_name() {
+    const auto moment = find_time_column(CsvRole::kTime);
+    const auto date = find_time_column(CsvRole::kDate);
+    if (!moment) {
+      // The index of a table is written without a name.
+      const bool is_index = !header_.empty() && is_any_of(lower(header_[0]), {"", "index", "unnamed: 0"});
+      if (is_index && has_date(first_value(0))) take(CsvRole::kTime, 0);
+      return;
+    }
+    std::optional<std::size_t> clock;
+    if (date) {
+      // The time of day, in a column beside that of the date.
+      for (const std::string_view usual : {"time", "uhrzeit", "zeit", "heure", "hour", "hh", "clock", "localtime",
+                                           "mst", "est", "cst", "pst", "lst", "timehhmm", "hhmm", "timelst"}) {
+        for (std::size_t i = 0; i < header_.size() && !clock; ++i) {
+          if (i != *date && !is_taken_[i] && time_stems_[i] == usual) clock = i;
+        }
+      }
+    }
+    const bool is_split =
+        date && clock && !has_date(first_value(*clock)) && first_value(*date).find(':') == std::string_view::npos;
+    if (is_split) {
+      take(CsvRole::kDate, *date);
+      take(CsvRole::kTime, *clock);
+      return;
+    }
+    take(CsvRole::kTime,
+         date && *moment != *date && !row_.empty() && !has_date(first_value(*moment)) && has_date(first_value(*date))
+             ? *date
+             : *moment);
+  }
+
+  /// Year, month, day, hour, minute and second in columns side by side.
+  bool choose_calendar_columns() {
+    constexpr std::size_t kParts = 6;
+    static const std::array<std::initializer_list<std::string_view>, kParts> kNames = {
+        {{"year", "yyyy", "yy", "yr", "jahr"},
+         {"month", "mo", "mm", "monat"},
+         {"day", "dd", "dy", "tag"},
+         {"hour", "hh", "hr", "stunde"},
+         {"minute", "min", "mn", "mm"},
+         {"second", "sec", "ss"}}};
+    for (std::size_t begin = 0; begin + 3 < header_.size(); ++begin) {
+      std::size_t count = 0;
+      while (count < kParts && begin + count < header_.size() &&
+             is_any_of(joined(words_of(header_[begin + count])), kNames[count]))
+        ++count;
+      if (count < 4) continue;
+      take(CsvRole::kTime, begin);
+      for (std::size_t i = begin; i < begin + count; ++i) {
+        is_taken_[i] = true;
+        columns_.time_parts.push_back(i);
+      }
+      return true;
+    }
+    return false;
+  }
+
+  void read_time_name(std::string_view name) {
+    if (!columns_.zone) columns_.zone = zone_in_name(name);
+    const std::string text = lower(name);
+    if (text.find("mm/dd") != std::string::npos || text.find("m/d/y") != std::string::npos)
+      columns_.is_day_first = false;
+    if (text.find("dd/mm") != std::string::npos || text.find("d/m/y") != std::string::npos ||
+        text.find("dd.mm") != std::string::npos || text.find("dd-mm") != std::string::npos) {
+      columns_.is_day_first = true;
+    }
+  }
+
+  /// Components are searched for only where there is no speed, and vice versa.
+  void choose_wind() {
+    guess(CsvRole::kGust);
+    const bool wants_components = is_given(CsvRole::kU) || is_given(CsvRole::kV);
+    if (!wants_components) guess(CsvRole::kSpeed);
+    if (columns_.at(CsvRole::kSpeed)) {
+      guess(CsvRole::kDirection);
+    } else {
+      guess(CsvRole::kU);
+      guess(CsvRole::kV);
+    }
+  }
+
+  /// yuragi's own exports have further columns.
+  void take_exported() {
+    if (fmt::format("{}", fmt::join(header_, ",")) != kExportedHeader) return;
+    const auto index_of = [this](std::string_view name) {
+      return static_cast<std::size_t>(std::ranges::find(header_, name) - header_.begin());
+    };
+    if (!is_given(CsvRole::kTime)) take(CsvRole::kElapsed, index_of("time_s"));
+    take(CsvRole::kSensor, index_of("sensor"));
+    take(CsvRole::kQuality, index_of("quality"));
+  }
+
+  Result<CsvColumns, Failure> checked() {
+    if (columns_.time_parts.empty()) {
+      return Failure{"no column looks like a time; the columns are " + listed(header_) +
+                     "; name it with --time COLUMN (and --date COLUMN, where the date is in another), or leave lines "
+                     "out before the header with --skip N"};
+    }
+    if (!columns_.at(CsvRole::kSpeed) && (!columns_.at(CsvRole::kU) || !columns_.at(CsvRole::kV))) {
+      return Failure{"no column looks like a wind speed, nor two like u and v; the columns are " + listed(header_) +
+                     "; name it with --speed COLUMN, or --u COLUMN --v COLUMN"};
+    }
+    for (const auto& column : columns_.by_role) {
+      if (!column || columns_.time_parts.size() > 2) continue;
+      if (std::ranges::count(header_, column->name) > 1) {
+        return Failure{"the column \"" + column->name + "\" is duplicated in the header"};
+      }
+    }
+    for (std::size_t i = 0; i < header_.size(); ++i) {
+      if (!is_taken_[i] && !header_[i].empty()) columns_.unused.push_back(header_[i]);
+    }
+    return std::move(columns_);
+  }
+
+  const std::vector<std::string>& header_;
+  const CsvColumnNames& given_;
+  const std::vector<std::string>& row_;
+  std::vector<bool> is_taken_;
+  std::vector<CsvName> names_;
+  std::vector<std::string> time_stems_;
+  CsvColumns columns_;
+};
+
+}  // namespace
+
+Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& header, const CsvColumnNames& given,
+                                           const std::vector<std::string>& row) {
+  return ColumnChoice(header, given, row).choose();
 }
 
 }  // namespace yuragi::daemon::tools::csv

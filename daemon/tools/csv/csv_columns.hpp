@@ -2,22 +2,16 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "drivers/sensor/speed_unit.hpp"
+#include "daemon/tools/csv/csv_role.hpp"
+#include "daemon/tools/csv/csv_units.hpp"
 #include "engine/base/result.hpp"
 
 namespace yuragi::daemon::tools::csv {
-
-/// The meanings that a column of a CSV file can have.
-enum class CsvRole : std::uint8_t { kTime, kElapsed, kSpeed, kDirection, kGust, kU, kV, kQuality, kSensor };
-inline constexpr std::size_t kCsvRoleCount = 9;
-
-std::string_view name_of(CsvRole role);
 
 /// The header that `yuragi export` writes; `yuragi import` recognizes it without options.
 inline constexpr std::string_view kExportedHeader = "utc,time_s,sensor,speed_m_s,direction_deg,gust_m_s,quality";
@@ -25,26 +19,35 @@ inline constexpr std::string_view kExportedHeader = "utc,time_s,sensor,speed_m_s
 /// The values of its column `quality`, by ReadingQuality.
 inline constexpr std::array<std::string_view, 3> kQualityWords = {"good", "uncertain", "simulated"};
 
-/// The unit with one of its usual names ("km/h", "kn", "kts", "mph"), in lower case, with or without punctuation.
-std::optional<drivers::sensor::SpeedUnit> find_speed_unit(std::string_view name);
-
 /// A column that was found.
 struct CsvColumn {
-  std::string name;                                ///< as in the header
-  std::size_t index = 0;                           ///< in the header, from 0
-  std::optional<drivers::sensor::SpeedUnit> unit;  ///< of a speed; empty: not in its name
-  bool is_in_radians = false;                      ///< by its name
-  bool is_in_ms = false;                           ///< a time in milliseconds, by its name
+  std::string name;             ///< as in the header
+  std::size_t index = 0;        ///< in the header, from 0
+  std::optional<CsvUnit> unit;  ///< of its numbers; empty: not known
+  std::string unit_source;      ///< what says so: "by its name"
 };
 
-/// The columns, by role.
-using CsvColumns = std::array<std::optional<CsvColumn>, kCsvRoleCount>;
+/// The columns of a file.
+struct CsvColumns {
+  std::array<std::optional<CsvColumn>, kCsvRoleCount> by_role;
+  /// Those that a time is put together from, with a blank between them: one, a date and a time, or year, month, day,
+  /// hour, minute, second.
+  std::vector<std::size_t> time_parts;
+  std::optional<std::string> zone;   ///< in which the times are, by the name of their column
+  std::optional<bool> is_day_first;  ///< of dates, by the name of their column ("DATE (MM/DD/YYYY)")
+  std::vector<std::string> unused;   ///< the names of those that have no role
+  const std::optional<CsvColumn>& at(CsvRole role) const { return by_role[static_cast<std::size_t>(role)]; }
+  std::optional<CsvColumn>& at(CsvRole role) { return by_role[static_cast<std::size_t>(role)]; }
+};
 
 /// The names that the user gave, by role; empty where none.
 using CsvColumnNames = std::array<std::string, kCsvRoleCount>;
 
-/// Finds the columns: by the given names, ignoring case, and otherwise by the names that loggers commonly use. Fails,
-/// with a list of the columns, without a time, without a speed or both u and v, or with two columns of one name.
-Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& header, const CsvColumnNames& given);
+/// Finds the columns: by the given names, ignoring case, and otherwise by the names that loggers commonly use. `row`:
+/// the fields of the first row, where there is one: they settle whether a time needs its date from another column, and
+/// whether a column without a name has times. Fails, with a list of the columns, without a time, without a speed or
+/// both u and v, or with two columns of one name.
+Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& header, const CsvColumnNames& given,
+                                           const std::vector<std::string>& row = {});
 
 }  // namespace yuragi::daemon::tools::csv

@@ -2,95 +2,152 @@
 
 #include <algorithm>
 #include <istream>
+#include <utility>
 
+#include "daemon/tools/csv/csv_fields.hpp"
+#include "daemon/tools/csv/csv_layout.hpp"
 #include "daemon/tools/csv/csv_lines.hpp"
 #include "daemon/tools/csv/csv_row.hpp"
+#include "daemon/tools/csv/csv_survey.hpp"
+#include "daemon/tools/csv/csv_unit_choice.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::tools::csv {
 namespace {
 
-char delimiter_of(std::string_view header) {
-  char best = ',';
-  for (const char candidate : {';', '\t'}) {
-    if (std::count(header.begin(), header.end(), candidate) > std::count(header.begin(), header.end(), best))
-      best = candidate;
-  }
-  return best;
-}
-
-Failure too_long(const std::string& name, const CsvLines& lines) {
-  return {name + ":" + std::to_string(lines.number() + 1) + ": a line is longer than a megabyte; is it a CSV file?"};
-}
-
-/// One import, once the header is known.
+/// One import, once the columns and units are known.
 class Import {
  public:
-  Import(const std::string& name, const CsvImportOptions& options, const CsvColumns& columns, std::size_t column_count,
-         const CsvReadingSink& sink)
-      : name_(name),
-        options_(options),
-        columns_(columns),
-        column_count_(column_count),
-        sink_(sink),
-        rows_(columns, options) {}
+  Import(const std::string& name, const CsvImportOptions& options, const CsvSinks& sinks, CsvRowSplitter splitter,
+         CsvRowReader rows)
+      : name_(name), options_(options), sinks_(sinks), splitter_(std::move(splitter)), rows_(std::move(rows)) {}
 
-  Result<CsvImportReport, Failure> run(CsvLines& lines, char delimiter) {
+  Result<CsvImportReport, Failure> run(CsvLines& lines) {
     while (lines.next()) {
-      ++report_.rows;
-      if (const auto taken = take(lines.line(), delimiter); !taken) refuse(lines.number(), taken.error().message);
-      if (report_.refused() > 0 && options_.strict) return Failure{report_.first_refusals.front()};
+      if (const auto done = take_line(lines); !done) return done.error();
     }
-    if (lines.is_too_long()) return too_long(name_, lines);
-    report_.columns = rows_.describe();
-    return report_;
+    if (lines.is_too_long()) return too_long_line(name_, lines.number() + 1);
+    return finish();
+  }
+
+  /// The same from the last line to the first.
+  Result<CsvImportReport, Failure> run_backward(CsvLines& lines) {
+    struct Place {
+      std::streamoff offset;
+      std::size_t number_before;
+    };
+    constexpr std::size_t kMostPlaces = 10'000'000;
+    std::vector<Place> places;
+    for (;;) {
+      const Place place{lines.place(), lines.number()};
+      if (!lines.next()) break;
+      if (places.size() == kMostPlaces) {
+        return Failure{name_ + ": has its newest row first and is too long to be turned round; sort it by time"};
+      }
+      places.push_back(place);
+    }
+    if (lines.is_too_long()) return too_long_line(name_, lines.number() + 1);
+    for (auto place = places.rbegin(); place != places.rend(); ++place) {
+      lines.go_to(place->offset, place->number_before);
+      if (!lines.next()) break;
+      if (const auto done = take_line(lines); !done) return done.error();
+    }
+    report_.notes.emplace_back("the newest row comes first: read from the end");
+    return finish();
   }
 
  private:
-  Result<void, Failure> take(std::span<char> line, char delimiter) {
-    if (!split_csv_line(line, delimiter, all_fields_)) return Failure{"a quote that is not closed"};
-    if (all_fields_.size() < column_count_) return Failure{"fewer fields than the header"};
-    if (all_fields_.size() > column_count_) return Failure{"more fields than the header"};
-    CsvFields fields;
-    for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
-      if (columns_[role]) fields[role] = all_fields_[columns_[role]->index];
+  Result<void, Failure> take_line(CsvLines& lines) {
+    const std::span<char> line = lines.line();
+    const bool is_again = std::ranges::equal(line, last_line_);
+    last_line_.assign(line.begin(), line.end());
+    const auto is_row = splitter_.split(line, fields_);
+    if (is_row && !*is_row) return {};
+    ++report_.rows;
+    const auto taken = [&]() -> Result<void, Failure> {
+      if (!is_row) return is_row.error();
+      if (is_again) {
+        ++repeated_;
+        return Failure{"the same row as the one before"};
+      }
+      return take_row();
+    }();
+    if (taken) return {};
+    if (report_.first_refusals.size() < CsvImportReport::kMaxRefusalsListed) {
+      report_.first_refusals.push_back(name_ + ":" + std::to_string(lines.number()) + ": " + taken.error().message);
     }
-    const auto reading = rows_.read(fields);
-    if (!reading) return reading.error();
-    sink_(fields[static_cast<std::size_t>(CsvRole::kSensor)].value_or(options_.sensor), *reading);
-    ++report_.taken;
+    if (options_.strict) return Failure{report_.first_refusals.front()};
     return {};
   }
 
-  void refuse(std::size_t line, const std::string& why) {
-    if (report_.first_refusals.size() >= CsvImportReport::kMaxRefusalsListed) return;
-    report_.first_refusals.push_back(name_ + ":" + std::to_string(line) + ": " + why);
+  Result<void, Failure> take_row() {
+    const auto row = rows_.read(fields_);
+    if (!row) return row.error();
+    const std::string_view sensor = fields_.at(CsvRole::kSensor).value_or(options_.sensor);
+    sinks_.reading(sensor, row->reading);
+    ++report_.taken;
+    if (!row->quantities) return {};
+    ++report_.quantities;
+    if (sinks_.quantities) sinks_.quantities(sensor, *row->quantities);
+    return {};
+  }
+
+  CsvImportReport finish() {
+    report_.columns = rows_.describe();
+    for (std::string& note : rows_.notes()) report_.notes.push_back(std::move(note));
+    if (repeated_ > 0)
+      report_.notes.push_back("the same row as the one before: left out, " + count_text(repeated_, "row"));
+    return std::move(report_);
   }
 
   const std::string& name_;
   const CsvImportOptions& options_;
-  const CsvColumns& columns_;
-  std::size_t column_count_;
-  const CsvReadingSink& sink_;
+  const CsvSinks& sinks_;
+  CsvRowSplitter splitter_;
   CsvRowReader rows_;
-  std::vector<std::string_view> all_fields_;
+  CsvFields fields_;
+  std::string last_line_;
+  std::size_t repeated_ = 0;
   CsvImportReport report_;
 };
 
 }  // namespace
 
 Result<CsvImportReport, Failure> import_csv(std::istream& in, const std::string& name, const CsvImportOptions& options,
-                                            const CsvReadingSink& sink) {
-  CsvLines lines(in, options.comment);
-  if (!lines.next()) {
-    return lines.is_too_long() ? too_long(name, lines) : Failure{name + ": has no header line"};
+                                            const CsvSinks& sinks) {
+  CsvInput input(in);
+  return import_csv(input, name, options, sinks);
+}
+
+Result<CsvImportReport, Failure> import_csv(CsvInput& input, const std::string& name, const CsvImportOptions& options,
+                                            const CsvSinks& sinks) {
+  const auto failed = [&name](const Failure& failure) { return Failure{name + ": " + failure.message, failure.kind}; };
+  const auto head = first_lines(input, name);
+  if (!head) return head.error();
+  auto layout = find_layout(*head, options);
+  if (!layout) return failed(layout.error());
+  choose_units(*layout, options);
+  auto survey = survey_rows(input.first_pass(), *layout, options);
+  if (!survey) return failed(survey.error());
+  if (!input.is_whole()) {
+    survey->notes.push_back(
+        "formats and marks are those of the first 32 MiB: standard input is not read twice, a file would be");
+    if (survey->is_newest_first) {
+      return failed({"the newest row comes first: that takes the file itself, standard input is not read twice"});
+    }
   }
-  const std::span<char> header = lines.line();
-  const char delimiter = options.delimiter == 0 ? delimiter_of({header.data(), header.size()}) : options.delimiter;
-  std::vector<std::string_view> names;
-  if (!split_csv_line(header, delimiter, names)) return Failure{name + ": the header has a quote that is not closed"};
-  const auto columns = choose_columns({names.begin(), names.end()}, options.columns);
-  if (!columns) return Failure{name + ": " + columns.error().message};
-  return Import(name, options, *columns, names.size(), sink).run(lines, delimiter);
+
+  auto splitter = CsvRowSplitter::make(*layout, options);
+  if (!splitter) return failed(splitter.error());
+  auto rows = CsvRowReader::make(*layout, *survey, options);
+  if (!rows) return failed(rows.error());
+  CsvLines lines(input.second_pass(), options.comment);
+  lines.begin_at(layout->first_row);
+  Import import(name, options, sinks, std::move(*splitter), std::move(*rows));
+  auto report = survey->is_newest_first ? import.run_backward(lines) : import.run(lines);
+  if (!report) return report;
+  report->notes.insert(report->notes.begin(), survey->notes.begin(), survey->notes.end());
+  return report;
 }
 
 }  // namespace yuragi::daemon::tools::csv

@@ -7,33 +7,45 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/tools/csv/csv_input.hpp"
 #include "daemon/tools/csv/csv_options.hpp"
 #include "engine/base/result.hpp"
+#include "engine/wind/station_quantities.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi::daemon::tools::csv {
 
 struct CsvImportReport {
   std::vector<std::string> columns;  ///< how each column was understood, a line each
-  std::size_t rows = 0;              ///< below the header
+  std::vector<std::string> notes;    ///< what was settled, guessed or left out besides, a line each
+  std::size_t rows = 0;              ///< below the header, without those that a condition leaves out
   std::size_t taken = 0;
+  std::size_t quantities = 0;               ///< rows that said something besides the wind
   std::vector<std::string> first_refusals;  ///< "FILE:LINE: what is wrong", at most kMaxRefusalsListed
 
   std::size_t refused() const { return rows - taken; }
   static constexpr std::size_t kMaxRefusalsListed = 5;
 };
 
-/// Called for each reading, with the name of its sensor. May throw, which ends the import.
-using CsvReadingSink = std::function<void(std::string_view sensor, const wind::WindReading& reading)>;
+/// What takes the readings, each with the name of its sensor. May throw, which ends the import.
+struct CsvSinks {
+  std::function<void(std::string_view sensor, const wind::WindReading& reading)> reading;
+  /// After the reading of the same time; may be empty.
+  std::function<void(std::string_view sensor, const wind::StationQuantities& quantities)> quantities = {};
+};
 
 /// Reads a CSV file with a header: each row is a reading with UTC, and with a monotonic time that begins at zero. Rows
-/// that are not valid readings, or go back in time, are refused and counted. A decimal comma is understood where the
-/// delimiter is another character.
+/// that are not valid readings, or go back in time, are refused and counted; a file with its newest row first is read
+/// from its end. A decimal comma is understood where the delimiter is another character.
 ///
-/// `name` is the file name in messages. `in` is read once, in blocks, and may contain any bytes. Fails where the header
-/// is not understood, where a line is longer than kLongestLine, or at the first refused row if `strict`. Thread-safe:
-/// yes, with separate streams.
+/// `name` is the file name in messages. The input may contain any bytes; it is read twice where it can be gone back in,
+/// and is otherwise kept as far as CsvInput::kMostKept. Memory does not depend on the file's length, but for 24 bytes a
+/// row of a file with its newest row first. Fails where the header, the dates or the units are not understood (the
+/// message names the option that helps), where a line is longer than kLongestLine, or at the first refused row if
+/// `strict`. Thread-safe: yes, with separate streams.
+Result<CsvImportReport, Failure> import_csv(CsvInput& input, const std::string& name, const CsvImportOptions& options,
+                                            const CsvSinks& sinks);
 Result<CsvImportReport, Failure> import_csv(std::istream& in, const std::string& name, const CsvImportOptions& options,
-                                            const CsvReadingSink& sink);
+                                            const CsvSinks& sinks);
 
 }  // namespace yuragi::daemon::tools::csv

@@ -43,19 +43,37 @@ bool CsvLines::next() {
     }
     const std::span<const char> text = line();
     const bool is_comment = comment_ != 0 && !text.empty() && text.front() == comment_;
-    if (!is_comment && !std::ranges::all_of(text, is_blank)) return true;
+    if (!is_comment && number_ >= first_ && !std::ranges::all_of(text, is_blank)) return true;
   }
   is_too_long_ = !in_.eof() && !in_.bad();
   return false;
 }
 
+void CsvLines::go_to(std::streamoff place, std::size_t number_before) {
+  in_.clear();
+  in_.seekg(place);
+  number_ = number_before;
+}
+
+std::streamoff CsvLines::place() const {
+  return in_.eof() ? -1 : static_cast<std::streamoff>(in_.tellg());
+}
+
 bool split_csv_line(std::span<char> line, char delimiter, std::vector<std::string_view>& fields) {
   fields.clear();
+  const bool is_split_at_blanks = delimiter == ' ';
+  if (is_split_at_blanks) {
+    while (!line.empty() && is_blank(line.front())) line = line.subspan(1);
+    while (!line.empty() && is_blank(line.back())) line = line.first(line.size() - 1);
+  }
   bool is_quoted = false;
   std::size_t begin = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '"') is_quoted = !is_quoted;
-    if (line[i] != delimiter || is_quoted) continue;
+    const bool is_delimiter = is_split_at_blanks ? is_blank(line[i]) : line[i] == delimiter;
+    if (!is_delimiter || is_quoted) continue;
+    // Of several blanks only the last one separates.
+    if (is_split_at_blanks && i + 1 < line.size() && is_blank(line[i + 1])) continue;
     fields.push_back(plain_field(line.subspan(begin, i - begin)));
     begin = i + 1;
   }

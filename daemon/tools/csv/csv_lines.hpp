@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <ios>
 #include <iosfwd>
 #include <span>
 #include <string_view>
@@ -23,6 +24,12 @@ class CsvLines {
   std::span<char> line() { return {buffer_.data(), size_}; }
   /// Of the file, from 1.
   std::size_t number() const { return number_; }
+  /// Lines before this one are passed over from now on.
+  void begin_at(std::size_t number) { first_ = number; }
+  /// Goes to a line of which place and number are known: its beginning, and the number of the line before it.
+  void go_to(std::streamoff place, std::size_t number_before);
+  /// Where the next line begins.
+  std::streamoff place() const;
   bool is_too_long() const { return is_too_long_; }
 
  private:
@@ -31,12 +38,13 @@ class CsvLines {
   std::vector<char> buffer_;
   std::size_t size_ = 0;
   std::size_t number_ = 0;
+  std::size_t first_ = 1;
   bool is_too_long_ = false;
 };
 
-/// Splits a line into fields, without spaces around them and without enclosing quotes (RFC 4180: a delimiter within
-/// quotes is text, and a quote within them is doubled). False where a quote is not closed. Works in place: `fields`
-/// point into the line.
+/// Splits a line into fields: a delimiter of ' ' stands for any number of blanks and tabs. The fields are without
+/// spaces around them and without enclosing quotes (RFC 4180: a delimiter within quotes is text, and a quote within
+/// them is doubled). False where a quote is not closed. Works in place: `fields` point into the line.
 bool split_csv_line(std::span<char> line, char delimiter, std::vector<std::string_view>& fields);
 
 }  // namespace yuragi::daemon::tools::csv

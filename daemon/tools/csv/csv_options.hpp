@@ -3,9 +3,12 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "daemon/tools/csv/csv_columns.hpp"
 #include "daemon/tools/csv/csv_time.hpp"
+#include "daemon/tools/csv/csv_units.hpp"
+#include "daemon/tools/csv/csv_zone.hpp"
 
 namespace yuragi::daemon::tools::csv {
 
@@ -17,18 +20,29 @@ enum class CsvDirectionUnit : std::uint8_t {
   kPoint16,  ///< 0 to 15, clockwise from north, 22.5 degrees each; names (NNE) are always understood
 };
 
+/// Rows are taken where this column has this text.
+struct CsvCondition {
+  std::string column;
+  std::string value;
+};
+
 struct CsvImportOptions {
   CsvColumnNames columns;  ///< the user's names; empty ones are guessed
   CsvTimeFormat time_format = CsvTimeFormat::kAuto;
-  /// Of speed, gust, u and v; empty: as the column's name says, or else m/s.
-  std::optional<drivers::sensor::SpeedUnit> unit;
+  std::optional<CsvZone> zone;       ///< of times that name none; empty: as the file says, or else UTC
+  std::optional<CsvUnit> unit;       ///< of speed, gust, u, v and w; empty: as the file says, or else m/s
+  std::optional<CsvUnit> gust_unit;  ///< of the gust alone
   CsvDirectionUnit direction_unit = CsvDirectionUnit::kAuto;
-  bool direction_is_toward = false;  ///< directions are where the wind blows to
-  bool components_are_from = false;  ///< u and v point to where the wind comes from
-  char delimiter = 0;                ///< ',', ';' or tab; 0: the one most frequent in the header
-  char comment = '#';                ///< lines that begin with it are skipped; 0: none are
-  std::string sensor = "imported";   ///< name of the sensor, unless the file is an export of yuragi's
-  bool strict = false;               ///< fail at the first row that is refused
+  bool direction_is_toward = false;      ///< directions are where the wind blows to
+  bool components_are_from = false;      ///< u and v point to where the wind comes from
+  char delimiter = 0;                    ///< ',', ';', '|', tab, or ' ' (any blanks); 0: as the header has it
+  char comment = '#';                    ///< lines that begin with it are skipped; 0: none are
+  std::optional<std::size_t> skip;       ///< so many lines stand before the header; empty: it is looked for
+  std::vector<std::string> header;       ///< the names of the columns of a file without a header; empty: it has one
+  std::vector<CsvCondition> conditions;  ///< all are to hold
+  std::vector<std::string> missing;      ///< further texts that stand for no value ("99.0")
+  std::string sensor = "imported";       ///< name of the sensor, unless the file is an export of yuragi's
+  bool strict = false;                   ///< fail at the first row that is refused
 };
 
 }  // namespace yuragi::daemon::tools::csv

@@ -1,11 +1,16 @@
 #include "daemon/tools/csv/csv_row.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "daemon/tools/csv/csv_lines.hpp"
+#include "daemon/tools/csv/csv_value.hpp"
+#include "daemon/tools/csv/csv_words.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "engine/base/compass.hpp"
+#include "engine/base/count_text.hpp"
 #include "engine/base/units.hpp"
 #include "engine/wind/wind_vector.hpp"
 
@@ -13,142 +18,158 @@ namespace yuragi::daemon::tools::csv {
 namespace {
 
 constexpr int kElapsedDecimals = 9;
+constexpr std::size_t kMostOddDirections = 5;
 
-char upper(char c) {
-  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-}
-
-std::string upper(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(), [](char c) { return upper(c); });
-  return result;
-}
-
-std::optional<std::string_view> field(const CsvFields& fields, CsvRole role) {
-  return fields[static_cast<std::size_t>(role)];
-}
-
-/// Usual notations for a missing value.
-bool is_missing(std::string_view text) {
-  static constexpr std::array<std::string_view, 8> kWords = {"", "NAN", "NA", "N/A", "NULL", "NONE", "-", "--"};
-  return text.size() <= 4 && std::find(kWords.begin(), kWords.end(), upper(text)) != kWords.end();
-}
-
-/// A finite number, with a point or a comma.
-std::optional<double> parse_number(std::string_view text) {
-  std::string plain(text.starts_with('+') ? text.substr(1) : text);
-  std::replace(plain.begin(), plain.end(), ',', '.');
-  double value = 0.0;
-  const char* const end = plain.data() + plain.size();
-  const auto [stop, error] = std::from_chars(plain.data(), end, value);
-  if (error != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-/// "no number "abc" in speed": the start of a field that may be anything.
-Failure refusal(std::string_view what, std::string_view text) {
+/// The start of a field that may be anything.
+std::string shown(std::string_view text) {
   constexpr std::size_t kShown = 40;
-  std::string shown(text.substr(0, kShown));
+  std::string start(text.substr(0, kShown));
   std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
-  return {std::string(what) + " \"" + shown + (text.size() > kShown ? "...\"" : "\"")};
+      start.begin(), start.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
+  return "\"" + start + (text.size() > kShown ? "...\"" : "\"");
+}
+
+Failure refusal(std::string_view what, std::string_view text) {
+  return {std::string(what) + " " + shown(text)};
 }
 
 }  // namespace
 
-CsvRowReader::CsvRowReader(const CsvColumns& columns, const CsvImportOptions& options)
-    : columns_(columns), options_(options), time_format_(options.time_format) {}
-
-double CsvRowReader::unit_of(CsvRole role) const {
-  if (options_.unit) return options_.unit->metres_per_second;
-  const auto& column = columns_[static_cast<std::size_t>(role)];
-  return column && column->unit ? column->unit->metres_per_second : 1.0;
+Result<CsvRowReader, Failure> CsvRowReader::make(const CsvLayout& layout, const CsvSurvey& survey,
+                                                 const CsvImportOptions& options) {
+  CsvRowReader reader(layout, survey, options);
+  reader.zone_source_ = "since nothing says a zone; --zone changes that";
+  if (options.zone) {
+    reader.zone_ = *options.zone;
+    reader.zone_source_ = "by --zone";
+  } else if (layout.columns.zone) {
+    const auto zone = CsvZone::parse(*layout.columns.zone);
+    if (!zone) return zone.error();
+    reader.zone_ = *zone;
+    reader.zone_source_ = "as the file says";
+  }
+  return reader;
 }
 
-Result<wind::WindReading, Failure> CsvRowReader::read(const CsvFields& fields) {
-  wind::WindReading reading;
+bool CsvRowReader::is_missing(CsvRole role, std::string_view text) const {
+  if (is_missing_word(text)) return true;
+  const auto number = parse_number(text, dimension_of(role));
+  for (const std::string& missing : options_.missing) {
+    const auto mark = parse_number(missing, CsvDimension::kNone);
+    if (text == missing || (number && mark && number->value == mark->value)) return true;
+  }
+  if (!number) return false;
+  const CsvUnit unit = number->unit.value_or(unit_of(role));
+  return is_missing_number(role, number->value, number->value * unit.factor + unit.offset) ||
+         number->value == survey_.missing_mark[static_cast<std::size_t>(role)];
+}
+
+CsvUnit CsvRowReader::unit_of(CsvRole role) const {
+  const auto& column = columns_.at(role);
+  return column && column->unit ? *column->unit : CsvUnit{};
+}
+
+Result<CsvRow, Failure> CsvRowReader::read(const CsvFields& fields) {
+  CsvRow row;
+  wind::WindReading& reading = row.reading;
   if (const auto done = read_wind(fields, reading); !done) return done.error();
 
   const auto gust_m_s = read_speed(fields, CsvRole::kGust);
   if (!gust_m_s) return gust_m_s.error();
-  if (*gust_m_s && **gust_m_s < 0.0) return refusal("gust below zero:", *field(fields, CsvRole::kGust));
+  if (*gust_m_s && **gust_m_s < 0.0) return refusal("gust below zero:", *fields.at(CsvRole::kGust));
   reading.gust_m_s = *gust_m_s;
 
-  if (const auto quality = field(fields, CsvRole::kQuality)) {
+  if (const auto quality = fields.at(CsvRole::kQuality)) {
     const auto* word = std::find(kQualityWords.begin(), kQualityWords.end(), *quality);
     if (word == kQualityWords.end()) return refusal("unknown quality:", *quality);
     reading.quality = static_cast<wind::ReadingQuality>(word - kQualityWords.begin());
   }
   if (!wind::is_plausible(reading)) {
     return Failure{"impossible wind: " + std::to_string(reading.speed_m_s) + " m/s" +
-                   (reading.gust_m_s ? ", gust " + std::to_string(*reading.gust_m_s) + " m/s" : "")};
+                   (reading.gust_m_s ? ", gust " + std::to_string(*reading.gust_m_s) + " m/s" : "") +
+                   " (is the unit right? --unit; or a mark for no value? --missing)"};
   }
 
   // The time comes last: only an accepted row advances it.
   const auto time = read_time(fields);
   if (!time) return time.error();
   reading.time = *time;
-  return reading;
+  row.quantities = read_quantities(fields, *time);
+  return row;
 }
 
 Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
-  const std::string_view text = *field(fields, CsvRole::kTime);
-  CsvTimeFormat format = time_format_;
-  if (format == CsvTimeFormat::kAuto) {
-    format = guess_time_format(text);
-    const bool is_in_ms = columns_[static_cast<std::size_t>(CsvRole::kTime)]->is_in_ms;
-    if (is_in_ms && format != CsvTimeFormat::kIso) format = CsvTimeFormat::kUnixMs;
+  const std::string_view text = fields.time;
+  const auto written = parse_time(text, survey_.time_format);
+  if (!written) return refusal("not a time (" + std::string(name_of(survey_.time_format)) + "; --time-format):", text);
+  UtcTime utc = written->clock;
+  if (written->utc_offset) {
+    utc -= *written->utc_offset;
+  } else {
+    const auto known = zone_.to_utc(written->clock, last_utc_);
+    if (!known) return refusal("a time that was left out in " + zone_.name() + " (is --zone right?):", text);
+    utc = *known;
   }
-  const auto utc = parse_time(text, format);
-  if (!utc) return refusal("not a time (" + std::string(name_of(format)) + "):", text);
 
   // Monotonic time: from yuragi's own export, or else UTC since the first row.
-  Instant time{MonoTime(*utc - first_utc_.value_or(*utc)), *utc};
-  if (const auto elapsed = field(fields, CsvRole::kElapsed)) {
+  Instant time{MonoTime(utc - first_utc_.value_or(utc)), utc};
+  if (const auto elapsed = fields.at(CsvRole::kElapsed)) {
     const auto ns = parse_decimal(*elapsed, kElapsedDecimals);
     if (!ns) return refusal("not a number of seconds:", *elapsed);
     time.mono = MonoTime(Nanoseconds(*ns));
   }
   wind::WindReading recordable;
   recordable.time = time;
-  if (time.mono < last_) return refusal("time goes back:", text);
+  if (time.mono < last_) {
+    ++went_back_;
+    return refusal("time goes back:", text);
+  }
   if (!drivers::windlog::is_recordable(recordable)) return refusal("time out of range:", text);
 
-  // The first accepted row determines the format of times.
-  time_format_ = format;
-  if (!first_utc_) first_utc_ = *utc;
+  if (first_utc_ && time.mono == last_) ++same_time_;
+  ++(written->utc_offset ? zoned_ : unzoned_);
+  if (!first_utc_) first_utc_ = utc;
   last_ = time.mono;
+  last_utc_ = utc;
   return time;
 }
 
-Result<std::optional<double>, Failure> CsvRowReader::read_speed(const CsvFields& fields, CsvRole role) const {
-  const auto text = field(fields, role);
-  if (!text || is_missing(*text)) return std::optional<double>{};
-  const auto number = parse_number(*text);
+Result<std::optional<double>, Failure> CsvRowReader::read_number(const CsvFields& fields, CsvRole role) {
+  const auto text = fields.at(role);
+  if (!text) return std::optional<double>{};
+  if (is_missing(role, *text)) {
+    if (!text->empty()) ++missing_[static_cast<std::size_t>(role)];
+    return std::optional<double>{};
+  }
+  const auto number = parse_number(*text, dimension_of(role));
   if (!number) return refusal("not a number in " + std::string(name_of(role)) + ":", *text);
-  return std::optional<double>(*number * unit_of(role));
+  const CsvUnit unit = number->unit.value_or(unit_of(role));
+  return std::optional<double>(number->value * unit.factor + unit.offset);
+}
+
+Result<std::optional<double>, Failure> CsvRowReader::read_speed(const CsvFields& fields, CsvRole role) {
+  // A calm in words is a speed.
+  if (const auto text = fields.at(role); text && text->size() == 4 && lower(*text) == "calm") return std::optional(0.0);
+  return read_number(fields, role);
 }
 
 /// Speed and direction, from themselves or from components.
-Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, wind::WindReading& reading) const {
-  if (columns_[static_cast<std::size_t>(CsvRole::kSpeed)]) {
+Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, wind::WindReading& reading) {
+  if (const auto speed = fields.at(CsvRole::kSpeed)) {
+    if (std::ranges::count(*speed, ',') == 4) return read_packed_wind(*speed, reading);
     const auto speed_m_s = read_speed(fields, CsvRole::kSpeed);
     if (!speed_m_s) return speed_m_s.error();
     if (!*speed_m_s) return Failure{"no speed"};
-    if (**speed_m_s < 0.0) return refusal("speed below zero:", *field(fields, CsvRole::kSpeed));
+    if (**speed_m_s < 0.0) return refusal("speed below zero:", *speed);
     reading.speed_m_s = **speed_m_s;
-
-    const auto direction = field(fields, CsvRole::kDirection);
-    if (!direction) return {};
-    const auto direction_deg = read_direction(*direction);
-    if (!direction_deg) return direction_deg.error();
-    reading.direction_deg = *direction_deg;
+    const auto direction = fields.at(CsvRole::kDirection);
+    if (direction) reading.direction_deg = read_direction(*direction);
     return {};
   }
 
-  const auto u_m_s = read_speed(fields, CsvRole::kU);
+  const auto u_m_s = read_number(fields, CsvRole::kU);
   if (!u_m_s) return u_m_s.error();
-  const auto v_m_s = read_speed(fields, CsvRole::kV);
+  const auto v_m_s = read_number(fields, CsvRole::kV);
   if (!v_m_s) return v_m_s.error();
   if (!*u_m_s || !*v_m_s) return Failure{"no u or no v"};
   const wind::WindVector wind = (options_.components_are_from ? -1.0 : 1.0) * wind::WindVector{**u_m_s, **v_m_s};
@@ -157,75 +178,160 @@ Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, wind::Win
   return {};
 }
 
-Result<std::optional<double>, Failure> CsvRowReader::read_direction(std::string_view text) const {
-  if (is_missing(text)) return std::optional<double>{};
+/// The field WND of NOAA's Integrated Surface Database: "310,1,N,0051,1" is 310 degrees, 5.1 m/s.
+Result<void, Failure> CsvRowReader::read_packed_wind(std::string_view text, wind::WindReading& reading) {
+  std::string copy(text);
+  std::vector<std::string_view> parts;
+  if (!split_csv_line(copy, ',', parts) || parts.size() != 5) return refusal("not a wind of NOAA's:", text);
+  const auto direction = parse_number(parts[0], CsvDimension::kNone);
+  const auto speed = parse_number(parts[3], CsvDimension::kNone);
+  if (!direction || !speed) return refusal("not a wind of NOAA's:", text);
+  constexpr double kNoDirection = 999.0;
+  constexpr double kNoSpeed = 9999.0;
+  constexpr double kTenth = 0.1;
+  if (speed->value == kNoSpeed) return Failure{"no speed"};
+  reading.speed_m_s = speed->value * kTenth;
+  if (direction->value != kNoDirection) reading.direction_deg = read_direction(parts[0]);
+  return {};
+}
 
+CsvDirectionUnit CsvRowReader::direction_unit() const {
+  if (options_.direction_unit != CsvDirectionUnit::kAuto) return options_.direction_unit;
+  const auto& column = columns_.at(CsvRole::kDirection);
+  return column && column->unit && column->unit->name == "radians" ? CsvDirectionUnit::kRadians
+                                                                   : CsvDirectionUnit::kDegrees;
+}
+
+/// Nothing where the field is none, which does not make the speed beside it wrong.
+std::optional<double> CsvRowReader::read_direction(std::string_view text) {
+  if (is_missing(CsvRole::kDirection, text)) {
+    if (!text.empty()) ++missing_[static_cast<std::size_t>(CsvRole::kDirection)];
+    return std::nullopt;
+  }
   // The name of a compass point, or a number in the unit of the column.
-  double direction_deg = 0.0;
-  if (const auto point_deg = compass_point_deg(text)) {
-    direction_deg = *point_deg;
-  } else {
-    const auto number = parse_number(text);
-    if (!number) return refusal("not a direction:", text);
-    CsvDirectionUnit unit = options_.direction_unit;
-    if (unit == CsvDirectionUnit::kAuto) {
-      const auto& column = columns_[static_cast<std::size_t>(CsvRole::kDirection)];
-      unit = column && column->is_in_radians ? CsvDirectionUnit::kRadians : CsvDirectionUnit::kDegrees;
+  static const std::map<std::string, double, std::less<>> kWords = {
+      {"north", 0.0}, {"east", 90.0}, {"south", 180.0}, {"west", 270.0}};
+  std::optional<double> direction_deg = compass_point_deg(text);
+  if (!direction_deg) {
+    if (const auto word = kWords.find(lower(text.substr(0, 6))); word != kWords.end()) direction_deg = word->second;
+  }
+  if (!direction_deg) {
+    if (const auto number = parse_number(text, CsvDimension::kDirection)) {
+      const CsvDirectionUnit unit = direction_unit();
+      direction_deg = number->value;
+      if (unit == CsvDirectionUnit::kRadians) direction_deg = number->value / kRadPerDeg;
+      if (unit == CsvDirectionUnit::kPoint16) direction_deg = number->value * kDegPerCompassPoint;
     }
-    direction_deg = *number;
-    if (unit == CsvDirectionUnit::kRadians) direction_deg = *number / kRadPerDeg;
-    if (unit == CsvDirectionUnit::kPoint16) direction_deg = *number * kDegPerCompassPoint;
   }
 
   // Both -180 to 180 and 0 to 360 are accepted, and a little more for rounding.
   constexpr double kTolerance_deg = 0.01;
-  if (direction_deg < -180.0 - kTolerance_deg || direction_deg > 360.0 + kTolerance_deg) {
-    return refusal("direction out of range:", text);
+  if (!direction_deg || *direction_deg < -180.0 - kTolerance_deg || *direction_deg > 360.0 + kTolerance_deg) {
+    const std::string odd = shown(text);
+    if (odd_directions_.contains(odd) || odd_directions_.size() < kMostOddDirections) {
+      ++odd_directions_[odd];
+    } else {
+      ++odd_directions_["others"];
+    }
+    return std::nullopt;
   }
-  if (options_.direction_is_toward) direction_deg += 180.0;
-  if (direction_deg < 0.0) direction_deg += 360.0;
-  if (direction_deg >= 360.0) direction_deg -= 360.0;
-  return std::optional<double>(direction_deg);
+  if (options_.direction_is_toward) *direction_deg += 180.0;
+  if (*direction_deg < 0.0) *direction_deg += 360.0;
+  if (*direction_deg >= 360.0) *direction_deg -= 360.0;
+  return direction_deg;
+}
+
+std::optional<wind::StationQuantities> CsvRowReader::read_quantities(const CsvFields& fields, const Instant& time) {
+  wind::StationQuantities quantities;
+  quantities.time = time;
+  for (std::size_t i = 0; i < kQuantityRoles.size(); ++i) {
+    const auto value = read_number(fields, kQuantityRoles[i]);
+    if (!value) {
+      ++implausible_quantities_;
+      continue;
+    }
+    const wind::StationQuantity& range = wind::kStationQuantities[i];
+    if (*value && (**value < range.least || **value > range.greatest)) ++implausible_quantities_;
+    quantities.*range.value = *value;
+  }
+  return wind::plausible_part(quantities);
+}
+
+std::string CsvRowReader::describe_time() const {
+  std::string text(name_of(survey_.time_format));
+  if (survey_.time_format == CsvTimeFormat::kSeconds) return text + ", counted from 1970, since there is no date";
+  if (!is_calendar(survey_.time_format)) return text;
+  if (zoned_ > 0) text += ", with zones of their own";
+  if (unzoned_ > 0) text += ", in " + zone_.name() + " " + zone_source_;
+  return text;
 }
 
 std::vector<std::string> CsvRowReader::describe() const {
   std::vector<std::string> lines;
   for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
-    if (!columns_[index]) continue;
-    const CsvColumn& column = *columns_[index];
+    if (!columns_.by_role[index]) continue;
+    const CsvColumn& column = *columns_.by_role[index];
     const auto role = static_cast<CsvRole>(index);
     std::string line = std::string(name_of(role)) + " from \"" + column.name + "\"";
-    const auto speed_unit = [&] {
-      const drivers::sensor::SpeedUnit assumed{"m/s", 1.0};
-      return std::string(options_.unit.value_or(column.unit.value_or(assumed)).name);
-    };
+    const auto unit = [&] { return column.unit ? std::string(column.unit->name) + ", " : std::string(); };
     switch (role) {
       case CsvRole::kTime:
-        line += " (" + std::string(name_of(time_format_)) +
-                (time_format_ == CsvTimeFormat::kSeconds ? ", counted from 1970, since there is no date)"
-                                                         : ", UTC if it has no zone)");
-        break;
-      case CsvRole::kSpeed:
-      case CsvRole::kGust:
-        line += " (" + speed_unit() + ")";
+        line += " (" + describe_time() + ")";
         break;
       case CsvRole::kU:
-        line += " (" + speed_unit() + (options_.components_are_from ? ", from east)" : ", toward east)");
+        line +=
+            " (" + unit() + (options_.components_are_from ? "from east; " : "toward east; ") + column.unit_source + ")";
         break;
       case CsvRole::kV:
-        line += " (" + speed_unit() + (options_.components_are_from ? ", from north)" : ", toward north)");
+        line += " (" + unit() + (options_.components_are_from ? "from north; " : "toward north; ") +
+                column.unit_source + ")";
         break;
       case CsvRole::kDirection:
-        line += options_.direction_is_toward ? " (where it blows to)" : " (where it comes from)";
+        line += options_.direction_is_toward ? " (where it blows to" : " (where it comes from";
+        line += direction_unit() == CsvDirectionUnit::kRadians ? ", in radians)" : ")";
         break;
       case CsvRole::kElapsed:
         line += " (s)";
         break;
+      case CsvRole::kDate:
       case CsvRole::kQuality:
       case CsvRole::kSensor:
         break;
+      default:
+        line += " (" + unit() + column.unit_source + ")";
+        break;
     }
     lines.push_back(line);
+  }
+  if (!columns_.unused.empty()) {
+    lines.push_back(fmt::format("not taken: {}", fmt::join(columns_.unused, ", ")));
+  }
+  return lines;
+}
+
+std::vector<std::string> CsvRowReader::notes() const {
+  std::vector<std::string> lines;
+  for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
+    if (missing_[index] == 0) continue;
+    lines.push_back(fmt::format("{}: {} left empty, by a mark for none", name_of(static_cast<CsvRole>(index)),
+                                count_text(missing_[index], "value")));
+  }
+  for (const auto& [text, count] : odd_directions_) {
+    lines.push_back(
+        fmt::format("direction: {} is none and was left empty, {} times; the speed was taken", text, count));
+  }
+  if (implausible_quantities_ > 0) {
+    lines.push_back("weather: " + count_text(implausible_quantities_, "value") + " left out, which cannot be");
+  }
+  if (same_time_ > 0) {
+    lines.push_back("the same time as the one before: " + count_text(same_time_, "reading") +
+                    ", kept a nanosecond apart; are the times rounded?");
+  }
+  if (went_back_ > 0 && unzoned_ > 0) {
+    lines.push_back(
+        count_text(went_back_, "row") +
+        " go back in time: at a change to winter time, --zone (Europe/Berlin, say) puts that right; of several "
+        "stations, --where COLUMN=VALUE takes one");
   }
   return lines;
 }

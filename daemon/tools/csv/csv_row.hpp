@@ -1,43 +1,74 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "daemon/tools/csv/csv_options.hpp"
+#include "daemon/tools/csv/csv_fields.hpp"
+#include "daemon/tools/csv/csv_survey.hpp"
+#include "daemon/tools/csv/csv_zone.hpp"
 #include "engine/base/result.hpp"
+#include "engine/wind/station_quantities.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi::daemon::tools::csv {
 
-/// The fields of a row, by role; none for a missing column.
-using CsvFields = std::array<std::optional<std::string_view>, kCsvRoleCount>;
+/// What a row says.
+struct CsvRow {
+  wind::WindReading reading;
+  std::optional<wind::StationQuantities> quantities;  ///< at the reading's time, as far as they are plausible
+};
 
 /// Converts the rows of one CSV file to readings. Thread-safe: no.
 class CsvRowReader {
  public:
-  CsvRowReader(const CsvColumns& columns, const CsvImportOptions& options);
+  /// Fails where the file names a zone that is none.
+  static Result<CsvRowReader, Failure> make(const CsvLayout& layout, const CsvSurvey& survey,
+                                            const CsvImportOptions& options);
 
-  /// The reading in a row, or why it is refused. To be called in the order of the file.
-  Result<wind::WindReading, Failure> read(const CsvFields& fields);
+  /// The reading in a row, or why it is refused. To be called in the order of time.
+  Result<CsvRow, Failure> read(const CsvFields& fields);
 
-  /// How each column was understood, a line each; complete after the first row.
+  /// How each column was understood, a line each; complete after the last row.
   std::vector<std::string> describe() const;
+  /// What was left out of the rows that were taken, and what is odd about their times.
+  std::vector<std::string> notes() const;
 
  private:
-  double unit_of(CsvRole role) const;
-  Result<Instant, Failure> read_time(const CsvFields& fields);
-  Result<std::optional<double>, Failure> read_speed(const CsvFields& fields, CsvRole role) const;
-  Result<std::optional<double>, Failure> read_direction(std::string_view text) const;
-  Result<void, Failure> read_wind(const CsvFields& fields, wind::WindReading& reading) const;
+  CsvRowReader(const CsvLayout& layout, const CsvSurvey& survey, const CsvImportOptions& options)
+      : columns_(layout.columns), survey_(survey), options_(options) {}
 
-  CsvColumns columns_;
-  CsvImportOptions options_;
-  CsvTimeFormat time_format_;
+  Result<Instant, Failure> read_time(const CsvFields& fields);
+  /// The number in its base unit.
+  Result<std::optional<double>, Failure> read_number(const CsvFields& fields, CsvRole role);
+  Result<std::optional<double>, Failure> read_speed(const CsvFields& fields, CsvRole role);
+  std::optional<double> read_direction(std::string_view text);
+  Result<void, Failure> read_wind(const CsvFields& fields, wind::WindReading& reading);
+  Result<void, Failure> read_packed_wind(std::string_view text, wind::WindReading& reading);
+  std::optional<wind::StationQuantities> read_quantities(const CsvFields& fields, const Instant& time);
+  bool is_missing(CsvRole role, std::string_view text) const;
+  CsvUnit unit_of(CsvRole role) const;
+  CsvDirectionUnit direction_unit() const;
+  std::string describe_time() const;
+
+  const CsvColumns& columns_;
+  const CsvSurvey& survey_;
+  const CsvImportOptions& options_;
+  CsvZone zone_;
+  std::string zone_source_;
   std::optional<UtcTime> first_utc_;
+  std::optional<UtcTime> last_utc_;
   MonoTime last_{};
+  std::size_t zoned_ = 0;  ///< times that named their zone
+  std::size_t unzoned_ = 0;
+  std::size_t same_time_ = 0;  ///< readings at the time of the one before
+  std::size_t went_back_ = 0;
+  std::map<std::string, std::size_t, std::less<>> odd_directions_;  ///< texts that are none, the first few
+  std::array<std::size_t, kCsvRoleCount> missing_{};                ///< values that were left out
+  std::size_t implausible_quantities_ = 0;
 };
 
 }  // namespace yuragi::daemon::tools::csv

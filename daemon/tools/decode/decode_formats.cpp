@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "drivers/decode/davis/vantage.hpp"
 #include "drivers/decode/hid/acurite.hpp"
 #include "drivers/decode/hid/fineoffset.hpp"
 #include "drivers/decode/hid/te923.hpp"
@@ -70,14 +71,15 @@ Made make_nmea(const UnitDecoderOptions& options) {
 
 Made make_gill(const UnitDecoderOptions& options) {
   drivers::decode::text::GillOptions gill;
-  gill.checksum = options.checksum;
+  gill.checksum = options.makers_checksum;
   gill.status = options.status;
   gill.node = options.node;
   return of_lines(drivers::decode::text::decode_gill, gill);
 }
 
 Made make_ft(const UnitDecoderOptions& options) {
-  return of_lines(drivers::decode::text::decode_ft, drivers::decode::text::FtOptions{options.checksum, options.status});
+  return of_lines(drivers::decode::text::decode_ft,
+                  drivers::decode::text::FtOptions{options.makers_checksum, options.status});
 }
 
 Made make_wxt(const UnitDecoderOptions& options) {
@@ -86,7 +88,7 @@ Made make_wxt(const UnitDecoderOptions& options) {
 
 Made make_umb(const UnitDecoderOptions& options) {
   return of_lines(drivers::decode::text::decode_umb,
-                  drivers::decode::text::UmbOptions{options.checksum, options.status, options.umb_device,
+                  drivers::decode::text::UmbOptions{options.makers_checksum, options.status, options.umb_device,
                                                     options.umb_speed_range_m_s});
 }
 
@@ -119,7 +121,7 @@ constexpr std::array kUnitFormats = {
     UnitFormat{.name = "gill",
                .is_text = true,
                .unit = "a line",
-               .devices = "Gill WindSonic, WindObserver, MaxiMet",
+               .devices = "Gill WindSonic, WindObserver, WindMaster, MaxiMet",
                .example = "gill --node Q mast.log",
                .make = make_gill},
     UnitFormat{.name = "umb",
@@ -177,6 +179,13 @@ constexpr std::array kUnitFormats = {
                .devices = "Hideki TE923 (Meade, TFA Nexus, Mebus, IROX)",
                .example = "te923 --hex blocks.hex",
                .make = make_te923},
+    UnitFormat{
+        .name = "davis",
+        .is_text = false,
+        .unit = "a packet LOOP or LOOP2, of 99 bytes",
+        .devices = "consoles of Davis Vantage Pro, Vantage Pro2, Vantage Vue",
+        .example = "davis --hex packets.hex",
+        .make = [](const UnitDecoderOptions&) { return stateless(drivers::decode::davis::decode_vantage_packet); }},
     UnitFormat{.name = "mcc1208",
                .is_text = false,
                .unit = "a reply: 4 bytes of the counter, 2 of an analogue input",

@@ -54,16 +54,18 @@ class UnitDecoder {
   virtual void finish(const Sink& /*sink*/) {}
 };
 
-/// Policies, and facts that are not in the messages. Each format uses its own.
+/// Policies, and facts that are not in the messages. Each format uses its own. The defaults are those of the drivers,
+/// of messages from a file.
 struct UnitDecoderOptions {
-  drivers::decode::WhenMissing checksum = drivers::decode::WhenMissing::kRefuse;
-  drivers::decode::WhenMissing status = drivers::decode::WhenMissing::kRefuse;
-  int xdr_first_id = 0;                     ///< nmea
-  std::optional<char> node;                 ///< gill
-  std::optional<std::uint16_t> umb_device;  ///< umb
-  double umb_speed_range_m_s = 75.0;        ///< umb
-  drivers::decode::text::LineOptions line;  ///< line
-  bool are_reports = false;                 ///< wmr100, te923, fineoffset: input reports of 8 bytes, as received
+  drivers::decode::WhenMissing checksum = drivers::decode::WhenMissing::kAccept;         ///< nmea, wxt
+  drivers::decode::WhenMissing makers_checksum = drivers::decode::WhenMissing::kRefuse;  ///< gill, umb, ft
+  drivers::decode::WhenMissing status = drivers::decode::WhenMissing::kAccept;           ///< nmea, gill, umb, ft
+  int xdr_first_id = 0;                                                                  ///< nmea
+  std::optional<char> node;                                                              ///< gill
+  std::optional<std::uint16_t> umb_device;                                               ///< umb
+  double umb_speed_range_m_s = 75.0;                                                     ///< umb
+  drivers::decode::text::LineOptions line;                                               ///< line
+  bool are_reports = false;  ///< wmr100, te923, fineoffset: input reports of 8 bytes, as received
 
   std::string profile;      ///< modbus: a name, or the path of a .toml file
   int speed_slave = 0;      ///< modbus; 0 takes the profile's

@@ -18,8 +18,9 @@ enum class DeviceKind : std::uint8_t { kNone, kSerialPort, kUsb, kSoundCard, kNe
 struct DeviceFacts {
   std::string sensor{};
   DeviceKind kind = DeviceKind::kNone;
-  std::string name{};    ///< as the configuration calls it: "/dev/serial/by-id/...", "192.168.1.20:502"
-  bool is_used = false;  ///< the running daemon has readings from this sensor; it was not touched then
+  std::string name{};      ///< as the configuration calls it: "/dev/serial/by-id/...", "192.168.1.20:502"
+  bool is_shared = false;  ///< a UDP port at which other programs may listen, too
+  bool is_used = false;    ///< the running daemon has readings from this sensor; it was not touched then
   bool is_there = false;
   std::string trouble{};  ///< why it cannot be used; of the network: why it cannot be reached
   std::string remedy{};   ///< what the driver says to do about that; may be empty

@@ -13,19 +13,19 @@
 namespace yuragi::daemon::tools::doctor {
 namespace {
 
-/// Binds a socket there, as the daemon would, and closes it again: 0, or why not.
-int bind_error(const addrinfo& info) {
+/// Binds a socket there, as the daemon would, and closes it again: 0, or why not. `reuses_address`: SO_REUSEADDR.
+int bind_error(const addrinfo& info, bool reuses_address) {
   const int socket = ::socket(info.ai_family, info.ai_socktype | SOCK_CLOEXEC, info.ai_protocol);
   if (socket < 0) return errno;
   const int yes = 1;
-  if (info.ai_socktype == SOCK_STREAM) setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (reuses_address) setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   int error = bind(socket, info.ai_addr, info.ai_addrlen) == 0 ? 0 : errno;
   if (error == 0 && info.ai_socktype == SOCK_STREAM && listen(socket, 1) != 0) error = errno;
   close(socket);
   return error;
 }
 
-std::string local_trouble(const std::string& text, int socket_type, int& error) {
+std::string local_trouble(const std::string& text, int socket_type, bool reuses_address, int& error) {
   const bool has_host = !text.starts_with(':');
   const auto address = parse_address(has_host ? text : "0.0.0.0" + text);
   if (!address) return address.error().message;
@@ -37,20 +37,20 @@ std::string local_trouble(const std::string& text, int socket_type, int& error) 
   if (const int fault = getaddrinfo(address->host.c_str(), port.c_str(), &hints, &found); fault != 0)
     return gai_strerror(fault);
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(found, freeaddrinfo);
-  error = bind_error(*found);
+  error = bind_error(*found, reuses_address);
   return error == 0 ? std::string() : std::generic_category().message(error);
 }
 
 }  // namespace
 
-std::string udp_trouble(const std::string& address) {
+std::string udp_trouble(const std::string& address, bool is_shared) {
   int error = 0;
-  return local_trouble(address, SOCK_DGRAM, error);
+  return local_trouble(address, SOCK_DGRAM, is_shared, error);
 }
 
 std::string listen_trouble(const std::string& address, bool& is_in_use) {
   int error = 0;
-  std::string trouble = local_trouble(address, SOCK_STREAM, error);
+  std::string trouble = local_trouble(address, SOCK_STREAM, true, error);
   is_in_use = error == EADDRINUSE;
   return trouble;
 }

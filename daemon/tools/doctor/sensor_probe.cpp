@@ -101,7 +101,7 @@ void probe_device(DeviceFacts& device, const settings::SensorConfig& sensor,
       device.is_there = device.trouble.empty();
       return;
     case DeviceKind::kUdpPort:
-      device.trouble = udp_trouble(device.name);
+      device.trouble = udp_trouble(device.name, device.is_shared);
       device.is_there = device.trouble.empty();
       return;
     case DeviceKind::kFile:
@@ -134,6 +134,12 @@ std::vector<DeviceFacts> named_devices(const settings::SensorConfig& sensor) {
   if (driver == "microphone") return {plugged(DeviceKind::kSoundCard)};
   if (driver == "mqtt") return {one(DeviceKind::kBroker, broker_of(values))};
   if (driver == "osc") return {one(DeviceKind::kUdpPort, address_of(values))};
+  if (driver == "tempest") {
+    DeviceFacts port = one(DeviceKind::kUdpPort, address_of(values));
+    port.is_shared = true;
+    return {port};
+  }
+  if (driver == "ecowitt") return {one(DeviceKind::kNetwork, address_of(values))};
   if (sensor.driver->plays_recordings) return {one(DeviceKind::kFile, text_or_empty(values, "file"))};
   const std::string transport = text_or_empty(values, "transport");
   if (transport == "tcp") return {one(DeviceKind::kNetwork, address_of(values))};

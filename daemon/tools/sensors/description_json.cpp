@@ -30,6 +30,18 @@ std::string_view type_of(const Parameter& parameter) {
   return kNames.at(parameter.default_value.index());
 }
 
+ordered_json known_devices_json(const drivers::sensor::DriverDescription& driver) {
+  ordered_json all = ordered_json::array();
+  if (driver.known_devices == nullptr) return all;
+  for (const drivers::sensor::KnownDevice& device : driver.known_devices()) {
+    all.push_back({{"name", device.name},
+                   {"device", device.device},
+                   {"confirmed_by", device.confirmed_by},
+                   {"unconfirmed", text_or_null(device.unconfirmed)}});
+  }
+  return all;
+}
+
 }  // namespace
 
 ordered_json parameters_json(std::span<const Parameter> parameters) {
@@ -54,8 +66,10 @@ ordered_json parameters_json(std::span<const Parameter> parameters) {
 ordered_json drivers_json(std::span<const drivers::sensor::DriverDescription* const> drivers) {
   ordered_json all = ordered_json::array();
   for (const drivers::sensor::DriverDescription* driver : drivers) {
-    all.push_back(
-        {{"name", driver->name}, {"summary", driver->summary}, {"parameters", parameters_json(driver->parameters)}});
+    all.push_back({{"name", driver->name},
+                   {"summary", driver->summary},
+                   {"parameters", parameters_json(driver->parameters)},
+                   {"known_devices", known_devices_json(*driver)}});
   }
   return all;
 }

@@ -15,7 +15,8 @@ namespace yuragi::daemon::tools::sensors {
 /// Each parameter: name, unit, type, default, least and most (null where there is none), choices, help.
 nlohmann::ordered_json parameters_json(std::span<const Parameter> parameters);
 
-/// Each driver: name, summary, parameters.
+/// Each driver: name, summary, parameters, and the devices that it knows by name: name, device, confirmed_by,
+/// unconfirmed (null where that is nothing).
 nlohmann::ordered_json drivers_json(std::span<const drivers::sensor::DriverDescription* const> drivers);
 
 /// Each finding: driver, device, the lines to paste (TOML), trouble and remedy (null where it can be opened).

@@ -17,6 +17,22 @@ std::string cell(std::string_view text) {
   return escaped;
 }
 
+/// "maker, decoder", or "nobody".
+std::string confirmed_by(const drivers::sensor::KnownDevice& device) {
+  return device.confirmed_by.empty() ? "nobody" : fmt::format("{}", fmt::join(device.confirmed_by, ", "));
+}
+
+std::string known_device_text(const std::vector<drivers::sensor::KnownDevice>& devices) {
+  std::string text;
+  for (const drivers::sensor::KnownDevice& device : devices) {
+    fmt::format_to(std::back_inserter(text), "  {}\n      {}; confirmed by: {}\n", device.name, device.device,
+                   confirmed_by(device));
+    if (!device.unconfirmed.empty())
+      fmt::format_to(std::back_inserter(text), "      unconfirmed: {}\n", device.unconfirmed);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string parameter_text(std::span<const Parameter> parameters) {
@@ -44,8 +60,10 @@ std::string describe_driver(const drivers::sensor::DriverDescription& driver) {
       "name = \"{0}\"  # any text, different for each sensor\n"
       "driver = \"{0}\"\n",
       driver.name, driver.summary);
-  if (driver.parameters.empty()) return text;
-  return text + "\nIts keys:\n" + parameter_text(driver.parameters);
+  if (!driver.parameters.empty()) text += "\nIts keys:\n" + parameter_text(driver.parameters);
+  if (driver.known_devices != nullptr)
+    text += "\nThe devices that it knows by name:\n" + known_device_text(driver.known_devices());
+  return text;
 }
 
 std::string driver_reference(std::span<const drivers::sensor::DriverDescription* const> drivers) {
@@ -55,11 +73,16 @@ std::string driver_reference(std::span<const drivers::sensor::DriverDescription*
   const auto out = std::back_inserter(text);
   for (const drivers::sensor::DriverDescription* driver : drivers) {
     fmt::format_to(out, "\n## {}\n\n{}\n", driver->name, cell(driver->summary));
-    if (driver->parameters.empty()) continue;
-    fmt::format_to(out, "\n| key | takes | what it is |\n| --- | --- | --- |\n");
+    if (!driver->parameters.empty()) fmt::format_to(out, "\n| key | takes | what it is |\n| --- | --- | --- |\n");
     for (const Parameter& parameter : driver->parameters) {
       fmt::format_to(out, "| `{}` | {} | {} |\n", parameter.name, cell(describe_allowed(parameter)),
                      cell(parameter.help));
+    }
+    if (driver->known_devices == nullptr) continue;
+    fmt::format_to(out, "\n| name | device | confirmed by | unconfirmed |\n| --- | --- | --- | --- |\n");
+    for (const drivers::sensor::KnownDevice& device : driver->known_devices()) {
+      fmt::format_to(out, "| `{}` | {} | {} | {} |\n", device.name, cell(device.device), confirmed_by(device),
+                     cell(device.unconfirmed));
     }
   }
   return text;

@@ -15,7 +15,7 @@ std::string parameter_text(std::span<const Parameter> parameters);
 /// A line for each driver: name and summary.
 std::string driver_names(std::span<const drivers::sensor::DriverDescription* const> drivers);
 
-/// The reference of one driver with all parameters, for a terminal.
+/// The reference of one driver with all parameters and the devices that it knows by name, for a terminal.
 std::string describe_driver(const drivers::sensor::DriverDescription& driver);
 
 /// All drivers on one page, in Markdown.

@@ -9,6 +9,7 @@
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
+#include "engine/wind/station_quantities.hpp"
 
 namespace yuragi::drivers::decode::hid {
 
@@ -27,6 +28,12 @@ namespace yuragi::drivers::decode::hid {
 //   bytes)  5       low nibble: gust, high 4 bits; high nibble: average, low 4 bits
 //           6       average, high 8 bits, 0.1 m/s
 //           7, 8    wind chill
+//   rain    4, 5    of the last hour   6, 7   of 24 hours   8, 9   since it was reset: 0.01 inch, low byte first
+//   (17)    2, 3    a rate, of which sources differ: not read
+//   temp.   2       low nibble: channel: 0 the console's own, 1 outdoors (weewx's map), 2 to 8 further sensors
+//   (12)    3, 4    0.1 degrees Celsius, low byte first; the top bit is the sign       5   humidity, %
+//   press.  2, 3    at the station, hPa, 12 bits, low byte first; the high nibble of 3 is a forecast
+//   (8)     4, 5    the same reduced to sea level
 
 /// No frame is longer (rain).
 inline constexpr std::size_t kWmr100LongestFrame = 17;
@@ -43,8 +50,9 @@ ByteSpan wmr100_report_bytes(ByteSpan report) noexcept;
 struct Wmr100Stream {
   std::array<std::uint8_t, kWmr100LongestFrame + 1> frame{};  ///< and the first ff behind it
   std::size_t size = 0;
-  bool is_skipping = false;  ///< nothing more of this frame is wanted
-  bool was_ff = false;       ///< the last byte was ff
+  bool is_skipping = false;    ///< nothing more of this frame is wanted
+  bool was_ff = false;         ///< the last byte was ff
+  std::size_t ended_size = 0;  ///< of the frame that the last byte ended
 };
 
 /// Takes the stream's next byte. Where that ends a frame: the wind, or why there is none (the order of
@@ -56,9 +64,19 @@ std::optional<Result<DecodedWind, Refusal>> take_wmr100_byte(Wmr100Stream& strea
 /// The stream ends here: the wind of its last frame if that was still waiting for the ff ff behind it; nothing if not.
 std::optional<Result<DecodedWind, Refusal>> finish_wmr100(Wmr100Stream& stream) noexcept;
 
+/// The frame of which take_wmr100_byte() or finish_wmr100() has just told the wind, or why it has none, without its
+/// ff ff; empty where they told nothing. It points into `stream`, until the next byte. Thread-safe: for distinct
+/// streams; realtime-safe: yes.
+ByteSpan ended_wmr100_frame(const Wmr100Stream& stream) noexcept;
+
 /// The wind of one frame without its ff ff, or the first thing that is wrong: kTooShort, kBadChecksum, kNotMine
-/// (another sensor's), kMalformed (longer than a wind frame), kImplausible. A gust below the average does come: it is
-/// passed on as the device sends it. Thread-safe and realtime-safe: yes.
+/// (another sensor's), kMalformed (longer than a wind frame), kImplausible. Consoles sometimes send a gust below the
+/// average, which cannot be: it is left out. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_wmr100_frame(ByteSpan frame) noexcept;
+
+/// What such a frame says besides the wind, without its time: temperature and humidity outdoors, pressure at the
+/// station, or rain; nothing where it is damaged, of another length than its kind has, or another sensor's. Values are
+/// not checked for their range (wind::plausible_part). Thread-safe and realtime-safe: yes.
+std::optional<wind::StationQuantities> decode_wmr100_quantities(ByteSpan frame) noexcept;
 
 }  // namespace yuragi::drivers::decode::hid

@@ -9,15 +9,35 @@ namespace {
 constexpr std::uint8_t kWmr300FirstData = 0xD1;
 constexpr std::uint8_t kWmr300LastData = 0xDC;
 constexpr std::uint8_t kWmr300History = 0xD2;
+constexpr std::uint8_t kWmr300Temperature = 0xD3;
 constexpr std::uint8_t kWmr300Wind = 0xD4;
+constexpr std::uint8_t kWmr300Rain = 0xD5;
+constexpr std::uint8_t kWmr300Pressure = 0xD6;
+constexpr std::size_t kWmr300TemperaturePacket = 61;
+constexpr std::size_t kWmr300RainPacket = 40;
+constexpr std::size_t kWmr300PressurePacket = 46;
+constexpr std::uint8_t kWmr300Outdoors = 1;
+constexpr std::uint8_t kWmr300NoData = 0x7F;
+constexpr double kHundredthInch_mm = 0.254;
 constexpr std::size_t kWmr300Channel = 7;
 constexpr std::size_t kWmr300Magic = 12;
 constexpr std::size_t kWmr300SumAt = 52;
 
 /// The number at `at`; none where the console has none.
 std::optional<double> wmr300_number(ByteSpan packet, std::size_t at) {
-  if (packet[at] == 0x7F) return std::nullopt;
+  if (packet[at] == kWmr300NoData) return std::nullopt;
   return big_endian_16(packet, at);
+}
+
+/// The same of a number that may be below zero.
+std::optional<double> wmr300_signed_number(ByteSpan packet, std::size_t at) {
+  if (packet[at] == kWmr300NoData) return std::nullopt;
+  return static_cast<std::int16_t>(big_endian_16(packet, at));
+}
+
+std::optional<double> millimetres(std::optional<double> hundredths_inch) {
+  if (!hundredths_inch) return std::nullopt;
+  return *hundredths_inch * kHundredthInch_mm;
 }
 
 std::optional<double> tenths(std::optional<double> number) {
@@ -42,6 +62,27 @@ Result<DecodedWind, Refusal> decode_wmr300(ByteSpan packet) noexcept {
   if (direction_deg && *direction_deg > 360.0) return Refusal::kImplausible;
   if (direction_deg) wind.direction_deg = wrapped_direction_deg(*direction_deg);
   return checked(wind);
+}
+
+std::optional<wind::StationQuantities> decode_wmr300_quantities(ByteSpan packet) noexcept {
+  if (!wants_wmr300_acknowledgement(packet) || !is_sound_wmr300(packet)) return std::nullopt;
+  wind::StationQuantities said;
+  if (packet[0] == kWmr300Temperature && packet[1] == kWmr300TemperaturePacket) {
+    if (packet[kWmr300Channel] != kWmr300Outdoors) return std::nullopt;
+    said.air_temperature_c = tenths(wmr300_signed_number(packet, 8));
+    if (packet[10] != kWmr300NoData) said.relative_humidity_percent = packet[10];
+    return said;
+  }
+  if (packet[0] == kWmr300Rain && packet[1] == kWmr300RainPacket) {
+    said.rain_total_mm = millimetres(wmr300_number(packet, 15));
+    said.rain_rate_mm_h = millimetres(wmr300_number(packet, 17));
+    return said;
+  }
+  if (packet[0] == kWmr300Pressure && packet[1] == kWmr300PressurePacket) {
+    said.pressure_hpa = tenths(wmr300_number(packet, 8));
+    return said;
+  }
+  return std::nullopt;
 }
 
 bool is_wmr300_identity(ByteSpan packet) noexcept {

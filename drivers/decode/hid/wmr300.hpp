@@ -3,11 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "drivers/decode/byte_order.hpp"
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
+#include "engine/wind/station_quantities.hpp"
 
 namespace yuragi::drivers::decode::hid {
 
@@ -27,6 +29,14 @@ namespace yuragi::drivers::decode::hid {
 //   12, 13   average, 0.1 m/s        14, 15   the average's direction, degrees
 //   18, 19   wind chill              20 ...   the records of the day
 //   52, 53   sum of bytes 0 to 51, high byte first (of 0xD2, the history, low byte first)
+//
+// The others begin and end alike; what is read of them:
+//
+//   0xD3     (61 bytes, every 10 to 12 s) 7 channel: 0 the console's own, 1 outdoors (weewx's map), 2 to 8 further
+//   ones;
+//            8, 9 temperature, 0.1 degrees Celsius, two's complement; 10 humidity, %, 0x7F: no data
+//   0xD5     (40 bytes, every 20 to 24 s) 15, 16 rain since it was reset, 0.01 inch; 17, 18 rate, 0.01 inch an hour
+//   0xD6     (46 bytes, every 15 min) 8, 9 pressure at the station, 0.1 hPa; 10, 11 reduced to sea level
 
 inline constexpr std::size_t kWmr300WindPacket = 54;
 
@@ -37,6 +47,12 @@ inline constexpr std::array<std::uint8_t, 5> kWmr300Heartbeat = {0xA6, 0x91, 0xC
 /// that 0xD4 does not have), kBadChecksum, kInvalid (no data), kImplausible. Bytes behind the packet are the report's
 /// padding. The packet's state is all in itself: nothing is kept. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_wmr300(ByteSpan packet) noexcept;
+
+/// What a packet says besides the wind, without its time: temperature and humidity outdoors, pressure at the station,
+/// or rain; nothing where it is damaged, of another length than its kind has, or another sensor's. The bytes behind it
+/// are the report's padding. Values are not checked for their range (wind::plausible_part). Thread-safe and
+/// realtime-safe: yes.
+std::optional<wind::StationQuantities> decode_wmr300_quantities(ByteSpan packet) noexcept;
 
 /// Is this the console's reply to a heartbeat? If it does not send data yet, it must be told to start.
 bool is_wmr300_identity(ByteSpan packet) noexcept;

@@ -59,9 +59,14 @@ class MicEstimator {
   MicEstimator(const MicEstimatorOptions& options, const MicHello& hello);
 
   /// Nothing until a whole window has been recorded. Refuses: kInvalid (digital silence: muted, or unplugged without an
-  /// error; or samples that are no numbers), kImplausible (noise at full scale, as strong above the wind's band as in
-  /// it: a broken cable or a wrong sample format). A refused block empties the window.
+  /// error; or samples that are no numbers; or a window in which two channels carry the same signal, twins()),
+  /// kImplausible (noise at full scale, as strong above the wind's band as in it: a broken cable or a wrong sample
+  /// format). A refused block empties the window.
   Result<std::optional<MicEstimate>, Refusal> add(const MicBlock& block);
+
+  /// Two channels, counted from 0, that carry the same signal: a mono input that was opened with more channels. All of
+  /// it would be taken for sound, and a storm for a calm. Of the last window; nothing while sound is not ignored.
+  const std::optional<std::array<std::size_t, 2>>& twins() const noexcept { return twins_; }
 
   const MicHello& hello() const noexcept { return hello_; }
 
@@ -81,6 +86,8 @@ class MicEstimator {
   std::optional<Refusal> refuse(const MicBlock& block) const;
   Levels levels_of_window() const;
   double coherence(std::size_t a, std::size_t b, std::size_t band) const;
+  std::optional<std::array<std::size_t, 2>> find_twins() const;
+  bool are_twins(std::size_t a, std::size_t b) const;
   std::optional<double> add_gust(double speed_m_s, double duration_s);
 
   MicEstimatorOptions options_;
@@ -89,6 +96,7 @@ class MicEstimator {
   std::size_t next_ = 0;
   std::size_t filled_ = 0;
   std::uint64_t last_sample_ = 0;
+  std::optional<std::array<std::size_t, 2>> twins_;
 
   MicNoiseFloor floor_;
   MicGainWatch gain_watch_;

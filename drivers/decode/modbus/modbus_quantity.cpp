@@ -42,25 +42,6 @@ std::int64_t whole_number(RegisterType type, std::uint32_t bits) {
   return bits;
 }
 
-/// The scaled number in the quantity's unit, finite and within the maker's range.
-Result<double, Refusal> decode_number(const ModbusQuantity& quantity, std::span<const std::uint16_t> registers) {
-  if (registers.size() < register_count(quantity.type)) return Refusal::kTooShort;
-
-  // The device's own mark for "no value"; a NaN is one by nature.
-  const std::uint32_t bits = ordered_bits(quantity, registers);
-  const std::int64_t whole = whole_number(quantity.type, bits);
-  if (std::ranges::find(quantity.invalid, whole) != quantity.invalid.end()) return Refusal::kInvalid;
-  const double raw = quantity.type == RegisterType::kF32 ? static_cast<double>(std::bit_cast<float>(bits))
-                                                         : static_cast<double>(whole);
-  if (std::isnan(raw)) return Refusal::kInvalid;
-
-  const double value = raw * quantity.scale + quantity.offset;
-  const bool in_range =
-      std::isfinite(value) && (!quantity.min || value >= *quantity.min) && (!quantity.max || value <= *quantity.max);
-  if (!in_range) return Refusal::kImplausible;
-  return value;
-}
-
 double metres_per_second(QuantityUnit unit) {
   switch (unit) {
     case QuantityUnit::kKmh:
@@ -86,6 +67,25 @@ Result<double, Refusal> direction_of_point(double point, int points) {
 
 std::size_t register_count(RegisterType type) noexcept {
   return type == RegisterType::kU16 || type == RegisterType::kI16 ? 1 : 2;
+}
+
+Result<double, Refusal> decode_number(const ModbusQuantity& quantity,
+                                      std::span<const std::uint16_t> registers) noexcept {
+  if (registers.size() < register_count(quantity.type)) return Refusal::kTooShort;
+
+  // The device's own mark for "no value"; a NaN is one by nature.
+  const std::uint32_t bits = ordered_bits(quantity, registers);
+  const std::int64_t whole = whole_number(quantity.type, bits);
+  if (std::ranges::find(quantity.invalid, whole) != quantity.invalid.end()) return Refusal::kInvalid;
+  const double raw = quantity.type == RegisterType::kF32 ? static_cast<double>(std::bit_cast<float>(bits))
+                                                         : static_cast<double>(whole);
+  if (std::isnan(raw)) return Refusal::kInvalid;
+
+  const double value = raw * quantity.scale + quantity.offset;
+  const bool in_range =
+      std::isfinite(value) && (!quantity.min || value >= *quantity.min) && (!quantity.max || value <= *quantity.max);
+  if (!in_range) return Refusal::kImplausible;
+  return value;
 }
 
 Result<double, Refusal> decode_speed_m_s(const ModbusQuantity& quantity,

@@ -69,44 +69,95 @@ bool is_hexadecimal(std::string_view text) {
   return text.find_first_not_of("0123456789ABCDEFabcdef") == std::string_view::npos;
 }
 
-}  // namespace
+/// A message with a unit, or a MaxiMet's, which has none.
+struct GillMessage {
+  TextFields fields;
+  std::size_t last = 0;            ///< the last field that is not empty
+  std::size_t unit_at = 0;         ///< 4 behind a vertical wind; 0: there is no unit
+  double metres_per_second = 1.0;  ///< of the unit
+  std::string_view status;
 
-GillResult decode_gill(const GillOptions& options, std::string_view line) noexcept {
-  if (const auto text = trimmed(line); !text.empty() && text.front() == '$') {
-    return decode_nmea({.checksum = options.checksum, .status = options.status, .xdr_first_id = 0}, text);
+  bool has_vertical() const { return unit_at == 4; }
+};
+
+/// A WindMaster's is the first field of two hexadecimal digits behind the unit; numbers there have a sign or a point.
+std::string_view gill_status_of(const GillMessage& message) {
+  if (!message.has_vertical()) return message.fields[message.last];
+  for (std::size_t at = message.unit_at + 1; at <= message.last; ++at) {
+    if (message.fields[at].size() == 2 && is_hexadecimal(message.fields[at])) return message.fields[at];
   }
+  return {};
+}
+
+Result<GillMessage, Refusal> gill_message_of(const GillOptions& options, std::string_view line) {
   const auto body = gill_body_of(options, line);
   if (!body) return body.error();
-  const TextFields fields = split_fields(*body, ',');
+  GillMessage message;
+  message.fields = split_fields(*body, ',');
+  const TextFields& fields = message.fields;
 
   const std::string_view node = fields[0];
   const bool is_gill = fields.count > 3 && node.size() == 1 && node[0] >= 'A' && node[0] <= 'Z';
   if (!is_gill || (options.node && node[0] != *options.node)) return Refusal::kNotMine;
   if (!fields.are_all) return Refusal::kMalformed;
 
-  // The status is the last field; the comma behind it makes one more, which is empty.
-  std::size_t last = fields.count - 1;
-  if (fields[last].empty()) --last;
-  const std::string_view status = fields[last];
+  // The status is the last field, but for a WindMaster's; the comma behind it makes one more, which is empty.
+  message.last = fields.count - 1;
+  if (fields[message.last].empty()) --message.last;
+  for (const std::size_t at : {std::size_t{3}, std::size_t{4}}) {
+    if (const auto factor = gill_unit(fields[at])) {
+      message.unit_at = at;
+      message.metres_per_second = *factor;
+      break;
+    }
+  }
+  message.status = gill_status_of(message);
+  return message;
+}
+
+/// Why a message with a unit is not to be used, by its status.
+std::optional<Refusal> gill_status_refusal(const GillOptions& options, const GillMessage& message) {
+  const bool has_status = message.last > message.unit_at && !message.status.empty();
+  if (has_status) return is_good_status(message.status) ? std::nullopt : std::optional(Refusal::kInvalid);
+  return options.status == WhenMissing::kRefuse ? std::optional(Refusal::kMalformed) : std::nullopt;
+}
+
+}  // namespace
+
+GillResult decode_gill(const GillOptions& options, std::string_view line) noexcept {
+  if (const auto text = trimmed(line); !text.empty() && text.front() == '$') {
+    return decode_nmea({.checksum = options.checksum, .status = options.status, .xdr_first_id = 0}, text);
+  }
+  const auto message = gill_message_of(options, line);
+  if (!message) return message.error();
+  const TextFields& fields = message->fields;
 
   DecodedWind wind;
   wind.reference = WindReference::kRelative;
-  if (const auto factor = gill_unit(fields[3])) {
-    const bool has_status = last > 3 && !status.empty();
-    if (has_status && !is_good_status(status)) return Refusal::kInvalid;
-    if (!has_status) {
-      if (options.status == WhenMissing::kRefuse) return Refusal::kMalformed;
-      wind.status = DecodedStatus::kUncertain;
-    }
-    return decode_gill_values(options, fields, *factor, wind);
+  if (message->unit_at > 0) {
+    if (const auto refusal = gill_status_refusal(options, *message)) return *refusal;
+    const bool has_status = message->last > message->unit_at && !message->status.empty();
+    if (!has_status) wind.status = DecodedStatus::kUncertain;
+    return decode_gill_values(options, fields, message->metres_per_second, wind);
   }
 
   // MaxiMet: behind the speed comes another number, or nothing. Its status flags voltage and satellites too.
   const auto next = parse_number(fields[3]);
   if (!next) return Refusal::kMalformed;
-  const bool has_flags = last > 3 && status.size() == 4 && is_hexadecimal(status);
-  if (has_flags && status != "0000") wind.status = DecodedStatus::kUncertain;
+  const bool has_flags = message->last > 3 && message->status.size() == 4 && is_hexadecimal(message->status);
+  if (has_flags && message->status != "0000") wind.status = DecodedStatus::kUncertain;
   return decode_gill_values(options, fields, 1.0, wind);
+}
+
+std::optional<wind::StationQuantities> decode_gill_quantities(const GillOptions& options,
+                                                              std::string_view line) noexcept {
+  const auto message = gill_message_of(options, line);
+  if (!message || !message->has_vertical() || gill_status_refusal(options, *message)) return std::nullopt;
+  const auto vertical = parse_number(message->fields[3]);
+  if (!vertical || !*vertical) return std::nullopt;
+  wind::StationQuantities said;
+  said.vertical_speed_m_s = **vertical * message->metres_per_second;
+  return said;
 }
 
 }  // namespace yuragi::drivers::decode::text

@@ -5,14 +5,18 @@
 
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/text_fields.hpp"
+#include "engine/wind/station_quantities.hpp"
 
 namespace yuragi::drivers::decode::text {
 
-// Gill's own ASCII formats (WindSonic, WindObserver, MaxiMet):
+// Gill's own ASCII formats (WindSonic, WindObserver, WindMaster, MaxiMet):
 //
 //   <STX>Q,ddd,sss.ss,M,nn,<ETX>cc             polar: node, direction, speed, unit, status
 //   <STX>Q,+uuu.uu,-vvv.vv,M,nn,<ETX>cc        UV: the wind blows toward north (+U) and toward west (+V)
 //   <STX>Q,ddd,sss.ss,M,...,nn,<ETX>cc         WindObserver: speed of sound and temperature before the status
+//   <STX>Q,+uuu.uu,-vvv.vv,+www.ww,M,...,nn,...,<ETX>cc    WindMaster, also with ddd.d,sss.sss for U and V: W is the
+//                                              vertical wind; the speed of sound and the temperature, where they are
+//                                              configured, before the status, analogue inputs behind it
 //   <STX>Q,ddd,sss.ss,ddd,sss.ss,...,<ETX>cc   MaxiMet: no unit in the message; the status is four hexadecimal digits
 //
 // cc is the exclusive or of what stands between STX and ETX. Units: M m/s, N knots, P mph, K km/h, F feet a minute.
@@ -20,7 +24,9 @@ namespace yuragi::drivers::decode::text {
 // the fields are then empty or 999. Below 0.05 m/s the direction is empty, or, in fixed-field mode, still the last one.
 // Sources: Gill WindSonic manual 1405-PS-0019 issue 28 and 30, chapters 9, 11.5 and figure 5 (six of the checksums that
 // it prints are wrong); WindObserver 65 manual 1390-PS-0039 figure 4. That +V is toward west follows from the manual's
-// figure (V runs east to west, 90 degrees anticlockwise from U).
+// figure (V runs east to west, 90 degrees anticlockwise from U); WindMaster manual 1561-PS-0001 issue 11, 7.1 to 7.4
+// and its lines on page 56. That +W is upward, along the shaft of an instrument that stands, is [unconfirmed]: its
+// figure.
 
 struct GillOptions {
   WhenMissing checksum = WhenMissing::kRefuse;
@@ -35,5 +41,11 @@ struct GillOptions {
 /// or another node), kMalformed, kInvalid (its status says so, or no value is there), kImplausible. The direction is
 /// clockwise from the device's north mark. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_gill(const GillOptions& options, std::string_view line) noexcept;
+
+/// The vertical wind of a WindMaster's line, without its time; nothing in other lines, and where decode_gill() refuses
+/// the line but for the values of its horizontal wind. Not checked for its range (wind::plausible_part). Thread-safe
+/// and realtime-safe: yes.
+std::optional<wind::StationQuantities> decode_gill_quantities(const GillOptions& options,
+                                                              std::string_view line) noexcept;
 
 }  // namespace yuragi::drivers::decode::text

@@ -14,8 +14,32 @@ namespace {
 using NmeaResult = Result<DecodedWind, Refusal>;
 using NmeaValue = Result<std::optional<double>, Refusal>;
 
+/// A single letter as a capital; any other text as it is.
+std::string_view capital(std::string_view field) {
+  constexpr std::string_view kCapitals = "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
+  const bool is_small = field.size() == 1 && field[0] >= 'a' && field[0] <= 'z';
+  return is_small ? kCapitals.substr(static_cast<std::size_t>(field[0] - 'a'), 1) : field;
+}
+
+/// Is a word in capitals the same, but for the case?
+bool is_word(std::string_view word, std::string_view capitals) {
+  if (word.size() != capitals.size()) return false;
+  for (std::size_t i = 0; i < word.size(); ++i) {
+    if (capital(word.substr(i, 1)) != capitals.substr(i, 1)) return false;
+  }
+  return true;
+}
+
+/// The wind, with its direction. An impossible one leaves the speed beside it, if there is one.
+NmeaResult with_direction(DecodedWind wind, const NmeaValue& direction_deg) {
+  if (!direction_deg && !wind.speed_m_s) return direction_deg.error();
+  if (direction_deg) wind.direction_deg = *direction_deg;
+  return checked(wind);
+}
+
 /// MWV and XDR know miles per hour too.
-std::optional<double> sentence_unit(std::string_view letter) {
+std::optional<double> sentence_unit(std::string_view field) {
+  const std::string_view letter = capital(field);
   return letter == "S" ? kMetresPerSecondPerMph : metres_per_second_of(letter);
 }
 
@@ -36,7 +60,7 @@ struct SpeedPlace {
 NmeaValue first_speed(const TextFields& fields, std::initializer_list<SpeedPlace> places) {
   for (const SpeedPlace& place : places) {
     if (fields[place.at].empty()) continue;
-    if (fields[place.at + 1] != place.letter) return Refusal::kMalformed;
+    if (capital(fields[place.at + 1]) != place.letter) return Refusal::kMalformed;
     return speed_with_unit(fields, place.at);
   }
   return std::optional<double>();
@@ -47,7 +71,7 @@ NmeaResult decode_mwv(const NmeaOptions& options, const TextFields& fields) {
   DecodedWind wind;
 
   // The status first: the other fields of an invalid sentence do not matter.
-  const std::string_view status = fields[5];
+  const std::string_view status = capital(fields[5]);
   if (status.empty()) {
     if (options.status == WhenMissing::kRefuse) return Refusal::kMalformed;
     wind.status = DecodedStatus::kUncertain;
@@ -55,21 +79,20 @@ NmeaResult decode_mwv(const NmeaOptions& options, const TextFields& fields) {
     return Refusal::kInvalid;
   }
 
-  if (fields[2] == "R") {
+  if (capital(fields[2]) == "R") {
     wind.reference = WindReference::kRelative;
-  } else if (fields[2] == "T") {
+  } else if (capital(fields[2]) == "T") {
     wind.reference = WindReference::kTrue;
   } else if (!fields[2].empty()) {
     return Refusal::kMalformed;
   }
 
   const NmeaValue direction_deg = parse_direction_deg(fields[1]);
-  if (!direction_deg) return direction_deg.error();
+  if (!direction_deg && direction_deg.error() != Refusal::kImplausible) return direction_deg.error();
   const NmeaValue speed_m_s = speed_with_unit(fields, 3);
   if (!speed_m_s) return speed_m_s.error();
-  wind.direction_deg = *direction_deg;
   wind.speed_m_s = *speed_m_s;
-  return checked(wind);
+  return with_direction(wind, direction_deg);
 }
 
 /// The eight fields deg,T,deg,M,kn,N,m/s,M that MWD and MDA share, from field `at` on.
@@ -78,36 +101,32 @@ NmeaResult decode_north(const TextFields& fields, std::size_t at) {
   const bool is_true = !fields[at].empty();
   const std::size_t direction = is_true ? at : at + 2;
   const NmeaValue direction_deg = parse_direction_deg(fields[direction]);
-  if (!direction_deg) return direction_deg.error();
-  if (*direction_deg) {
-    if (fields[direction + 1] != (is_true ? "T" : "M")) return Refusal::kMalformed;
+  if (!direction_deg && direction_deg.error() != Refusal::kImplausible) return direction_deg.error();
+  if (direction_deg && *direction_deg) {
+    if (capital(fields[direction + 1]) != (is_true ? "T" : "M")) return Refusal::kMalformed;
     wind.reference = is_true ? WindReference::kNorth : WindReference::kMagnetic;
   }
 
   const NmeaValue speed_m_s = first_speed(fields, {{at + 6, "M"}, {at + 4, "N"}});
   if (!speed_m_s) return speed_m_s.error();
-  wind.direction_deg = *direction_deg;
   wind.speed_m_s = *speed_m_s;
-  return checked(wind);
+  return with_direction(wind, direction_deg);
 }
 
 /// $--VWR and VWT,0..180,L|R,kn,N,m/s,M,km/h,K
 NmeaResult decode_side(const TextFields& fields, WindReference reference) {
-  const NmeaValue angle_deg = parse_number(fields[1]);
-  if (!angle_deg) return angle_deg.error();
+  const NmeaValue angle_deg = parse_direction_deg(fields[1]);
+  if (!angle_deg && angle_deg.error() != Refusal::kImplausible) return angle_deg.error();
   const NmeaValue speed_m_s = first_speed(fields, {{5, "M"}, {3, "N"}, {7, "K"}});
   if (!speed_m_s) return speed_m_s.error();
 
   DecodedWind wind;
   wind.speed_m_s = *speed_m_s;
   wind.reference = reference;
-  if (*angle_deg) {
-    const bool is_port = fields[2] == "L";
-    if (!is_port && fields[2] != "R") return Refusal::kMalformed;
-    if (**angle_deg < 0.0 || **angle_deg > 180.0) return Refusal::kImplausible;
-    wind.direction_deg = wrapped_direction_deg(is_port ? 360.0 - **angle_deg : **angle_deg);
-  }
-  return checked(wind);
+  if (!angle_deg || !*angle_deg) return with_direction(wind, angle_deg);
+  const bool is_port = capital(fields[2]) == "L";
+  if (!is_port && capital(fields[2]) != "R") return Refusal::kMalformed;
+  return with_direction(wind, wrapped_direction_deg(is_port ? 360.0 - **angle_deg : **angle_deg));
 }
 
 /// The statistic (least, mean, greatest) that an XDR quadruple's id stands for.
@@ -137,6 +156,7 @@ NmeaResult decode_xdr(const NmeaOptions& options, const TextFields& fields) {
   DecodedWind wind;
   wind.reference = WindReference::kRelative;
   bool has_wind = false;
+  bool has_impossible_angle = false;  // it leaves the others
   bool direction_is_mean = false;
   bool speed_is_mean = false;
 
@@ -148,6 +168,10 @@ NmeaResult decode_xdr(const NmeaOptions& options, const TextFields& fields) {
     has_wind = true;
 
     const NmeaValue value = is_angle ? parse_direction_deg(fields[at + 1]) : speed_with_unit(fields, at + 1);
+    if (!value && is_angle && value.error() == Refusal::kImplausible) {
+      has_impossible_angle = true;
+      continue;
+    }
     if (!value) return value.error();
     const bool is_mean = role == XdrRole::kMean;
     if (role == XdrRole::kGreatest) {
@@ -161,6 +185,8 @@ NmeaResult decode_xdr(const NmeaOptions& options, const TextFields& fields) {
     }
   }
   if (!has_wind) return Refusal::kNotMine;
+  const bool is_nothing_else = !wind.speed_m_s && !wind.direction_deg && !wind.gust_m_s;
+  if (has_impossible_angle && is_nothing_else) return Refusal::kImplausible;
   return checked(wind);
 }
 
@@ -236,16 +262,15 @@ NmeaResult decode_nmea(const NmeaOptions& options, std::string_view line) noexce
   constexpr std::size_t kTalker = 2;
   if (fields[0].size() != kTalker + 3) return Refusal::kNotMine;
   const std::string_view name = fields[0].substr(kTalker);
-  const bool is_wind =
-      name == "MWV" || name == "MWD" || name == "VWR" || name == "VWT" || name == "MDA" || name == "XDR";
-  if (!is_wind) return Refusal::kNotMine;
+  const auto is = [name](std::string_view capitals) { return is_word(name, capitals); };
+  if (!is("MWV") && !is("MWD") && !is("VWR") && !is("VWT") && !is("MDA") && !is("XDR")) return Refusal::kNotMine;
   if (!fields.are_all) return Refusal::kMalformed;
 
-  if (name == "MWV") return decode_mwv(options, fields);
-  if (name == "MWD") return decode_north(fields, 1);
-  if (name == "MDA") return decode_north(fields, 13);
-  if (name == "XDR") return decode_xdr(options, fields);
-  return decode_side(fields, name == "VWR" ? WindReference::kRelative : WindReference::kTrue);
+  if (is("MWV")) return decode_mwv(options, fields);
+  if (is("MWD")) return decode_north(fields, 1);
+  if (is("MDA")) return decode_north(fields, 13);
+  if (is("XDR")) return decode_xdr(options, fields);
+  return decode_side(fields, is("VWR") ? WindReference::kRelative : WindReference::kTrue);
 }
 
 }  // namespace yuragi::drivers::decode::text

@@ -20,8 +20,9 @@ namespace yuragi::drivers::decode::text {
 //
 // hh is the exclusive or of what stands between '$' and '*'. Sources: gpsd www/NMEA.adoc; SignalK nmea0183-signalk
 // hooks; Lufft V200A-UMB manual V25 20.5.4 (S is mph); Gill 1405-PS-0019 (status 00 and 60 are good). Devices do
-// otherwise (drivers/SOURCES.md S4.6): lower-case checksums, a trailing dot, angles of 360 and beyond, lines longer
-// than 82 characters, NUL bytes in front, no status, no checksum, other sentences and comments in between.
+// otherwise (drivers/SOURCES.md S4.6): lower case, a trailing dot, angles of 360 and beyond (of VWR and VWT above 180:
+// they are counted on, to the side that is named), lines longer than 82 characters, NUL bytes in front, no status, no
+// checksum, other sentences and comments in between.
 
 struct NmeaOptions {
   WhenMissing checksum = WhenMissing::kRefuse;
@@ -31,7 +32,8 @@ struct NmeaOptions {
 
 /// The wind in one line, without its line end, or why there is none: as sentence_of() refuses, then kNotMine (another
 /// sentence, or XDR without wind), kMalformed (fields, units or letters that the sentence does not have, or no status
-/// where that is refused), kInvalid (its status says so, or no value is there), kImplausible. One half may be empty.
+/// where that is refused), kInvalid (its status says so, or no value is there), kImplausible. One half may be empty; an
+/// impossible direction is, where there is a speed beside it.
 /// Where a sentence has the speed in several units, m/s is taken first. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_nmea(const NmeaOptions& options, std::string_view line) noexcept;
 

@@ -24,6 +24,7 @@ struct BlendSourceSettings {
   bool fits_site = false;           ///< its readings are live and of this site: they update the site's spectrum
   double averaging_s = 0.0;         ///< a reading is the mean over so long; 0: over the interval, which is measured
   double direction_step_deg = 0.0;  ///< resolution of its vane; 0: detected
+  double unchanged_for_s = 0.0;     ///< it speaks on change only: a silence of up to so long is none; 0: it does not
 };
 
 struct BlendSettings {

@@ -77,6 +77,7 @@ BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& 
       settings_(settings),
       mean_memory_s_(blend.mean_memory_s),
       noise_(&noise),
+      record_(settings.unchanged_for_s),
       direction_(settings.direction_step_deg),
       measured_(turbulence_prior(blend, settings), blend.fit_memory_s),
       turbulence_(measured_.along().turbulence()),
@@ -101,10 +102,13 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
     site_fit_.break_off();
   }
 
-  record_.take(reading);
+  const bool repeats = !is_first && says_the_same(reading, *record_.last());
+  const bool is_new = record_.take(reading);
+  if (!is_new && repeats) return true;
   wind_ = reading.speed_m_s * direction_.take(reading, gap_s, around.ahead, around.is_direction_live);
   set_full_trust();
   if (is_first) begin();
+  if (!is_new) return true;  // another one of the same burst: no independent sample of the turbulence
 
   // The turbulence. Of running means only as many are compared as do not overlap.
   const double interval_s = expected_interval_s();
@@ -200,7 +204,8 @@ void BlendSource::step(MonoTime now, double dt_s, const turbulence::OctaveFollow
   follower_.step(wind_, parts);
 
   // The weight of a band decays as fast as its waves pass, and as the gusts do (W21).
-  const double late_s = std::max(0.0, record_.age_s(now) - kLateAfterIntervals * interval_s_);
+  const double on_time_s = std::max(kLateAfterIntervals * interval_s_, record_.explained_s(kLateAfterIntervals));
+  const double late_s = std::max(0.0, record_.age_s(now) - on_time_s);
   if (late_s == 0.0) {
     // Until its readings span the memory, the mean of all of them.
     measured_s_ = std::min(measured_s_ + dt_s, kSpeedMemory_s);

@@ -1,28 +1,28 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
 #include <optional>
 
+#include "engine/wind/blend/reading_interval.hpp"
 #include "engine/wind/source_report.hpp"
 
 namespace yuragi::wind::blend {
 
-/// What an estimator remembers of one source: its last reading, and the interval between readings.
+/// What an estimator remembers of one source: its last reading, and the interval between new ones.
 /// Thread-safe: no. Realtime-safe: yes.
 class SourceRecord {
  public:
-  /// Takes a plausible reading, not older than the last.
-  void take(const WindReading& reading) noexcept {
-    if (last_) {
-      const double interval_s = seconds(reading.time.mono - last_->time.mono);
-      if (interval_s > 0.0) {
-        intervals_s_[intervals_seen_++ % kIntervalsKept] = interval_s;
-        interval_s_ = median_interval_s();
-      }
-    }
+  /// `unchanged_for_s`: so long a silence of the source says that nothing has changed (BlendSourceSettings).
+  explicit SourceRecord(double unchanged_for_s = 0.0) noexcept
+      : unchanged_for_s_(unchanged_for_s),
+        interval_(unchanged_for_s > 0.0 ? ReadingInterval::Speaks::kOnChange : ReadingInterval::Speaks::kAtIntervals) {}
+
+  /// Takes a plausible reading, not older than the last. Returns whether it is a new one (ReadingInterval::take).
+  bool take(const WindReading& reading) noexcept {
+    const bool is_new =
+        !last_ || interval_.take(seconds(reading.time.mono - last_->time.mono), says_the_same(reading, *last_));
     last_ = reading;
+    return is_new;
   }
 
   /// Its last reading still holds at `time`: nothing new, but it is not silent.
@@ -33,44 +33,50 @@ class SourceRecord {
   bool has_reading() const noexcept { return last_.has_value(); }
   const std::optional<WindReading>& last() const noexcept { return last_; }
 
-  /// The median of the last intervals; 0 before the second reading.
-  double interval_s() const noexcept { return interval_s_; }
+  /// Between new readings; 0 before the second reading.
+  double interval_s() const noexcept { return interval_.interval_s(); }
   /// The same, with an assumption for a source that has sent one reading.
-  double expected_interval_s() const noexcept { return interval_s_ > 0.0 ? interval_s_ : kAssumedInterval_s; }
+  double expected_interval_s() const noexcept { return interval_s() > 0.0 ? interval_s() : kAssumedInterval_s; }
 
   /// Of the last reading; 0 before the first.
   double age_s(MonoTime now) const noexcept { return last_ ? std::max(0.0, seconds(now - last_->time.mono)) : 0.0; }
 
-  /// Has it sent a reading within `stale_intervals` of its own intervals (at least a second)?
+  /// A silence of at least so long is explained whatever the interval is, where `intervals` of its own are usual: as
+  /// long as silence says that nothing has changed; and as long as the interval may still be that of repetitions.
+  double explained_s(double intervals) const noexcept {
+    const bool may_repeat_itself = interval_s() > 0.0 && !interval_.is_settled();
+    return std::max(unchanged_for_s_, may_repeat_itself ? intervals * kUnsettledInterval_s : 0.0);
+  }
+
+  /// Has it sent a reading within `stale_intervals` of its own intervals (at least a second), or is its silence
+  /// explained otherwise?
   bool is_live(MonoTime now, double stale_intervals) const noexcept {
-    return last_ && age_s(now) <= std::max(kMinStaleAfter_s, stale_intervals * expected_interval_s());
+    return is_on_time(now, stale_intervals) || (last_ && age_s(now) <= explained_s(stale_intervals));
   }
 
   SourceReport report(MonoTime now, double stale_intervals) const noexcept {
     if (!last_) return {};
-    return {.health = is_live(now, stale_intervals) ? SourceHealth::kLive : SourceHealth::kStale,
+    const bool is_live_now = is_live(now, stale_intervals);
+    return {.health = is_live_now ? SourceHealth::kLive : SourceHealth::kStale,
             .interval_s = interval_s(),
             .age_s = age_s(now),
+            .is_overdue = is_live_now && !is_on_time(now, stale_intervals),
             .last = last_};
   }
 
  private:
-  static constexpr std::size_t kIntervalsKept = 9;
-  static constexpr double kAssumedInterval_s = 2.0;
-  static constexpr double kMinStaleAfter_s = 1.0;
-
-  double median_interval_s() const noexcept {
-    const std::size_t count = std::min(intervals_seen_, kIntervalsKept);
-    auto sorted = intervals_s_;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(sorted.begin(), middle, sorted.begin() + static_cast<std::ptrdiff_t>(count));
-    return *middle;
+  bool is_on_time(MonoTime now, double stale_intervals) const noexcept {
+    return last_ && age_s(now) <= std::max(kMinStaleAfter_s, stale_intervals * expected_interval_s());
   }
 
+  static constexpr double kAssumedInterval_s = 2.0;
+  static constexpr double kMinStaleAfter_s = 1.0;
+  /// Of a station that repeats each message: more than the 18 s of Acurite's.
+  static constexpr double kUnsettledInterval_s = 20.0;
+
   std::optional<WindReading> last_;
-  double interval_s_ = 0.0;
-  std::array<double, kIntervalsKept> intervals_s_{};
-  std::size_t intervals_seen_ = 0;
+  double unchanged_for_s_;
+  ReadingInterval interval_;
 };
 
 }  // namespace yuragi::wind::blend

@@ -48,10 +48,6 @@ WindVector vector_of(const WindReading& reading) noexcept {
   return wind_from(reading.speed_m_s, reading.direction_deg.value_or(0.0));
 }
 
-bool says_the_same(const WindReading& a, const WindReading& b) noexcept {
-  return a.speed_m_s == b.speed_m_s && a.direction_deg == b.direction_deg && a.gust_m_s == b.gust_m_s;
-}
-
 }  // namespace
 
 bool ReadingJudge::judge(const WindReading& reading, std::optional<double> others_m_s) noexcept {

@@ -246,7 +246,7 @@ TEST_F(CsvCommands, ImportTellsTheColumnsAndWhatItLeftOut) {
   write("a.csv", "time,u_ms,v_ms\n0,1,1\n1,x,1\n2,1,1\n");
   const Outcome outcome = yuragi({"import", path("a.csv"), "-o", path("a.windlog"), "--sensor", "sonic"});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.output, HasSubstr("u from \"u_ms\" (m/s, toward east)"));
+  EXPECT_THAT(outcome.output, HasSubstr("u from \"u_ms\" (m/s, toward east; by its name)"));
   EXPECT_THAT(outcome.output, HasSubstr("2 readings of 3 rows, 1 left out"));
   EXPECT_THAT(outcome.error, HasSubstr("a.csv:3: not a number in u: \"x\""));
   EXPECT_EQ(drivers::windlog::WindlogReader::open(path("a.windlog"))->sensors()[0].name, "sonic");
@@ -262,7 +262,7 @@ TEST_F(CsvCommands, ImportThatFailsLeavesNothing) {
   EXPECT_EQ(yuragi({"import", path("absent.csv"), "-o", path("a.windlog")}).code, kExitNoInput);
   EXPECT_EQ(yuragi({"import", path("bad.csv"), "-o", path("nowhere/a.windlog")}).code, kExitCannotCreate);
   EXPECT_EQ(yuragi({"import", path("bad.csv"), "-o", path("a.windlog"), "--unit", "furlongs"}).code, kExitUsage);
-  EXPECT_EQ(yuragi({"import", path("bad.csv"), "-o", path("a.windlog"), "--delimiter", "|"}).code, kExitUsage);
+  EXPECT_EQ(yuragi({"import", path("bad.csv"), "-o", path("a.windlog"), "--delimiter", "/"}).code, kExitUsage);
   EXPECT_EQ(count_files(), 3);
 }
 
@@ -294,6 +294,27 @@ TEST_F(CsvCommands, ImportTakesItsOptions) {
   EXPECT_DOUBLE_EQ(logged[0].reading.speed_m_s, 10.0);
   EXPECT_EQ(logged[0].reading.direction_deg, 270.0);
   EXPECT_EQ(logged[0].reading.time.utc, UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms)));
+}
+
+TEST_F(CsvCommands, ImportTakesAFileWithoutAHeaderAndOneStationOfSeveral) {
+  write("a.csv", "a;20.7.2018 16:00;7;36;90\nb;20.7.2018 16:00;7;72;90\na;20.7.2018 16:10;99;18;270\n");
+  const Outcome outcome =
+      yuragi({"import", path("a.csv"), "-o", path("a.windlog"), "--header", "station,time,,speed,dir", "--where",
+              "station=a", "--unit", "km/h", "--zone", "Europe/Berlin"});
+  EXPECT_EQ(outcome.code, 0) << outcome.error;
+  const auto logged = test::read_all(path("a.windlog"));
+  ASSERT_EQ(logged.size(), 2U);
+  EXPECT_DOUBLE_EQ(logged[0].reading.speed_m_s, 10.0);
+  EXPECT_EQ(logged[0].reading.time.utc, UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms)));
+  EXPECT_EQ(logged[1].reading.direction_deg, 270.0);
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--zone", "Mars/Olympus"},
+                                                {"--where", "station"},
+                                                {"--gust-unit", "bft"},
+                                                {"--start", "noon"}}) {
+    std::vector<std::string> arguments = {"import", path("a.csv"), "-o", path("b.windlog")};
+    arguments.insert(arguments.end(), wrong.begin(), wrong.end());
+    EXPECT_EQ(yuragi(arguments).code, kExitUsage) << wrong[0];
+  }
 }
 
 TEST_F(CsvCommands, ExportRefusesWhatIsNoRecording) {

@@ -1,15 +1,24 @@
 // `yuragi decode` as a shell meets it: the program's own command, from files and pipes.
 #include <algorithm>
+#include <fstream>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "daemon/commands/decode_options.hpp"
 #include "daemon/tools/decode/hex_text.hpp"
+#include "drivers/sensor/driver.hpp"
+#include "drivers/text/nmea_sensor.hpp"
 #include "tests/daemon/commands/decode_run.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/manual_clock.hpp"
 #include "tests/support/places.hpp"
+#include "tests/support/recording_sink.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -86,11 +95,123 @@ TEST_F(DecodeCommand, ReadsALastLineThatHasNoEnd) {
 
 TEST_F(DecodeCommand, FollowsThePoliciesForAMissingChecksumAndStatus) {
   const std::string bare = "$WIMWV,214.8,R,0.1,K\n";
-  EXPECT_TRUE(run(bare, {"nmea"}).objects.empty());
-  EXPECT_TRUE(run(bare, {"nmea", "--checksum", "accept"}).objects.empty());
-  json reading = one(bare, {"nmea", "--checksum", "accept", "--status", "accept"});
-  EXPECT_EQ(reading["status"], "uncertain");
+  EXPECT_EQ(one(bare, {"nmea"})["status"], "uncertain") << "as the driver takes it from a file";
+  EXPECT_TRUE(run(bare, {"nmea", "--checksum", "refuse"}).objects.empty());
+  EXPECT_TRUE(run(bare, {"nmea", "--status", "refuse"}).objects.empty());
+  EXPECT_EQ(one(bare, {"nmea", "--checksum", "accept", "--status", "accept"})["status"], "uncertain");
+  EXPECT_TRUE(run("$WI,WVP=020.0,045,0*//\n", {"ft"}).objects.empty()) << "the makers' formats always have one";
   EXPECT_EQ(one("$WI,WVP=020.0,045,0*//\n", {"ft", "--checksum", "accept"})["speed_m_s"], 20.0);
+}
+
+const drivers::sensor::DriverDescription& driver_named(std::string_view name) {
+  return **std::ranges::find(drivers::sensor::driver_table(), name,
+                             [](const drivers::sensor::DriverDescription* driver) { return driver->name; });
+}
+
+TEST_F(DecodeCommand, HasTheDefaultsOfTheDriverOfText) {
+  const auto values = ParameterValues::resolve(driver_named("nmea").parameters,
+                                               {{"transport", std::string("file")}, {"file", std::string("a.log")}});
+  ASSERT_TRUE(values);
+  const auto driver = drivers::text::nmea_sensor_settings_of(*values);
+  const auto expect_alike = [&](const tools::decode::UnitDecoderOptions& options) {
+    EXPECT_EQ(options.checksum, driver.checksum);
+    EXPECT_EQ(options.makers_checksum, driver.makers_checksum);
+    EXPECT_EQ(options.status, driver.status);
+    EXPECT_EQ(options.xdr_first_id, driver.xdr_first_id);
+    EXPECT_EQ(options.umb_speed_range_m_s, driver.speed_range_m_s);
+    EXPECT_FALSE(options.node.has_value()) << "the driver's talker is empty: any";
+    EXPECT_FALSE(options.umb_device.has_value());
+  };
+  expect_alike({});
+
+  // And as the command line leaves them.
+  CLI::App app;
+  DecodeCommandOptions options;
+  options.add_to(app);
+  app.parse(std::vector<std::string>{"nmea"});
+  options.check();
+  expect_alike(options.decoder);
+}
+
+TEST_F(DecodeCommand, HasTheDefaultsAndLimitsOfTheDriverOfCounters) {
+  const auto driver = ParameterValues::resolve(driver_named("usb").parameters, {});
+  ASSERT_TRUE(driver);
+  CLI::App app;
+  DecodeCommandOptions options;
+  options.add_to(app);
+  for (const auto& decoder : {options.decoder, tools::decode::UnitDecoderOptions{}}) {
+    EXPECT_EQ(decoder.cup.metres_per_pulse, driver->number("metres_per_pulse"));
+    EXPECT_EQ(decoder.cup.offset_m_s, driver->number("offset"));
+    EXPECT_EQ(decoder.cup.enough_pulses, driver->integer("window_pulses"));
+    EXPECT_EQ(decoder.cup.longest_window_s, driver->number("window"));
+    EXPECT_EQ(decoder.vane.start_deg, driver->number("vane_start"));
+    EXPECT_EQ(decoder.vane.electrical_deg, driver->number("vane_span"));
+    EXPECT_EQ(decoder.vane.lowest_ratio, driver->number("vane_lowest"));
+    EXPECT_EQ(decoder.vane.highest_ratio, driver->number("vane_highest"));
+  }
+  for (const auto& [option, parameter] : std::map<std::string, std::string>{
+           {"--slope", "metres_per_pulse"}, {"--offset", "offset"}, {"--vane-reference", "reference_voltage"}}) {
+    const auto& table = driver_named("usb").parameters;
+    const auto found = std::ranges::find(table, parameter, &Parameter::name);
+    ASSERT_NE(found, table.end());
+    for (const double value : {found->min, found->max, found->min - 0.1, found->max + 0.1}) {
+      const bool is_within = value >= found->min && value <= found->max;
+      const auto done = run("", {"mcc1208", "--hex", "--interval", "1", option + "=" + std::to_string(value)});
+      EXPECT_EQ(done.code == 0, is_within) << option << " " << value << ": " << done.error;
+    }
+  }
+}
+
+/// What the driver itself makes of a file with one message.
+std::vector<wind::WindReading> of_driver(const std::string& format, const std::string& message) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "a.log", std::ios::binary) << message;
+  const auto values = ParameterValues::resolve(driver_named("nmea").parameters, {{"format", format},
+                                                                                 {"transport", std::string("file")},
+                                                                                 {"file", (folder / "a.log").string()},
+                                                                                 {"play_rate", 10.0}});
+  const auto sensor = driver_named("nmea").open(values.value());
+  ManualClock clock;
+  RecordingSink sink;
+  for (int polls = 0; polls < 100; ++polls) clock.advance_to(sensor->poll(clock, sink));
+  return sink.readings;
+}
+
+TEST_F(DecodeCommand, TakesAndRefusesWhatTheDriverTakesAndRefusesFromAFile) {
+  const std::vector<std::pair<std::string, std::string>> messages = {
+      {"nmea", "$WIMWV,214.8,R,10.0,N,A*1D"},
+      {"nmea", "$WIMWV,214.8,R,10.0,N,A"},     // without a checksum
+      {"nmea", "$WIMWV,214.8,R,10.0,N,A*00"},  // with a wrong one
+      {"nmea", "$WIMWV,214.8,R,10.0,N"},       // without a status
+      {"nmea", "$WIMWV,214.8,R,10.0,N,V"},
+      {"nmea", "$WIXDR,A,30,D,0,S,5.0,M,0"},
+      {"nmea", "$WIXDR,A,30,D,4,S,5.0,M,4"},  // another device's
+      {"gill",
+       "\x02Q,229,002.74,M,00,\x03"
+       "16"},
+      {"gill", "Q,229,002.74,M,00,"},  // without a checksum
+      {"gill",
+       "\x02Q,229,002.74,M,,\x03"
+       "16"},
+      {"ft", "$WI,WVP=020.0,045,0*73"},
+      {"ft", "$WI,WVP=020.0,045,0*//"},
+      {"ft", "$WI,WVP=020.0,045,0"},
+      {"umb", "$WIMWV,214.8,R,10.0,N,A*1D"},
+      {"umb", "$WIMWV,214.8,R,10.0,N,A"},
+      {"umb", "$ 28673 M 00400 32760"}};
+  int taken = 0;
+  for (const auto& [format, message] : messages) {
+    SCOPED_TRACE(format + ": " + message);
+    const auto readings = of_driver(format, message + "\r\n");
+    const auto done = run(message + "\r\n", {format});
+    ASSERT_EQ(done.objects.size(), readings.size()) << done.error;
+    if (readings.empty()) continue;
+    ++taken;
+    EXPECT_TRUE(is_value(done.objects[0]["speed_m_s"], readings[0].speed_m_s));
+    EXPECT_EQ(done.objects[0]["status"] == "good", readings[0].quality == wind::ReadingQuality::kGood);
+  }
+  EXPECT_GE(taken, 7);
+  EXPECT_LE(taken, 10);
 }
 
 TEST_F(DecodeCommand, ReadsNumbersWhereTheOptionsSayTheyStand) {
@@ -185,8 +306,8 @@ TEST(DecodeProgram, HelpsWithAnExampleOfEachFormat) {
   ChildProcess program({test::built_path("bin/yuragi"), "decode", "--help"});
   const std::string help = program.rest();
   EXPECT_EQ(program.wait(), 0);
-  for (const char* name : {"nmea", "gill", "umb", "ft", "wxt", "line", "wmr100", "wmr300", "fineoffset", "acurite", "te923",
-                           "mcc1208", "labjack", "modbus:"}) {
+  for (const char* name : {"nmea", "gill", "umb", "ft", "wxt", "line", "wmr100", "wmr300", "fineoffset", "acurite",
+                           "te923", "davis", "mcc1208", "labjack", "modbus:"}) {
     EXPECT_THAT(help, HasSubstr(std::string("yuragi decode ") + name));
   }
 }

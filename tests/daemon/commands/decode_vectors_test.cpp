@@ -103,7 +103,10 @@ TEST_F(DecodeCommand, DecodesEverySharedStationReport) {
     };
     EXPECT_TRUE(is_value(decoded["speed_m_s"], number({"avg_ms", "speed_ms"}), 1e-4));
     EXPECT_TRUE(is_value(decoded["direction_deg"], number({"avg_dir", "dir_deg"}), 1e-9));
-    EXPECT_TRUE(is_value(decoded["gust_m_s"], number({"gust_ms"}), 1e-9));
+    // The collection has a WMR100's gust as it stands there; one below the average is left out.
+    auto gust_m_s = number({"gust_ms"});
+    if (format->second == "wmr100" && gust_m_s < number({"avg_ms"})) gust_m_s.reset();
+    EXPECT_TRUE(is_value(decoded["gust_m_s"], gust_m_s, 1e-9));
   }
   EXPECT_EQ(covered["wmr300"], 1);
   EXPECT_EQ(covered["fineoffset"], 2);
@@ -146,7 +149,6 @@ TEST_F(DecodeCommand, DecodesEverySharedModbusExchange) {
       {"DFRobot SEN048", {{"modbus:dfrobot-sen0483"}, "wind_speed_ms", ""}},
       {"Renke RS-FXJT-N01",
        {{"modbus:renke-rs-fsjt-rs-fxjt-n01", "--speed-slave", "9", "--direction-slave", "1"}, "", "wind_dir_deg"}},
-      {"Vaisala WM80", {{"modbus:vaisala-wm80"}, "wind_speed_ms", "wind_dir_deg"}},
       {"SenseCAP ONE", {{"modbus:seeed-sensecap-one"}, "ws_avg", "dir_avg", "ws_max"}},
       {"Lufft WS-UMB", {{"modbus:lufft-umb"}, "fast", "", "max"}},
       {"Xunchip", {{"modbus:xunchip-xm8589"}, "wind_speed_raw", ""}},
@@ -166,6 +168,11 @@ TEST_F(DecodeCommand, DecodesEverySharedModbusExchange) {
     }
     if (vector["expect"].contains("error")) {
       EXPECT_EQ(one(line, {"modbus:renke-rs-fsjt-n01", "--hex", "--refused"})["refused"], "not mine");
+      continue;
+    }
+    if (device == "Vaisala WM80") {
+      // Made before it was known that its less significant words come first: 5.5 m/s is next to nothing in that order.
+      EXPECT_LT(one(line, {"modbus:vaisala-wm80", "--hex"})["speed_m_s"].get<double>(), 1e-30);
       continue;
     }
     const auto found = std::ranges::find_if(cases, [&](const auto& each) { return device.starts_with(each.first); });
@@ -229,8 +236,8 @@ TEST_F(DecodeCommand, ReadsEveryWindSentenceOfARealVoyageAsGpsdDoes) {
 TEST_F(DecodeCommand, ReadsALogWithoutStatusFieldsByPolicy) {
   const std::string log = test::source_path("../shared/data/nmea/signalk_n2kd-183-merrimac.log");
   if (!std::ifstream(log)) GTEST_SKIP() << log << " is not here";
-  EXPECT_TRUE(run_file(log, {"nmea"}).objects.empty());
-  const auto done = run_file(log, {"nmea", "--status", "accept"});
+  EXPECT_TRUE(run_file(log, {"nmea", "--status", "refuse"}).objects.empty());
+  const auto done = run_file(log, {"nmea"});
   ASSERT_EQ(done.objects.size(), 147U);
   EXPECT_TRUE(is_value(done.objects[0]["speed_m_s"], 1.89 * 1852.0 / 3600.0, 1e-9));
   EXPECT_TRUE(is_value(done.objects[0]["direction_deg"], 327.6, 1e-9));

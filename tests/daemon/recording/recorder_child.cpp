@@ -1,5 +1,5 @@
-// Records numbered readings, the next hundred when the last are on the disk, until it is killed; says on standard
-// output how far it came. The recorder's tests kill it.
+// Records numbered readings, and each second a numbered temperature, the next hundred when the last are on the disk,
+// until it is killed; says on standard output how far it came. The recorder's tests kill it.
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -16,6 +16,12 @@ int main(int argc, char** argv) {
     wind::WindReading reading;
     reading.time.mono += std::chrono::milliseconds(5 * i);
     reading.speed_m_s = 0.001 * static_cast<double>(i % 100'000);
+    if (i % 200 == 0) {
+      wind::StationQuantities said;
+      said.time = reading.time;
+      said.air_temperature_c = static_cast<double>(i / 200 % 50);
+      recorder.push(0, said);
+    }
     recorder.push(0, reading);
     if (i % 100 != 0) continue;
     const auto pushed = static_cast<std::uint64_t>(i + 1);

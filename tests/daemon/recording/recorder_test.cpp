@@ -14,6 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "drivers/windlog/recording_parts.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/places.hpp"
@@ -64,16 +65,22 @@ wind::StationQuantities temperature_at(std::int64_t mono_ms, double air_temperat
   return quantities;
 }
 
-std::vector<double> temperatures_in(const std::filesystem::path& file) {
+/// Nothing where the recording cannot be read now: a file of it may be renamed meanwhile.
+std::optional<std::vector<double>> temperatures_now_in(const std::filesystem::path& file) {
   std::vector<double> all;
   auto reader = drivers::windlog::WindlogReader::open(file);
-  EXPECT_TRUE(reader);
-  if (!reader) return all;
-  EXPECT_TRUE(reader->each_quantities(Nanoseconds{0}, Nanoseconds::max(),
-                                      [&](const drivers::windlog::LoggedQuantities& logged) {
-                                        all.push_back(logged.quantities.air_temperature_c.value_or(-1.0));
-                                      }));
+  if (!reader || !reader->each_quantities(Nanoseconds{0}, Nanoseconds::max(),
+                                          [&](const drivers::windlog::LoggedQuantities& logged) {
+                                            all.push_back(logged.quantities.air_temperature_c.value_or(-1.0));
+                                          }))
+    return std::nullopt;
   return all;
+}
+
+std::vector<double> temperatures_in(const std::filesystem::path& file) {
+  const auto all = temperatures_now_in(file);
+  EXPECT_TRUE(all);
+  return all.value_or(std::vector<double>{});
 }
 
 TEST(Recorder, WritesWhatStationsSayBesidesTheWind) {
@@ -109,6 +116,124 @@ TEST(Recorder, LosesNoReadingToATableOfQuantitiesThatIsDamaged) {
   ASSERT_EQ(reports.size(), 1U);
   EXPECT_NE(reports[0].find("1 message of stations, besides the wind, could not be recorded"), std::string::npos)
       << reports[0];
+}
+
+/// The parts of a recording that are there, the oldest first, and the file that is written.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& part : drivers::windlog::completed_parts(file)) files.push_back(part.file);
+  files.push_back(file);
+  return files;
+}
+
+TEST(Recorder, LosesAndDoublesNothingThatStationsSayWhereAFileIsCompleted) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  std::vector<double> said;
+  {
+    Recorder recorder(file, info_of({{"mast", "nmea", ""}, {"roof", "nmea", ""}}), {}, {}, {.most_file_bytes = 1});
+    for (int i = 1; i <= 4; ++i) {
+      // Several seconds before the reading that completes the file, and after it, in one go.
+      for (int second = 0; second < 5; ++second) {
+        said.push_back(10.0 * i + second);
+        EXPECT_TRUE(recorder.push(i % 2 == 0 ? 0 : 1, temperature_at(10'000 * i + 1000 * second, said.back())));
+      }
+      EXPECT_TRUE(recorder.push(0, test::reading_at(10'000 * i + 2500, i)));
+      wait_for(recorder, [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i); });
+    }
+  }
+  EXPECT_EQ(files_of(file).size(), 4U);
+  EXPECT_EQ(temperatures_in(file), said);
+  std::vector<double> one_by_one;
+  for (const auto& part : files_of(file)) {
+    const test::TemporaryFolder alone;
+    std::filesystem::copy_file(part, alone / "b.windlog");
+    for (const double each : temperatures_in(alone / "b.windlog")) one_by_one.push_back(each);
+  }
+  EXPECT_EQ(one_by_one, said);
+}
+
+TEST(Recorder, CompletesAFileThatHasNoReading) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  std::vector<double> said;
+  std::vector<std::string> reports;
+  constexpr std::int64_t kDay_ms = 24 * 3'600'000;
+  for (int day = 0; day < 5; ++day) {
+    Recorder recorder(file, info_of({{"mast", "nmea", ""}}),
+                      [&](std::string_view sentence) { reports.emplace_back(sentence); }, {},
+                      {.is_daily = true, .keep_days = 2});
+    said.push_back(day);
+    EXPECT_TRUE(recorder.push(0, temperature_at(day * kDay_ms + 1000, day)));
+  }
+  EXPECT_EQ(files_of(file).size(), 4U) << "the first day ended more than two days ago";
+  said.erase(said.begin());
+  EXPECT_EQ(temperatures_in(file), said);
+  ASSERT_EQ(reports.size(), 1U);
+  EXPECT_NE(reports[0].find("deleted"), std::string::npos) << reports[0];
+}
+
+TEST(Recorder, CompletesAFileThatHasNoReadingInTheMiddleOfARun) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  std::vector<double> said;
+  {
+    Recorder recorder(file, info_of({{"mast", "nmea", ""}}), {}, {}, {.most_file_bytes = 1});
+    for (int i = 1; i <= 3; ++i) {
+      said.push_back(i);
+      EXPECT_TRUE(recorder.push(0, temperature_at(10'000 * i, i)));
+      const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+      while (temperatures_now_in(file) != said && std::chrono::steady_clock::now() < until) std::this_thread::yield();
+      EXPECT_EQ(temperatures_in(file), said);
+    }
+  }
+  EXPECT_EQ(files_of(file).size(), 3U);
+  EXPECT_EQ(temperatures_in(file), said);
+}
+
+TEST(Recorder, DeletesWhatStationsSaidWithTheFileThatItIsIn) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  std::vector<std::string> reports;
+  {
+    // A quarter of the limit is kept free: 75 kB hold two files of some 30.
+    Recorder recorder(file, info_of({{"mast", "nmea", ""}}),
+                      [&](std::string_view sentence) { reports.emplace_back(sentence); }, {},
+                      {.most_file_bytes = 1, .most_bytes = 100'000});
+    for (int i = 1; i <= 8; ++i) {
+      EXPECT_TRUE(recorder.push(0, temperature_at(10'000 * i, i)));
+      EXPECT_TRUE(recorder.push(0, test::reading_at(10'000 * i, i)));
+      wait_for(recorder, [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i); });
+    }
+  }
+  EXPECT_GE(reports.size(), 3U);
+  std::vector<double> speeds;
+  for (const auto& logged : test::read_all(file)) speeds.push_back(logged.reading.speed_m_s);
+  EXPECT_LT(speeds.size(), 8U);
+  EXPECT_EQ(speeds.back(), 8.0);
+  EXPECT_EQ(temperatures_in(file), speeds) << "of the files that are kept, all of it";
+}
+
+TEST(Recorder, KeepsWhatStationsSayWhileTheDiskIsFull) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  std::vector<double> said;
+  {
+    Recorder recorder(file, info_of({{"mast", "nmea", ""}}), {}, {}, {.least_free_bytes = 1});
+    recorder.push(0, test::reading_at(1, 1.0));
+    wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
+    recorder.begin_session(info_of({{"mast", "nmea", ""}}), {.least_free_bytes = ~std::uint64_t{0}});
+    for (int second = 2; second < 30; ++second) {
+      said.push_back(second);
+      EXPECT_TRUE(recorder.push(0, temperature_at(1000 * second, second)));
+    }
+    recorder.push(0, test::reading_at(40'000, 2.0));
+    wait_for(recorder, [](const RecorderStatus& status) { return status.state == RecorderState::kRetrying; });
+    recorder.begin_session(info_of({{"mast", "nmea", ""}}), {});
+    recorder.push(0, test::reading_at(50'000, 3.0));
+    wait_for(recorder, [](const RecorderStatus& status) { return status.written == 3; });
+  }
+  EXPECT_EQ(temperatures_in(file), said);
 }
 
 /// The permissions of a file as a person writes them: 0640.
@@ -635,9 +760,15 @@ TEST(Recorder, KilledAtAnyMomentLeavesARecordingOfAllThatWasCommitted) {
     EXPECT_EQ(logged[i].reading.speed_m_s, 0.001 * static_cast<double>(i));
   }
 
+  // So is what the station said, a second each.
+  const auto said = temperatures_in(file);
+  EXPECT_GE(said.size(), committed / 200);
+  for (std::size_t i = 0; i < said.size(); ++i) EXPECT_EQ(said[i], static_cast<double>(i % 50));
+
   // The next start mends the file and appends.
   { Recorder recorder(file, info_of({{"mast", "", ""}})); }
   EXPECT_EQ(test::read_all(file).size(), logged.size());
+  EXPECT_EQ(temperatures_in(file), said);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 

@@ -356,6 +356,50 @@ TEST_F(SensorJudgement, SilenceIsStaleAndADeviceThatGoesIsDisconnected) {
   EXPECT_EQ(reason(), "its cable is out");
 }
 
+TEST_F(SensorJudgement, AMessageThatIsRepeatedIsJudgedOnceAndNeverStale) {
+  start();
+  int second = 0;
+  int stale = 0;
+  double said_m_s = 0.0;
+  go_on(1800, [&] {
+    const int of_burst = second++ % 18;  // Acurite's 5-in-1 says each message three times every 18 s
+    if (of_burst == 0) said_m_s = second == 18 * 60 + 1 ? 90.0 : breeze();
+    if (of_burst < 3) publish(0, said_m_s);
+    if (state() == wind::judging::SensorState::kStale) ++stale;
+  });
+  EXPECT_EQ(stale, 0);
+  EXPECT_EQ(recorded_, 300) << "a recording keeps everything";
+  EXPECT_EQ(hub_->wind().source, wind::WindSource::kLive);
+  EXPECT_THAT(reason(), HasSubstr("a reading every 18 s"));
+  EXPECT_THAT(hub_->status()[0].refused, ::testing::Contains(std::pair<std::string, std::uint64_t>("rejected", 3)))
+      << "the spike, and what repeats it";
+  EXPECT_LT(largest_wind_m_s_, 30.0);
+}
+
+TEST_F(SensorJudgement, ASensorThatSpeaksOnChangeIsSilentInACalmThatLasts) {
+  config_.sensors[0].blend.unchanged_for_s = 3600.0;
+  start();
+  go_on(60, [&] { publish(0, breeze()); });
+  publish(0, 0.0);
+  go_on(600, [] {});
+  largest_wind_m_s_ = 0.0;
+  go_on(2700, [] {});
+  EXPECT_LT(largest_wind_m_s_, 0.1) << "no wind is invented";
+  EXPECT_EQ(state(), wind::judging::SensorState::kLive);
+  EXPECT_THAT(reason(), HasSubstr("none for 55"));
+  go_on(360, [] {});
+  EXPECT_EQ(state(), wind::judging::SensorState::kStale);
+}
+
+TEST_F(SensorJudgement, WhatAConnectedSensorSaysAnewOfItselfIsLoggedOnce) {
+  start();
+  go_on(30, [&] { publish(0, breeze()); });
+  sinks_[0]->link(wind::LinkState::kConnected, "there, with the direction of another");
+  go_on(30, [&] { publish(0, breeze()); });
+  EXPECT_EQ(lines_of_log_with("connected: here"), 1) << log_.str();
+  EXPECT_EQ(lines_of_log_with("connected: there, with the direction of another"), 1) << log_.str();
+}
+
 TEST_F(SensorJudgement, AFlappingSensorDoesNotFloodTheLog) {
   start();
   int second = 0;

@@ -52,6 +52,26 @@ TEST(SensorState, SilenceOfADeviceThatIsThereIsStaleAndOfOneThatHasGoneDisconnec
   EXPECT_EQ(reason(evidence), "slave 1 does not answer");
 }
 
+TEST(SensorState, BeforeItsSecondReadingAStationIsNotStale) {
+  SensorEvidence evidence = well();
+  evidence.report.health = wind::SourceHealth::kStale;
+  evidence.report.interval_s = 0.0;
+  evidence.report.age_s = 47.0;  // Fine Offset's consoles measure every 48 s
+  EXPECT_EQ(state_of(evidence), wind::judging::SensorState::kLive);
+  evidence.report.age_s = 121.0;
+  EXPECT_EQ(state_of(evidence), wind::judging::SensorState::kStale);
+}
+
+TEST(SensorState, NothingExplainsTheSilenceOfADeviceThatHasGone) {
+  SensorEvidence evidence = well();
+  evidence.report.is_overdue = true;
+  evidence.report.age_s = 600.0;
+  EXPECT_EQ(state_of(evidence), wind::judging::SensorState::kLive);
+  EXPECT_EQ(reason(evidence), "a reading every 1 s; none for 10 min, which says that nothing has changed");
+  evidence.link = wind::LinkState::kConnecting;
+  EXPECT_EQ(state_of(evidence), wind::judging::SensorState::kDisconnected);
+}
+
 TEST(SensorState, OneMissedAnswerIsNoDisconnection) {
   SensorEvidence evidence = well();
   evidence.link = wind::LinkState::kConnecting;

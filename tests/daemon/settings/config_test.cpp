@@ -199,6 +199,15 @@ TEST(Config, WhatDoesNotFitTogetherInTheShapingIsToldAtItsPlace) {
   EXPECT_EQ(to_toml(parse_config(to_toml(config), "again.toml")), to_toml(config));
 }
 
+TEST(Config, ASensorThatSpeaksOnChangeIsUnchangedWhileItIsSilent) {
+  const std::string sensor = "[[sensor]]\ndriver = \"mqtt\"\ntopic = \"wind\"\nsilence = 43200\n";
+  EXPECT_EQ(parse_config(sensor, "wall.toml").sensors[0].blend.unchanged_for_s, 0.0);
+  const Config config = parse_config(sensor + "on_change = true\n", "wall.toml");
+  EXPECT_EQ(config.sensors[0].blend.unchanged_for_s, 43200.0);
+  EXPECT_EQ(parse_config(to_toml(config), "recorded.toml").sensors[0].blend.unchanged_for_s, 43200.0)
+      << "a recording is replayed so";
+}
+
 TEST(Config, ASensorHasItsPartAmongSeveral) {
   const Config config = parse_config(
       "[wind]\nreturn_after = 20\n"

@@ -62,6 +62,61 @@ TEST(GillUv, BlowsTowardNorthAndWest) {
   EXPECT_TRUE(is_refused(decode_gill_body("Q,+000.00,,M,00,"), Refusal::kInvalid));
 }
 
+// The bodies of lines on page 56 of the WindMaster's manual.
+constexpr std::string_view kWindMaster =
+    "Q,335.3,001.261,-001.282,M,+345.41,+023.05,00,+2.4181,+2.4181,+2.4162,+2.4175,-50.00C,";
+constexpr std::string_view kWindMasterError = "Q,,,,M,,,07,+2.4181,+2.4187,+2.4162,+2.4175,-50.00C,";
+constexpr std::string_view kWindMasterFixedError =
+    "Q,999.9,999.999,+999.999,M,+999.99,+999.99,07,+2.4181,+2.4187,+2.4169,+2.4181,-50.00C,";
+
+std::optional<wind::StationQuantities> gill_quantities_of(std::string_view body,
+                                                          const text::GillOptions& options = kGill) {
+  return text::decode_gill_quantities(options, gill_frame(body));
+}
+
+TEST(GillWindMaster, GivesTheHorizontalWindAndTheVerticalBesides) {
+  EXPECT_TRUE(reads(decode_gill_body(kWindMaster), 1.261, 335.3));
+  EXPECT_EQ(decode_gill_body(kWindMaster)->status, DecodedStatus::kGood);
+  const auto said = gill_quantities_of(kWindMaster);
+  ASSERT_TRUE(said.has_value());
+  EXPECT_EQ(said->vertical_speed_m_s, -1.282);
+  EXPECT_FALSE(said->air_temperature_c.has_value()) << "the sonic temperature is another";
+
+  EXPECT_TRUE(reads(decode_gill_body("Q,+003.00,+000.00,+000.50,M,00,"), 3.0, 180.0));
+  EXPECT_EQ(gill_quantities_of("Q,+003.00,+000.00,+000.50,M,00,")->vertical_speed_m_s, 0.5);
+}
+
+TEST(GillWindMaster, HasItsUnitAndItsStatusBehindTheVerticalWind) {
+  EXPECT_TRUE(
+      reads(decode_gill_body("Q,335.3,001.261,-001.282,N,+345.41,+023.05,00,"), 1.261 * 1852.0 / 3600.0, 335.3));
+  EXPECT_NEAR(*gill_quantities_of("Q,335.3,001.261,-001.282,N,00,")->vertical_speed_m_s, -1.282 * 1852.0 / 3600.0,
+              1e-9);
+  for (const std::string_view body : {kWindMasterError, kWindMasterFixedError}) {
+    EXPECT_TRUE(is_refused(decode_gill_body(body), Refusal::kInvalid)) << body;
+    EXPECT_FALSE(gill_quantities_of(body).has_value()) << body;
+  }
+  // A pair of transducers has failed; the numbers look well.
+  EXPECT_TRUE(is_refused(decode_gill_body("Q,335.3,001.261,-001.282,M,01,"), Refusal::kInvalid));
+  EXPECT_FALSE(gill_quantities_of("Q,335.3,001.261,-001.282,M,01,").has_value());
+  EXPECT_TRUE(is_refused(decode_gill_body("Q,335.3,001.261,-001.282,M,"), Refusal::kMalformed));
+  EXPECT_FALSE(gill_quantities_of("Q,335.3,001.261,-001.282,M,").has_value());
+  const text::GillOptions accept = {.status = WhenMissing::kAccept, .node = {}};
+  EXPECT_EQ(decode_gill_body("Q,335.3,001.261,-001.282,M,", accept)->status, DecodedStatus::kUncertain);
+  EXPECT_TRUE(gill_quantities_of("Q,335.3,001.261,-001.282,M,", accept).has_value());
+}
+
+TEST(GillWindMaster, IsWhatOtherLinesAreNot) {
+  for (const char* body : {"Q,229,002.74,M,00,", "A,121,000.08,M,+344.66,+021.76,00,", "Q,+003.00,+000.00,M,00,",
+                           "Q,168,000.02,213,000.00,1013.3,+021.0,0000,"}) {
+    EXPECT_FALSE(gill_quantities_of(body).has_value()) << body;
+  }
+  EXPECT_FALSE(gill_quantities_of(kWindMaster, {.node = 'A'}).has_value());
+  auto damaged = gill_frame(kWindMaster);
+  damaged[10] ^= 1;
+  EXPECT_FALSE(text::decode_gill_quantities(kGill, damaged).has_value());
+  EXPECT_FALSE(text::decode_gill_quantities(kGill, "$WIMWV,214.8,R,10.0,N,A*1D").has_value());
+}
+
 TEST(GillMaxiMet, HasSpeedAndDirectionInFront) {
   EXPECT_TRUE(reads(decode_gill_body("Q,180,000.06,133,000.21,1013.2,021,0000,"), 0.06, 180.0));
   EXPECT_EQ(decode_gill_body("Q,180,001.06,133,000.21,0100,")->status, DecodedStatus::kUncertain);

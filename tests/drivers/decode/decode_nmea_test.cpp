@@ -38,8 +38,31 @@ TEST(NmeaMwv, TakesAnglesOfAWholeTurnAndBeyond) {
   EXPECT_TRUE(reads(decode_body("WIMWV,360,R,3.0,M,A"), 3.0, 0.0));
   EXPECT_TRUE(reads(decode_body("WIMWV,360.0,R,3.0,M,A"), 3.0, 0.0));
   EXPECT_TRUE(reads(decode_body("WIMWV,530,R,3.0,M,A"), 3.0, 170.0));
-  EXPECT_TRUE(is_refused(decode_body("WIMWV,720,R,3.0,M,A"), Refusal::kImplausible));
-  EXPECT_TRUE(is_refused(decode_body("WIMWV,-10,R,3.0,M,A"), Refusal::kImplausible));
+}
+
+TEST(NmeaLine, WithAnImpossibleDirectionHasTheSpeedBesideIt) {
+  EXPECT_TRUE(reads(decode_body("WIMWV,720,R,3.0,M,A"), 3.0, {}));
+  EXPECT_TRUE(reads(decode_body("WIMWV,-10,R,3.0,M,A"), 3.0, {}));
+  EXPECT_TRUE(reads(decode_body("WIMWV,999.9,R,3.0,M,A"), 3.0, {}));
+  EXPECT_TRUE(reads(decode_body("WIMWD,999.9,T,,M,11.2,N,5.8,M"), 5.8, {}));
+  EXPECT_TRUE(reads(decode_body("WIMDA,,,,,,,,,,,,,-1,T,,M,1.2,N,0.6,M"), 0.6, {}));
+  EXPECT_TRUE(reads(decode_body("IIVWR,999,R,,,0.51,M,,"), 0.51, {}));
+  EXPECT_TRUE(reads(decode_body("WIXDR,A,999,D,0,S,0.2,M,0"), 0.2, {}));
+  for (const std::string_view body :
+       {"WIMWV,720,R,,M,A", "WIMWD,999.9,T,,M,,N,,M", "IIVWR,999,R,,,,M,,", "WIXDR,A,999,D,0"}) {
+    EXPECT_TRUE(is_refused(decode_body(body), Refusal::kImplausible)) << body;
+  }
+}
+
+/// As SignalK's nmea0183-signalk takes the letters (hooks MWV, VWR), and pynmea2 the name.
+TEST(NmeaLine, MayBeInLowerCase) {
+  EXPECT_TRUE(reads(decode_body("WIMWV,214.8,r,10.0,n,a"), 5.1444, 214.8));
+  EXPECT_EQ(decode_body("WIMWV,214.8,t,10.0,m,A")->reference, WindReference::kTrue);
+  EXPECT_TRUE(is_refused(decode_body("WIMWV,214.8,r,10.0,n,v"), Refusal::kInvalid));
+  EXPECT_TRUE(reads(decode_body("IIVWR,75,l,,,,,36.0,k"), 10.0, 285.0));
+  EXPECT_TRUE(reads(decode_body("wimwd,328.2,t,326.8,m,11.2,n,5.8,m"), 5.8, 328.2));
+  EXPECT_TRUE(is_refused(decode_body("wihdg,229.8,,,1.3,e"), Refusal::kNotMine));
+  EXPECT_TRUE(is_refused(decode_body("WIMWV,214.8,rr,10.0,n,a"), Refusal::kMalformed));
 }
 
 TEST(NmeaMwv, WithoutAGoodStatusIsInvalid) {
@@ -105,7 +128,6 @@ TEST(NmeaLine, WithFieldsThatTheSentenceDoesNotHaveIsMalformed) {
 TEST(NmeaLine, WithAWindThatNeverBlewIsImplausible) {
   EXPECT_TRUE(is_refused(decode_body("WIMWV,12,R,120.5,M,A"), Refusal::kImplausible));
   EXPECT_TRUE(is_refused(decode_body("WIMWV,12,R,-0.5,M,A"), Refusal::kImplausible));
-  EXPECT_TRUE(is_refused(decode_body("IIVWR,181,R,1.0,N,,,,"), Refusal::kImplausible));
 }
 
 TEST(NmeaMwd, PrefersTrueNorthAndMetresPerSecond) {
@@ -125,6 +147,15 @@ TEST(NmeaVwr, IsFromPortOrStarboardOfTheBow) {
   EXPECT_TRUE(reads(decode_body("IIVWR,75,L,,,,,36.0,K"), 10.0, 285.0));
   EXPECT_TRUE(reads(decode_body("IIVWR,0,L,10,N,,,,"), 5.1444, 0.0));
   EXPECT_EQ(decode_body("IIVWT,75,L,,,,,36.0,K")->reference, WindReference::kTrue);
+}
+
+/// As SignalK's nmea0183-signalk does (hooks VWT): 200 degrees to starboard are 160 to port.
+TEST(NmeaVwt, CountsOnAboveAHalfTurn) {
+  EXPECT_TRUE(reads(decode_body("IIVWT,200.0,R,10.1,N,05.2,M,018.7,K"), 5.2, 200.0));
+  EXPECT_TRUE(reads(decode_body("IIVWT,200.0,L,10.1,N,05.2,M,018.7,K"), 5.2, 160.0));
+  EXPECT_TRUE(reads(decode_body("IIVWT,180.0,L,10.1,N,05.2,M,018.7,K"), 5.2, 180.0));
+  EXPECT_TRUE(reads(decode_body("IIVWT,360.0,L,10.1,N,05.2,M,018.7,K"), 5.2, 0.0));
+  EXPECT_TRUE(reads(decode_body("IIVWR,181,R,1.0,N,,,,"), 0.5144, 181.0));
 }
 
 TEST(NmeaMda, HasItsWindAtTheEnd) {

@@ -128,6 +128,81 @@ TEST(Wmr300Vectors, OfTheSharedCollectionDecodeAsTheySay) {
   }
 }
 
+// The packets in the comment of weewx wmr300.py, byte for byte; their sums are right.
+const std::string kWmr300TemperatureHex =
+    "d3 3d 0e 05 09 12 14 01 00 c3 2d 00 46 7f fd 00 00 0e 05 09 0a 24 00 82 0e 05 09 10 1f 00 3c 0e 05 01 0f 1b 00 82 "
+    "0e 05 04 0b 08 ff f6 0e 05 09 00 00 7f ff 0e 05 01 00 00 7f ff 0b 63";
+const std::string kWmr300RainHex =
+    "d5 28 0e 05 09 12 15 01 00 00 00 00 00 0c 00 00 a1 00 00 0e 04 1d 12 00 0e 05 09 01 0c 00 0b 0e 05 02 04 0c 00 92 "
+    "03 1a";
+const std::string kWmr300PressureHex =
+    "d6 2e 0e 05 0d 0e 30 00 26 59 27 a9 01 2c 03 00 0e 05 0d 0c 33 27 ad 0e 05 0d 00 06 27 9d 0e 05 04 01 15 27 f1 0e "
+    "05 0b 00 06 27 5e 06 ec";
+
+/// The packet with other bytes from `at` on, and the sum that then is right.
+StationBytes wmr300_changed(const std::string& hex, std::size_t at, const std::string& other_hex) {
+  auto packet = test::hex_bytes(hex);
+  std::ranges::copy(test::hex_bytes(other_hex), packet.begin() + static_cast<std::ptrdiff_t>(at));
+  const std::uint16_t sum = sum_16(ByteSpan(packet).first(packet.size() - 2));
+  packet[packet.size() - 2] = static_cast<std::uint8_t>(sum >> 8U);
+  packet[packet.size() - 1] = static_cast<std::uint8_t>(sum & 0xFFU);
+  return packet;
+}
+
+TEST(Wmr300Quantities, OfThePublishedPacketsAreWhatTheirCommentSays) {
+  const auto weather = hid::decode_wmr300_quantities(test::hex_bytes(kWmr300TemperatureHex));
+  ASSERT_TRUE(weather.has_value());
+  EXPECT_EQ(weather->air_temperature_c, 19.5);
+  EXPECT_EQ(weather->relative_humidity_percent, 45.0);
+  EXPECT_FALSE(weather->pressure_hpa || weather->rain_total_mm || weather->rain_rate_mm_h);
+
+  const auto rain = hid::decode_wmr300_quantities(test::hex_bytes(kWmr300RainHex));
+  ASSERT_TRUE(rain.has_value());
+  EXPECT_NEAR(rain->rain_total_mm.value_or(0.0), 1.61 * 25.4, 1e-9);
+  EXPECT_EQ(rain->rain_rate_mm_h, 0.0);
+  EXPECT_FALSE(rain->air_temperature_c || rain->relative_humidity_percent || rain->pressure_hpa);
+
+  const auto pressure = hid::decode_wmr300_quantities(test::hex_bytes(kWmr300PressureHex));
+  ASSERT_TRUE(pressure.has_value());
+  EXPECT_EQ(pressure->pressure_hpa, 981.7);
+}
+
+TEST(Wmr300Quantities, MayBeNegativeOrMissing) {
+  const auto frost = hid::decode_wmr300_quantities(wmr300_changed(kWmr300TemperatureHex, 8, "ff f6"));
+  ASSERT_TRUE(frost.has_value());
+  EXPECT_EQ(frost->air_temperature_c, -1.0);
+  const auto none = hid::decode_wmr300_quantities(wmr300_changed(kWmr300TemperatureHex, 8, "7f ff 7f"));
+  EXPECT_FALSE(none && (none->air_temperature_c || none->relative_humidity_percent));
+  EXPECT_FALSE(hid::decode_wmr300_quantities(wmr300_changed(kWmr300PressureHex, 8, "7f ff"))->pressure_hpa.has_value());
+  const auto dry = hid::decode_wmr300_quantities(wmr300_changed(kWmr300RainHex, 15, "7f ff 7f ff"));
+  EXPECT_FALSE(dry->rain_total_mm || dry->rain_rate_mm_h);
+}
+
+TEST(Wmr300Quantities, OfOtherSensorsAndPacketsAreNone) {
+  for (const std::string channel : {"00", "02", "08", "ff"}) {
+    EXPECT_FALSE(hid::decode_wmr300_quantities(wmr300_changed(kWmr300TemperatureHex, 7, channel)).has_value());
+  }
+  EXPECT_FALSE(hid::decode_wmr300_quantities(wmr300_packet(20, 10, 90)).has_value());
+  EXPECT_FALSE(hid::decode_wmr300_quantities(hid::kWmr300Heartbeat).has_value());
+  EXPECT_FALSE(hid::decode_wmr300_quantities({}).has_value());
+}
+
+TEST(Wmr300Quantities, OfADamagedPacketAreNone) {
+  for (const std::string& hex : {kWmr300TemperatureHex, kWmr300RainHex, kWmr300PressureHex}) {
+    const auto packet = test::hex_bytes(hex);
+    for (std::size_t size = 0; size < packet.size(); ++size)
+      EXPECT_FALSE(hid::decode_wmr300_quantities(ByteSpan(packet).first(size)).has_value()) << hex << ": " << size;
+    for (std::size_t bit = 0; bit < 8 * packet.size(); ++bit) {
+      auto damaged = packet;
+      damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ (1U << (bit % 8)));
+      EXPECT_FALSE(hid::decode_wmr300_quantities(damaged).has_value()) << hex << ": " << bit;
+    }
+    auto report = packet;
+    report.resize(64, 0xEE);
+    EXPECT_TRUE(hid::decode_wmr300_quantities(report).has_value());
+  }
+}
+
 // --- Fine Offset
 
 StationBytes fineoffset_record(std::uint8_t average, std::uint8_t gust, std::uint8_t high, std::uint8_t direction,
@@ -294,6 +369,40 @@ TEST(AcuriteReport, IsRefusedInGrades) {
       test::is_refused_as(hid::decode_acurite(test::hex_bytes("01 11 22 71 01 2e 00 00 00 00")), Refusal::kInvalid));
 }
 
+// The reports are quoted in the comment of weewx acurite.py.
+
+TEST(AcuriteQuantities, AreTemperatureAndHumidityOrRainByTurns) {
+  const auto weather = hid::decode_acurite_quantities(test::hex_bytes("01 c0 5c 78 00 08 1f 53 03 ff"));
+  ASSERT_TRUE(weather.has_value());
+  EXPECT_NEAR(weather->air_temperature_c.value_or(0.0), 1055.0 / 18.0 - 40.0, 1e-12);
+  EXPECT_EQ(weather->relative_humidity_percent, 83.0);
+  EXPECT_FALSE(weather->rain_total_mm.has_value());
+
+  const auto rain = hid::decode_acurite_quantities(test::hex_bytes("01 c0 5c 71 00 05 00 0c 03 ff"));
+  ASSERT_TRUE(rain.has_value());
+  EXPECT_NEAR(rain->rain_total_mm.value_or(0.0), 12 * 0.254, 1e-12);
+  EXPECT_FALSE(rain->air_temperature_c || rain->relative_humidity_percent);
+}
+
+TEST(AcuriteQuantities, HaveThirteenBitsOfTipsAndNoParity) {
+  const auto rain = hid::decode_acurite_quantities(test::hex_bytes("01 cd ff 71 00 6c 39 71 03 ff"));
+  EXPECT_NEAR(rain.value().rain_total_mm.value_or(0.0), (0x39 * 128 + 0x71) * 0.254, 1e-9);
+  EXPECT_EQ(hid::decode_acurite_quantities(test::hex_bytes("01 cd ff 71 00 6c f9 f1 03 ff"))->rain_total_mm,
+            rain->rain_total_mm);
+  const auto frost = hid::decode_acurite_quantities(test::hex_bytes("01 cd ff 78 00 60 80 81 03 ff"));
+  EXPECT_EQ(frost.value().air_temperature_c, -40.0);
+  EXPECT_EQ(frost->relative_humidity_percent, 1.0);
+}
+
+TEST(AcuriteQuantities, OfNoSensorALostLinkOrAnUnknownReportAreNone) {
+  for (const char* hex :
+       {"01 cf ff ff ff ff ff ff 00 00", "01 ff ff ff ff ff ff ff ff 00", "01 8b fa 71 00 06 00 0c 00 00",
+        "01 8b fa 73 00 08 75 24 01 00", "01 8b fa 78 00 08 75 24 01 01", "01 8b fa 78 00 08 75 24 01",
+        "02 8b fa 78 00 08 75 24 01 00", "01 8b fa 78 00 08 75 24 01 00 00", ""}) {
+    EXPECT_FALSE(hid::decode_acurite_quantities(test::hex_bytes(hex)).has_value()) << hex;
+  }
+}
+
 TEST(AcuriteVectors, OfTheSharedCollectionDecodeAsTheySay) {
   const auto vectors = test::load_byte_vectors(kStationVectors, "AcuRite");
   if (vectors.empty()) GTEST_SKIP() << "../shared/data/vectors/hid_vectors.json is not here";
@@ -353,6 +462,49 @@ TEST(Te923Block, IsRefusedInGrades) {
     auto damaged = block;
     damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ (1U << (bit % 8)));
     EXPECT_TRUE(test::is_refused_as(hid::decode_te923(damaged), Refusal::kBadChecksum)) << bit;
+  }
+}
+
+/// A block with no wind, whose bytes from `at` on are these.
+StationBytes te923_block_with(std::size_t at, const std::string& hex) {
+  auto block = te923_block("ee 8e ee 8e 00");
+  std::ranges::copy(test::hex_bytes(hex), block.begin() + static_cast<std::ptrdiff_t>(at));
+  block[33] = 0;
+  block[33] = xor_8(block);
+  return block;
+}
+
+TEST(Te923Quantities, AreOfChannelOneTheConsoleAndTheRainGauge) {
+  auto said = hid::decode_te923_quantities(te923_block_with(4, "96 c1 58"));
+  ASSERT_TRUE(said.has_value());
+  EXPECT_EQ(said->air_temperature_c, 19.6);
+  EXPECT_EQ(said->relative_humidity_percent, 58.0);
+  EXPECT_EQ(hid::decode_te923_quantities(te923_block_with(4, "96 e1 58"))->air_temperature_c, 19.65);
+  EXPECT_EQ(hid::decode_te923_quantities(te923_block_with(4, "96 61 58"))->air_temperature_c, -19.65);
+  EXPECT_EQ(hid::decode_te923_quantities(te923_block_with(21, "54 3f"))->pressure_hpa, 1013.25);
+  EXPECT_NEAR(*hid::decode_te923_quantities(te923_block_with(31, "24 01"))->rain_total_mm, 292 * 25.4 / 36.0, 1e-9);
+}
+
+TEST(Te923Quantities, LeaveOutWhatIsMarkedAsNone) {
+  for (const char* none : {"9a c1", "a6 c1", "96 ca", "96 81", "ff ff", "ee 8e"}) {
+    EXPECT_FALSE(hid::decode_te923_quantities(te923_block_with(4, none))->air_temperature_c.has_value()) << none;
+  }
+  for (const char* none : {"5a", "a5", "ff"}) {
+    EXPECT_FALSE(hid::decode_te923_quantities(te923_block_with(6, none))->relative_humidity_percent.has_value())
+        << none;
+  }
+  EXPECT_FALSE(hid::decode_te923_quantities(te923_block_with(21, "ff ff"))->pressure_hpa.has_value());
+  EXPECT_FALSE(hid::decode_te923_quantities(te923_block_with(21, "00 f0"))->pressure_hpa.has_value());
+}
+
+TEST(Te923Quantities, OfADamagedBlockAreNone) {
+  const auto block = te923_block_with(4, "96 c1 58");
+  for (std::size_t size = 0; size < block.size(); ++size)
+    EXPECT_FALSE(hid::decode_te923_quantities(ByteSpan(block).first(size)).has_value()) << size;
+  for (std::size_t bit = 0; bit < 8 * block.size(); ++bit) {
+    auto damaged = block;
+    damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ (1U << (bit % 8)));
+    EXPECT_FALSE(hid::decode_te923_quantities(damaged).has_value()) << bit;
   }
 }
 

@@ -249,6 +249,74 @@ TEST(FineOffsetStation, HandsOnTheWeatherWithEachReading) {
   EXPECT_EQ(bench.sink.station_quantities.back().time.mono, bench.sink.readings.back().time.mono);
 }
 
+/// The last value of each quantity that a station handed on in an hour.
+wind::StationQuantities last_weather_of(std::string_view model) {
+  HidBench bench(model);
+  bench.run_for(kHour_s);
+  wind::StationQuantities last;
+  for (const wind::StationQuantities& said : bench.sink.station_quantities) {
+    EXPECT_TRUE(wind::plausible_part(said).has_value());
+    EXPECT_LE(last.time.mono, said.time.mono);
+    last.time = said.time;
+    for (const wind::StationQuantity& each : wind::kStationQuantities) {
+      if (said.*each.value) last.*each.value = said.*each.value;
+    }
+  }
+  EXPECT_GT(bench.readings(), 70U) << "besides the wind, not in place of it";
+  return last;
+}
+
+TEST(Wmr100Station, HandsOnTheWeatherOfItsOwnFrames) {
+  const wind::StationQuantities last = last_weather_of("wmr100");
+  EXPECT_EQ(last.air_temperature_c, 19.6);
+  EXPECT_EQ(last.relative_humidity_percent, 58.0);
+  EXPECT_EQ(last.pressure_hpa, 1005.0);
+  EXPECT_NEAR(last.rain_total_mm.value_or(0.0), 63.5, 1e-9);
+}
+
+TEST(Wmr300Station, HandsOnTheWeatherOfItsOwnPackets) {
+  const wind::StationQuantities last = last_weather_of("wmr300");
+  EXPECT_EQ(last.air_temperature_c, -3.6);
+  EXPECT_EQ(last.relative_humidity_percent, 58.0);
+  EXPECT_EQ(last.pressure_hpa, 981.7);
+  EXPECT_NEAR(last.rain_total_mm.value_or(0.0), 63.5, 1e-9);
+  EXPECT_NEAR(last.rain_rate_mm_h.value_or(0.0), 2.54, 1e-9);
+}
+
+TEST(Te923Station, HandsOnTheWeatherOfItsBlock) {
+  const wind::StationQuantities last = last_weather_of("te923");
+  EXPECT_EQ(last.air_temperature_c, 19.65);
+  EXPECT_EQ(last.relative_humidity_percent, 58.0);
+  EXPECT_EQ(last.pressure_hpa, 1005.0);
+  EXPECT_NEAR(last.rain_total_mm.value_or(0.0), 25.4, 1e-9);
+}
+
+TEST(AcuriteStation, HandsOnRainAndWeatherByTurns) {
+  const wind::StationQuantities last = last_weather_of("acurite");
+  EXPECT_NEAR(last.air_temperature_c.value_or(0.0), 18.61, 0.01);
+  EXPECT_EQ(last.relative_humidity_percent, 83.0);
+  EXPECT_NEAR(last.rain_total_mm.value_or(0.0), 12 * 0.254, 1e-9);
+  EXPECT_FALSE(last.pressure_hpa.has_value());
+}
+
+TEST_P(EveryStation, HandsOnNoFalseWeatherWhileItsReportsAreHurt) {
+  for (const FaultKind kind : {FaultKind::kGarbage, FaultKind::kBadChecksum, FaultKind::kPartial}) {
+    HidBench bench(GetParam().model);
+    bench.run_for(kHour_s);
+    const auto whole = bench.sink.station_quantities;
+    bench.bus.fault = [kind](double) { return std::optional(kind); };
+    bench.run_for(kHour_s);
+    for (std::size_t i = whole.size(); i < bench.sink.station_quantities.size(); ++i) {
+      const wind::StationQuantities& said = bench.sink.station_quantities[i];
+      for (const wind::StationQuantity& each : wind::kStationQuantities) {
+        const bool was_said = std::ranges::any_of(
+            whole, [&](const wind::StationQuantities& before) { return before.*each.value == said.*each.value; });
+        EXPECT_TRUE(!(said.*each.value) || was_said) << each.name << " " << *(said.*each.value);
+      }
+    }
+  }
+}
+
 TEST(FineOffsetStation, IsNotAskedMoreOftenThanItMeasures) {
   const auto readings_at = [](Nanoseconds interval) {
     HidBench bench("fineoffset", {.pace = 1.0, .poll_interval = interval});

@@ -251,6 +251,72 @@ TEST(MicEstimatorTest, DigitalSilenceIsNoCalm) {
   for (const decode::microphone::MicEstimate& estimate : heard.estimates) EXPECT_GT(estimate.speed_m_s, 1.0);
 }
 
+/// One channel of a sound, in each of several with these gains, as samples of 16 bits.
+Sound copies_of(const Sound& sound, const std::vector<float>& gains) {
+  Sound copies{sound.rate_hz, gains.size(), {}};
+  for (std::size_t i = 0; i < sound.frames(); ++i) {
+    const float sample = std::round(sound.at(i, 0) * 32768.0F) / 32768.0F;
+    for (const float gain : gains) copies.samples.push_back(gain * sample);
+  }
+  return copies;
+}
+
+TEST(MicEstimatorTest, OneSignalInTwoChannelsIsNoCalm) {
+  const Sound wind = test::wind_noise(kRate_hz, 1, 6.0, 0.1);
+  const double alone_m_s = hear(wind).mean_speed_m_s();
+  EXPECT_GT(alone_m_s, 1.0);
+  for (const std::vector<float>& gains : {std::vector{1.0F, 1.0F}, {1.0F, -0.7F}, {0.3F, 1.0F, 0.6F, 1.0F}}) {
+    for (const double window_s : {0.25, 1.0, 3.0}) {
+      const Heard heard = hear(copies_of(wind, gains), {.window_s = window_s});
+      EXPECT_TRUE(heard.estimates.empty());
+      EXPECT_GE(heard.refusals.size(), 1U);
+      EXPECT_EQ(std::ranges::count(heard.refusals, decode::Refusal::kInvalid),
+                static_cast<std::ptrdiff_t>(heard.refusals.size()));
+    }
+    const Heard deaf = hear(copies_of(wind, gains), {.ignores_sound = false});
+    EXPECT_TRUE(deaf.refusals.empty()) << "each is as good as one microphone";
+    EXPECT_GT(deaf.mean_speed_m_s(), 0.4 * alone_m_s);
+  }
+}
+
+TEST(MicEstimatorTest, SaysWhichChannelsCarryTheSameSignalAndForgetsItWhenTheyDoNotAnyMore) {
+  Sound sound = test::wind_noise(kRate_hz, 3, 6.0, 0.1);
+  for (std::size_t i = 0; i < sound.frames() / 2; ++i) sound.at(i, 2) = 0.5F * sound.at(i, 0);
+  const auto [hello, blocks] = test::blocks_of(sound);
+  decode::microphone::MicEstimator estimator({}, hello);
+  int refused = 0;
+  int estimated = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const auto estimate = estimator.add(blocks[i]);
+    if (!estimate) {
+      EXPECT_EQ(estimator.twins(), (std::array<std::size_t, 2>{0, 2})) << i;
+      EXPECT_LT(i, blocks.size() / 2 + 4);
+      ++refused;
+    } else if (*estimate) {
+      EXPECT_FALSE(estimator.twins().has_value());
+      EXPECT_GT((*estimate)->speed_m_s, 1.0);
+      ++estimated;
+    }
+  }
+  EXPECT_GE(refused, 2);
+  EXPECT_GE(estimated, 4);
+}
+
+TEST(MicEstimatorTest, TwoMicrophonesInLoudSoundAreTwo) {
+  const double rms = 0.1;
+  for (const bool is_voice : {true, false}) {
+    Sound sound = test::wind_noise(kRate_hz, 2, 30.0, 0.003 * rms);  // 50 dB below the sound
+    const auto ambient = is_voice ? test::voice(kRate_hz, sound.frames()) : test::music(kRate_hz, sound.frames());
+    for (std::size_t i = 0; i < sound.frames(); ++i) {
+      for (std::size_t channel = 0; channel < 2; ++channel)
+        sound.at(i, channel) += static_cast<float>(rms * ambient[i]);
+    }
+    const Heard heard = hear(sound);
+    EXPECT_TRUE(heard.refusals.empty()) << heard.refusals.size();
+    EXPECT_GT(heard.estimates.size(), 100U);
+  }
+}
+
 TEST(MicEstimatorTest, ADeadChannelIsNamedAndTheOthersGoOn) {
   Sound sound = test::wind_noise(kRate_hz, 3, 4.0, 0.1);
   const double whole_m_s = hear(sound).mean_speed_m_s();

@@ -161,6 +161,29 @@ TEST_F(MicrophoneSensorTest, IsUncertainWhileItClipsAndSaysSo) {
   EXPECT_THAT(sink_.last_detail(), HasSubstr("clips"));
 }
 
+TEST_F(MicrophoneSensorTest, IsUnusableWhileTwoChannelsCarryTheSameSignalAndSaysWhatToDo) {
+  const std::vector<decode::microphone::MicBlock> both = blocks_;
+  for (decode::microphone::MicBlock& block : blocks_) {
+    block.channels[1] = block.channels[0];
+    for (std::size_t band = 0; band < hello_.bands; ++band) block.cross[0][band] = block.channels[0].power[band];
+  }
+  poll();
+  send_hello();
+  send_blocks(9);
+  hear();
+  EXPECT_TRUE(sink_.readings.empty()) << "no calm is told";
+  EXPECT_EQ(sink_.count(decode::Refusal::kInvalid), 2);
+  EXPECT_NE(sink_.last_state(), wind::LinkState::kConnected);
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("windmic: channels 1 and 2 carry the same signal"));
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("set channels = 1"));
+
+  blocks_ = both;
+  send_blocks(8);
+  hear();
+  EXPECT_FALSE(sink_.readings.empty());
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnected);
+}
+
 TEST_F(MicrophoneSensorTest, SaysWhatTheWorkerSaysIsWrongAndBeginsItAgain) {
   for (int i = 0; i < 3; ++i) {
     poll();

@@ -93,6 +93,45 @@ TEST(ModbusPlan, LeavesADirectionOnItsOwnLineToItself) {
   EXPECT_THAT(reads[2].measures, ElementsAre(kDirection));
 }
 
+/// A quantity of a station in this register of slave 1.
+ModbusStationQuantity station_at(std::uint16_t address) {
+  ModbusStationQuantity station;
+  station.quantity.address = address;
+  return station;
+}
+
+TEST(ModbusPlan, ReadsTheOtherQuantitiesAlongWithTheWindWhereTheyAdjoinAndTheRestLast) {
+  ModbusProfile profile = three_quantities();
+  profile.quantities = {station_at(40), station_at(12), station_at(41), station_at(13)};
+  const auto reads = plan_modbus_reads(profile);
+  ASSERT_EQ(reads.size(), 2U);
+  EXPECT_EQ(reads[0].request.address, 10);
+  EXPECT_EQ(reads[0].request.count, 5) << "12 and 13 join the gust at 14 to the speed";
+  EXPECT_THAT(reads[0].measures, testing::UnorderedElementsAre(kSpeed, kDirection, kGust));
+  EXPECT_THAT(reads[0].stations, testing::UnorderedElementsAre(1, 3));
+  EXPECT_TRUE(reads[0].has_wind());
+  EXPECT_EQ(reads[1].request.address, 40);
+  EXPECT_EQ(reads[1].request.count, 2);
+  EXPECT_THAT(reads[1].stations, ElementsAre(0, 2));
+  EXPECT_FALSE(reads[1].has_wind());
+}
+
+TEST(ModbusPlan, ReadsADirectionOnItsOwnLineBeforeTheOtherQuantities) {
+  ModbusProfile profile = three_quantities();
+  profile.quantities = {station_at(40)};
+  const auto reads = plan_modbus_reads(profile, true);
+  ASSERT_EQ(reads.size(), 4U);
+  EXPECT_THAT(reads[2].measures, ElementsAre(kDirection));
+  EXPECT_FALSE(reads[3].has_wind());
+}
+
+TEST(ModbusPlan, ReadsAQuantityWithSideEffectsAlone) {
+  ModbusProfile profile = three_quantities();
+  profile.quantities = {station_at(12)};
+  profile.quantities[0].quantity.read_has_side_effect = true;
+  EXPECT_EQ(plan_modbus_reads(profile).size(), 3U);
+}
+
 TEST(ModbusPlan, FindsEachQuantityInTheAnswer) {
   ModbusProfile profile = three_quantities();
   profile.block_gap = 2;

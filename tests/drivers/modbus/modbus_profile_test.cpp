@@ -17,10 +17,12 @@ using testing::StartsWith;
 
 const std::string kProfileDirectory = test::source_path("drivers/modbus/profiles");
 
+/// What every profile says in front.
+const std::string kHead = "name = \"x\"\nsource = \"y\"\nconfirmed_by = [\"maker\"]\nunconfirmed = \"\"\n";
+
 /// A profile that says no more than it must; `more` goes where top-level keys go, `tail` behind everything.
 std::string minimal(const std::string& more = "", const std::string& tail = "") {
-  return "name = \"x\"\nsource = \"y\"\n" + more + "[speed]\nslave = 1\naddress = 0\ntype = \"u16\"\nunit = \"m/s\"\n" +
-         tail;
+  return kHead + more + "[speed]\nslave = 1\naddress = 0\ntype = \"u16\"\nunit = \"m/s\"\n" + tail;
 }
 
 std::string error_of(const std::string& text) {
@@ -68,6 +70,8 @@ TEST(ModbusProfile, ReadsEveryField) {
   const ModbusProfile profile = parse_modbus_profile(R"(
 name = "n"
 source = "s"
+confirmed_by = ["recording", "decoder"]
+unconfirmed = "the id"
 revision = "V2"
 transport = "tcp"
 block_read = false
@@ -85,6 +89,7 @@ response_timeout_s = 0.8
 byte_timeout_s = 0.02
 delay_after_open_s = 2.5
 warm_up_s = 10
+quantities_interval_s = 60
 [speed]
 slave = 17
 function = 4
@@ -109,8 +114,26 @@ slave = 17
 address = 40007
 type = "u16"
 unit = "km/h"
+[beaufort]
+slave = 17
+address = 40010
+type = "u16"
+[quantities.pressure_hpa]
+slave = 18
+function = 4
+address = 40009
+type = "i16"
+scale = 0.1
+offset = -40
+invalid = [-1]
+[quantities.air_temperature_c]
+slave = 17
+address = 40008
+type = "u16"
 )",
                                                      "device.toml");
+  EXPECT_EQ(profile.confirmed_by, (std::vector{ProfileEvidence::kRecording, ProfileEvidence::kDecoder}));
+  EXPECT_EQ(profile.unconfirmed, "the id");
   EXPECT_EQ(profile.revision, "V2");
   EXPECT_FALSE(profile.is_serial);
   EXPECT_FALSE(profile.block_read);
@@ -124,6 +147,7 @@ unit = "km/h"
   EXPECT_EQ(profile.byte_timeout, std::chrono::milliseconds(20));
   EXPECT_EQ(profile.delay_after_open, std::chrono::milliseconds(2500));
   EXPECT_EQ(profile.warm_up, std::chrono::seconds(10));
+  EXPECT_EQ(profile.quantities_interval, std::chrono::seconds(60));
   EXPECT_EQ(profile.speed.slave, 17);
   EXPECT_EQ(profile.speed.function, 4);
   EXPECT_EQ(profile.speed.address, 4);
@@ -145,6 +169,45 @@ unit = "km/h"
   ASSERT_TRUE(profile.gust.has_value());
   EXPECT_EQ(profile.gust->address, 6);
   EXPECT_EQ(profile.gust->unit, decode::modbus::QuantityUnit::kKmh);
+  ASSERT_TRUE(profile.beaufort.has_value());
+  EXPECT_EQ(profile.beaufort->address, 9);
+  ASSERT_EQ(profile.quantities.size(), 2U);
+  EXPECT_EQ(profile.quantities[0].what.name, "air_temperature_c");
+  EXPECT_EQ(profile.quantities[0].quantity.address, 7);
+  EXPECT_EQ(profile.quantities[1].what.name, "pressure_hpa");
+  EXPECT_EQ(profile.quantities[1].quantity.slave, 18);
+  EXPECT_EQ(profile.quantities[1].quantity.function, 4);
+  EXPECT_EQ(profile.quantities[1].quantity.scale, 0.1);
+  EXPECT_EQ(profile.quantities[1].quantity.offset, -40.0);
+  EXPECT_EQ(profile.quantities[1].quantity.invalid, (std::vector<std::int64_t>{-1}));
+}
+
+TEST(ModbusProfile, CannotLeaveOutWhoConfirmsIt) {
+  const std::string speed = "[speed]\nslave = 1\naddress = 0\ntype = \"u16\"\nunit = \"m/s\"\n";
+  const std::string name = "name = \"x\"\nsource = \"y\"\n";
+  EXPECT_THAT(
+      error_of(name + "unconfirmed = \"\"\n" + speed),
+      HasSubstr(": confirmed_by: is missing; allowed: a list of \"recording\" \"maker\" \"decoder\" \"seller\""));
+  EXPECT_THAT(error_of(name + "confirmed_by = [\"maker\"]\n" + speed),
+              HasSubstr(": unconfirmed: is missing; allowed: a text"));
+  EXPECT_THAT(error_of(name + "confirmed_by = [\"hearsay\"]\nunconfirmed = \"\"\n" + speed),
+              StartsWith("device.toml:3:16: confirmed_by: holds something else"));
+  EXPECT_THAT(error_of(name + "confirmed_by = \"maker\"\nunconfirmed = \"\"\n" + speed),
+              HasSubstr("confirmed_by: is not a list"));
+  EXPECT_THAT(error_of(name + "confirmed_by = []\nunconfirmed = \"\"\n" + speed),
+              StartsWith("device.toml:4:15: unconfirmed: is empty, and nobody confirms the profile"));
+  EXPECT_EQ(error_of(name + "confirmed_by = []\nunconfirmed = \"all\"\n" + speed), "no error");
+}
+
+TEST(ModbusProfile, KnowsNoOtherQuantitiesThanRecordings) {
+  const std::string where = "slave = 1\naddress = 0\ntype = \"u16\"\n";
+  EXPECT_EQ(error_of(minimal("", "[quantities.rain_rate_mm_h]\n" + where)), "no error");
+  EXPECT_THAT(error_of(minimal("", "[quantities.light_lux]\n" + where)),
+              HasSubstr("quantities.light_lux: is not known here; allowed: air_temperature_c, "));
+  EXPECT_THAT(error_of(minimal("", "[quantities.rain_rate_mm_h]\nunit = \"mm/h\"\n" + where)),
+              HasSubstr("quantities.rain_rate_mm_h.unit: is not known here"));
+  EXPECT_THAT(error_of(minimal("", "[quantities]\npressure_hpa = 7\n")),
+              HasSubstr("quantities.pressure_hpa: is not a table"));
 }
 
 TEST(ModbusProfile, ThatIsMovedToAnotherSlaveTakesAlongWhatWasOnTheSame) {
@@ -152,35 +215,40 @@ TEST(ModbusProfile, ThatIsMovedToAnotherSlaveTakesAlongWhatWasOnTheSame) {
   profile.direction = decode::modbus::ModbusQuantity{};
   profile.direction->slave = 2;
   profile.gust = decode::modbus::ModbusQuantity{};
+  profile.beaufort = decode::modbus::ModbusQuantity{};
+  profile.quantities.resize(2);
+  profile.quantities[1].quantity.slave = 2;
   set_slave(profile, 7);
   EXPECT_EQ(profile.speed.slave, 7);
   EXPECT_EQ(profile.direction->slave, 2);
   EXPECT_EQ(profile.gust->slave, 7);
+  EXPECT_EQ(profile.beaufort->slave, 7);
+  EXPECT_EQ(profile.quantities[0].quantity.slave, 7);
+  EXPECT_EQ(profile.quantities[1].quantity.slave, 2);
 }
 
 TEST(ModbusProfile, KeepsALiteral30001OnTheWire) {
-  const auto profile = parse_modbus_profile(
-      "name = \"x\"\nsource = \"y\"\n[speed]\nslave = 1\naddress = 30001\ntype = \"u16\"\nunit = \"m/s\"\n", "");
+  const auto profile =
+      parse_modbus_profile(kHead + "[speed]\nslave = 1\naddress = 30001\ntype = \"u16\"\nunit = \"m/s\"\n", "");
   EXPECT_EQ(profile.speed.address, 0x7531);
 }
 
 TEST(ModbusProfile, ErrorsNameFileLineColumnKeyAndWhatIsAllowed) {
   EXPECT_EQ(error_of(minimal("transport = \"usb\"\n")),
-            "device.toml:3:13: transport: is \"usb\"; allowed: one of \"rtu\" \"tcp\"");
+            "device.toml:5:13: transport: is \"usb\"; allowed: one of \"rtu\" \"tcp\"");
   EXPECT_EQ(error_of(minimal("", "order = 3\n")),
-            "device.toml:8:9: speed.order: is not a text; allowed: one of \"ABCD\" \"CDAB\" \"BADC\" \"DCBA\"");
+            "device.toml:10:9: speed.order: is not a text; allowed: one of \"ABCD\" \"CDAB\" \"BADC\" \"DCBA\"");
   EXPECT_EQ(error_of(minimal("", "min = 5\nmax = 4.5\n")),
-            "device.toml:9:7: speed.max: is below min; allowed: min or more");
+            "device.toml:11:7: speed.max: is below min; allowed: min or more");
 }
 
 TEST(ModbusProfile, ErrorsAreFoundWhereverTheyAre) {
   EXPECT_THAT(error_of("name = \n"), StartsWith("device.toml:1:8: not TOML: "));
   EXPECT_THAT(error_of("source = \"y\"\n"), HasSubstr(": name: is missing; allowed: a text"));
-  EXPECT_THAT(error_of("name = \"x\"\nsource = \"y\"\n"), HasSubstr(": speed: is missing; allowed: a table [speed]"));
-  EXPECT_THAT(error_of("name = \"x\"\nsource = \"y\"\nspeed = 3\n"),
-              StartsWith("device.toml:3:9: speed: is not a table"));
+  EXPECT_THAT(error_of(kHead), HasSubstr(": speed: is missing; allowed: a table [speed]"));
+  EXPECT_THAT(error_of(kHead + "speed = 3\n"), StartsWith("device.toml:5:9: speed: is not a table"));
   EXPECT_THAT(error_of(minimal("", "slaves = 2\n")),
-              StartsWith("device.toml:8:10: speed.slaves: is not known here; allowed: address, "));
+              StartsWith("device.toml:10:10: speed.slaves: is not known here; allowed: address, "));
   EXPECT_THAT(error_of(minimal("", "[directions]\nslave = 2\n")), HasSubstr(": directions: is not known here"));
   EXPECT_THAT(error_of(minimal("", "function = 5\n")),
               HasSubstr("speed.function: is 5; allowed: a whole number from 3 to 4"));
@@ -198,7 +266,7 @@ TEST(ModbusProfile, ErrorsAreFoundWhereverTheyAre) {
   EXPECT_THAT(error_of(minimal("address_base = 1\n")),
               HasSubstr("speed.address: is 0; allowed: a whole number from 1 to 65536"));
   EXPECT_THAT(error_of(minimal("", "[serial]\nbaud = 1000\n")),
-              StartsWith("device.toml:9:8: serial.baud: is 1000; allowed: one of 1200 "));
+              StartsWith("device.toml:11:8: serial.baud: is 1000; allowed: one of 1200 "));
   EXPECT_THAT(error_of(minimal("", "[timing]\nmin_gap_s = -1\n")),
               HasSubstr("timing.min_gap_s: is -1; allowed: a finite number from 0 to 10"));
   EXPECT_THAT(error_of(minimal("", "[direction]\nslave = 2\naddress = 0\ntype = \"u16\"\nunit = \"m/s\"\n")),
@@ -206,8 +274,7 @@ TEST(ModbusProfile, ErrorsAreFoundWhereverTheyAre) {
 }
 
 TEST(ModbusProfile, ThatTakesTwoRegistersEndsBeforeTheLastAddress) {
-  const std::string two =
-      "name = \"x\"\nsource = \"y\"\n[speed]\nslave = 1\ntype = \"u32\"\nunit = \"m/s\"\naddress = ";
+  const std::string two = kHead + "[speed]\nslave = 1\ntype = \"u32\"\nunit = \"m/s\"\naddress = ";
   EXPECT_EQ(error_of(two + "65534\n"), "no error");
   EXPECT_THAT(error_of(two + "65535\n"), HasSubstr("speed.address: is 65535"));
 }

@@ -474,5 +474,100 @@ TEST_F(ModbusSensorTest, OpensTheLineAgainThatAnotherSensorHasLost) {
   EXPECT_EQ(other_sink.links.size(), 1U) << "nothing was wrong with the other one";
 }
 
+/// A station with the speed in register 10 of slave 1, the humidity beside it, the pressure in 40, every 10 s.
+ModbusProfile station_profile() {
+  ModbusProfile profile;
+  profile.name = "station";
+  profile.poll_interval = 500ms;
+  profile.min_gap = 20ms;
+  profile.speed.address = 10;
+  profile.speed.scale = 0.1;
+  const auto add = [&profile](const wind::StationQuantity& what, std::uint16_t address, double scale) {
+    ModbusStationQuantity station{.what = what, .quantity = {}};
+    station.quantity.address = address;
+    station.quantity.scale = scale;
+    station.quantity.invalid = {0xFFFF};
+    profile.quantities.push_back(station);
+  };
+  for (const wind::StationQuantity& what : wind::kStationQuantities) {
+    if (what.name == "relative_humidity_percent") add(what, 11, 1.0);
+    if (what.name == "pressure_hpa") add(what, 40, 0.1);
+  }
+  return profile;
+}
+
+/// Speed 8.6 m/s, humidity 64 %, pressure 1009.2 hPa.
+std::vector<std::uint8_t> station_reply(const decode::modbus::ModbusRequest& request) {
+  if (request.address == 40) return reply_with(request, {10092});
+  return reply_with(request, {86, 64});
+}
+
+TEST_F(ModbusSensorTest, PublishesWhatAStationSaysBesidesTheWindOnceInItsInterval) {
+  line_.message = station_reply;
+  make(station_profile());
+  poll_for(19s);
+  EXPECT_GE(sink_.readings.size(), 37U) << "the wind keeps its pace";
+  ASSERT_EQ(sink_.station_quantities.size(), 2U);
+  for (const wind::StationQuantities& said : sink_.station_quantities) {
+    EXPECT_EQ(said.relative_humidity_percent, 64.0);
+    EXPECT_NEAR(said.pressure_hpa.value(), 1009.2, 1e-9);
+    EXPECT_FALSE(said.air_temperature_c.has_value());
+  }
+  EXPECT_GE(sink_.station_quantities[1].time.mono - sink_.station_quantities[0].time.mono, 10s);
+  EXPECT_TRUE(sink_.refusals.empty());
+}
+
+TEST_F(ModbusSensorTest, AsksForTheRestOnlyAfterTheWindWasPublished) {
+  line_.message = station_reply;
+  make(station_profile());
+  poll();  // opens
+  poll();  // speed and humidity
+  ASSERT_EQ(sink_.readings.size(), 1U);
+  EXPECT_EQ(line_.requests.size(), 1U);
+  EXPECT_TRUE(sink_.station_quantities.empty());
+  const Nanoseconds pause = poll();  // pressure
+  EXPECT_EQ(line_.requests.back().address, 40);
+  EXPECT_EQ(sink_.station_quantities.size(), 1U);
+  EXPECT_EQ(pause, 480ms) << "the next round begins 500 ms after this one";
+}
+
+TEST_F(ModbusSensorTest, AsksLessAndLessForWhatAStationDoesNotHave) {
+  line_.message = station_reply;
+  line_.statuses = [](const decode::modbus::ModbusRequest& request) {
+    return request.address == 40 ? std::deque<bus::BusStatus>{} : std::deque{bus::BusStatus::kMessage};
+  };
+  make(station_profile());
+  poll_for(1h);
+  const auto asked = std::ranges::count(line_.requests, 40, &decode::modbus::ModbusRequest::address);
+  EXPECT_GE(asked, 6);
+  EXPECT_LE(asked, 16) << "10, 20, 40 ... 600 s, less a quarter";
+  EXPECT_GE(sink_.readings.size(), 7100U);
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("without pressure_hpa: slave 1"));
+  ASSERT_FALSE(sink_.station_quantities.empty());
+  EXPECT_EQ(sink_.station_quantities.back().relative_humidity_percent, 64.0) << "what it has goes on";
+}
+
+TEST_F(ModbusSensorTest, SaysNothingOfAQuantityThatIsMarkedAsNone) {
+  line_.message = [](const decode::modbus::ModbusRequest& request) {
+    return request.address == 40 ? reply_with(request, {0xFFFF}) : reply_with(request, {86, 0xFFFF});
+  };
+  make(station_profile());
+  poll_for(25s);
+  EXPECT_TRUE(sink_.station_quantities.empty());
+  EXPECT_TRUE(sink_.refusals.empty());
+  EXPECT_GE(sink_.readings.size(), 49U);
+}
+
+TEST_F(ModbusSensorTest, LeavesOutWhatNoAirIs) {
+  line_.message = [](const decode::modbus::ModbusRequest& request) {
+    return request.address == 40 ? reply_with(request, {10092}) : reply_with(request, {86, 640});  // 640 %
+  };
+  make(station_profile());
+  poll_for(3s);
+  ASSERT_EQ(sink_.station_quantities.size(), 1U);
+  EXPECT_FALSE(sink_.station_quantities[0].relative_humidity_percent.has_value());
+  EXPECT_TRUE(sink_.station_quantities[0].pressure_hpa.has_value());
+}
+
 }  // namespace
 }  // namespace yuragi::drivers::modbus

@@ -10,17 +10,17 @@ namespace {
 
 /// Passes if a number was found there.
 testing::AssertionResult finds(std::string_view payload, const std::string& pointer, double expected) {
-  const auto number = number_in(payload, {pointer});
+  const auto number = Payload(payload).number_at(pointer);
   if (number && *number && **number == expected) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (number ? "another one, or none" : name_of(number.error()));
 }
 testing::AssertionResult finds_none(std::string_view payload, const std::string& pointer) {
-  const auto number = number_in(payload, {pointer});
+  const auto number = Payload(payload).number_at(pointer);
   if (number && !*number) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (number ? "a number" : name_of(number.error()));
 }
 testing::AssertionResult refuses(std::string_view payload, const std::string& pointer, decode::Refusal why) {
-  const auto number = number_in(payload, {pointer});
+  const auto number = Payload(payload).number_at(pointer);
   if (!number && number.error() == why) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (number ? "accepted" : name_of(number.error()));
 }
@@ -77,12 +77,34 @@ TEST(MqttPayload, StandsAnyBytes) {
     std::string payload(random() % 40, ' ');
     for (char& letter : payload) letter = alphabet[random() % alphabet.size()];
     for (const char* const pointer : {"", "/a", "/0", "/0/a", "/99999999999999999999"}) {
-      const auto number = number_in(payload, {pointer});
+      const auto number = Payload(payload).number_at(pointer);
       if (number && *number) {
         EXPECT_TRUE(std::isfinite(**number)) << payload;
       }
     }
   }
+}
+
+TEST(MqttPayload, OfANumberAloneIsNotReadAsJson) {
+  const Payload payload("[1]", PayloadForm::kText);
+  EXPECT_TRUE(payload.json().is_discarded());
+  const auto number = Payload("7.5", PayloadForm::kText).number_at("");
+  EXPECT_TRUE(number && *number == 7.5);
+  EXPECT_FALSE(payload.lacks(""));
+  EXPECT_FALSE(payload.text_at("/0"));
+}
+
+TEST(MqttPayload, LacksAPlaceThatIsNotThere) {
+  const Payload payload(R"({"a":null,"b":{"c":1},"name":"x","id":7,"part":1.5})");
+  EXPECT_FALSE(payload.lacks("/a")) << "it is there, and says that there is no value";
+  EXPECT_FALSE(payload.lacks("/b/c"));
+  EXPECT_TRUE(payload.lacks("/b/d"));
+  EXPECT_TRUE(payload.lacks("/c"));
+  EXPECT_FALSE(Payload("{").lacks("/a")) << "what cannot be read is malformed, not without it";
+  EXPECT_EQ(payload.text_at("/name"), "x");
+  EXPECT_EQ(payload.text_at("/id"), "7");
+  EXPECT_FALSE(payload.text_at("/part"));
+  EXPECT_FALSE(payload.text_at("/none"));
 }
 
 TEST(MqttPayload, StandsALotOfBrackets) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -51,6 +52,9 @@ class MqttRun {
   bool has_refused(decode::Refusal why, std::ptrdiff_t times = 1) {
     return sensor_.wait_until([&](const RecordingSink& sink) { return sink.count(why) >= times; });
   }
+  std::ptrdiff_t count(decode::Refusal why) {
+    return sensor_.look([why](const RecordingSink& sink) { return sink.count(why); });
+  }
   bool is_in(wind::LinkState state) {
     return sensor_.wait_until([&](const RecordingSink& sink) { return sink.last_state() == state; });
   }
@@ -63,6 +67,9 @@ class MqttRun {
   }
   std::size_t count() {
     return sensor_.look([](const RecordingSink& sink) { return sink.readings.size(); });
+  }
+  std::vector<wind::StationQuantities> quantities() {
+    return sensor_.look([](const RecordingSink& sink) { return sink.station_quantities; });
   }
   wind::WindReading last() {
     return sensor_.look([](const RecordingSink& sink) { return sink.readings.back(); });
@@ -189,6 +196,204 @@ TEST(MqttDriver, ReadsWhatRtl433Publishes) {
   EXPECT_EQ(run.last().gust_m_s, 2.8);
 }
 
+/// The driver with the preset of rtl_433, on the topic that its messages have by default.
+class Rtl433Run {
+ public:
+  explicit Rtl433Run(ParameterValues::Map given = {}) : run(broker_, with_preset(std::move(given))) {}
+
+  void publish(const std::string& message) const { broker_.publish("rtl_433/attic/events", message); }
+  /// The reading that the message makes; without one, the test has failed.
+  wind::WindReading reading_of(const std::string& message) {
+    EXPECT_TRUE(run.reads_after([&] { publish(message); })) << message;
+    return run.count() > 0 ? run.last() : wind::WindReading();
+  }
+  /// The message makes no reading, but is refused for this reason.
+  void expect_refused(const std::string& message, decode::Refusal why) {
+    const std::size_t before = run.count();
+    const auto times = run.count(why);
+    publish(message);
+    EXPECT_TRUE(run.has_refused(why, times + 1)) << message;
+    EXPECT_EQ(run.count(), before) << message;
+  }
+
+ private:
+  static ParameterValues::Map with_preset(ParameterValues::Map given) {
+    given.insert({{"preset", std::string("rtl_433")}, {"topic", std::string("")}});
+    return given;
+  }
+
+  MosquittoBroker broker_;
+
+ public:
+  MqttRun run;
+};
+
+// As quoted in domoticz/domoticz issue 4864: the station says the direction in every other message.
+const std::string kAcuriteWithDirection =
+    R"({"time" : "2021-06-21 15:28:22", "model" : "Acurite-5n1", "message_type" : 49, "id" : 115, "channel" : "A", )"
+    R"("sequence_num" : 0, "battery_ok" : 1, "wind_avg_km_h" : 6.795, "wind_dir_deg" : 157.500, "rain_in" : 6.700, )"
+    R"("mic" : "CHECKSUM"})";
+const std::string kAcuriteWithoutDirection =
+    R"({"time" : "2021-06-21 15:28:41", "model" : "Acurite-5n1", "message_type" : 56, "id" : 115, "channel" : "A", )"
+    R"("sequence_num" : 0, "battery_ok" : 1, "wind_avg_km_h" : 8.450, "temperature_F" : 62.800, "humidity" : 86, )"
+    R"("mic" : "CHECKSUM"})";
+
+TEST(MqttDriver, ReadsTheUnitOfRtl433FromTheKeys) {
+  Rtl433Run rtl_433;
+  const auto vevor = rtl_433.reading_of(
+      R"({"model":"Vevor-7in1","id":"f8f7","wind_avg_km_h":18.0,"wind_max_km_h":36.0,"wind_dir_deg":13})");
+  EXPECT_DOUBLE_EQ(vevor.speed_m_s, 5.0);
+  EXPECT_DOUBLE_EQ(vevor.gust_m_s.value(), 10.0);
+  EXPECT_EQ(vevor.direction_deg, 13.0);
+
+  Rtl433Run other;
+  const auto hideki = other.reading_of(
+      R"({"model":"Hideki-Wind","id":5,"channel":4,"wind_avg_mi_h":10.0,"wind_max_mi_h":20.0,"wind_dir_deg":90.0})");
+  EXPECT_DOUBLE_EQ(hideki.speed_m_s, 4.4704);
+  EXPECT_DOUBLE_EQ(hideki.gust_m_s.value(), 8.9408);
+}
+
+TEST(MqttDriver, LetsASetPathAndUnitOverrideWhatIsKnownOfThePublisher) {
+  Rtl433Run known({{"speed_path", std::string("/wind_avg_km_h")}});
+  EXPECT_DOUBLE_EQ(known.reading_of(R"({"wind_avg_m_s":1.0,"wind_avg_km_h":36.0})").speed_m_s, 10.0);
+  Rtl433Run set({{"speed_path", std::string("/wind_avg_km_h")}, {"speed_unit", std::string("m/s")}});
+  EXPECT_DOUBLE_EQ(set.reading_of(R"({"wind_avg_km_h":36.0})").speed_m_s, 36.0);
+  Rtl433Run other({{"speed_path", std::string("/wind")}, {"speed_unit", std::string("kn")}});
+  EXPECT_DOUBLE_EQ(other.reading_of(R"({"wind":36.0})").speed_m_s, 18.52);
+}
+
+TEST(MqttDriver, KeepsADirectionOverMessagesThatHaveNone) {
+  Rtl433Run rtl_433;
+  EXPECT_FALSE(rtl_433.reading_of(kAcuriteWithoutDirection).direction_deg.has_value()) << "nobody has said";
+  EXPECT_EQ(rtl_433.reading_of(kAcuriteWithDirection).direction_deg, 157.5);
+  const auto next = rtl_433.reading_of(kAcuriteWithoutDirection);
+  EXPECT_DOUBLE_EQ(next.speed_m_s, 8.45 / 3.6);
+  EXPECT_EQ(next.direction_deg, 157.5);
+  rtl_433.expect_refused(R"({"model":"Acurite-5n1","id":115,"channel":"A","wind_avg_km_h":)",
+                         decode::Refusal::kMalformed);
+  EXPECT_EQ(rtl_433.reading_of(kAcuriteWithoutDirection).direction_deg, 157.5) << "a hurt message does not wipe it";
+}
+
+TEST(MqttDriver, KeepsAGustThatComesInAMessageOfItsOwn) {
+  // As LaCrosse WS-2310 sends it (merbanan/rtl_433 src/devices/lacrossews.c).
+  Rtl433Run rtl_433;
+  EXPECT_FALSE(
+      rtl_433.reading_of(R"({"model":"LaCrosse-WS2310","id":9,"wind_avg_m_s":3.0,"wind_dir_deg":45.0})").gust_m_s);
+  rtl_433.publish(R"({"model":"LaCrosse-WS2310","id":9,"wind_max_m_s":6.5,"wind_dir_deg":67.5})");
+  const auto next = rtl_433.reading_of(R"({"model":"LaCrosse-WS2310","id":9,"wind_avg_m_s":3.5})");
+  EXPECT_EQ(next.gust_m_s, 6.5);
+  EXPECT_EQ(next.direction_deg, 67.5);
+  EXPECT_EQ(rtl_433.run.count(decode::Refusal::kNotMine), 0) << "a message with a gust alone is used";
+}
+
+TEST(MqttDriver, LeavesTheSpeedBesideAnImpossibleDirection) {
+  Rtl433Run rtl_433;
+  EXPECT_EQ(rtl_433.reading_of(kAcuriteWithDirection).quality, wind::ReadingQuality::kGood);
+  for (const char* const direction : {"-1", "1e9", "720"}) {
+    const auto reading = rtl_433.reading_of(fmt::format(
+        R"({{"model":"Acurite-5n1","id":115,"channel":"A","wind_avg_km_h":36,"wind_dir_deg":{}}})", direction));
+    EXPECT_EQ(reading.speed_m_s, 10.0);
+    EXPECT_FALSE(reading.direction_deg.has_value()) << "nor the one before";
+    EXPECT_EQ(reading.quality, wind::ReadingQuality::kUncertain);
+  }
+  EXPECT_EQ(rtl_433.run.count(decode::Refusal::kImplausible), 3) << "and it is counted";
+}
+
+TEST(MqttDriver, ReadsOneOfSeveralStationsAndWarnsOfTheOthers) {
+  Rtl433Run rtl_433;
+  const std::string neighbour = R"({"model":"Fineoffset-WS80","id":"0a003b","wind_dir_deg":10,"wind_avg_m_s":2.4})";
+  EXPECT_DOUBLE_EQ(rtl_433.reading_of(kAcuriteWithoutDirection).speed_m_s, 8.45 / 3.6);
+  rtl_433.expect_refused(neighbour, decode::Refusal::kNotMine);
+  const auto reading = rtl_433.reading_of(kAcuriteWithoutDirection);
+  EXPECT_DOUBLE_EQ(reading.speed_m_s, 8.45 / 3.6);
+  EXPECT_FALSE(reading.direction_deg.has_value()) << "the neighbour's direction is not ours";
+  EXPECT_TRUE(
+      rtl_433.run.reports("reads Acurite-5n1, id 115, channel A, but another station is heard too: "
+                          "Fineoffset-WS80, id 0a003b"));
+  EXPECT_EQ(rtl_433.run.state(), wind::LinkState::kConnected);
+}
+
+TEST(MqttDriver, ReadsTheStationThatItIsTold) {
+  const std::string other_id = R"({"model":"Acurite-5n1","id":116,"channel":"A","wind_avg_km_h":36})";
+  const std::string other_channel = R"({"model":"Acurite-5n1","id":115,"channel":"C","wind_avg_km_h":36})";
+  const std::string other_model = R"({"model":"Acurite-3n1","id":115,"channel":"A","wind_avg_km_h":36})";
+  Rtl433Run rtl_433({{"model", std::string("Acurite-5n1")}, {"id", std::string("115")}, {"channel", std::string("A")}});
+  ASSERT_TRUE(rtl_433.run.reports("waits for"));
+  for (const std::string& message : {other_id, other_channel, other_model})
+    rtl_433.expect_refused(message, decode::Refusal::kNotMine);
+  EXPECT_TRUE(rtl_433.run.reports("it hears Acurite-5n1, id 116, channel A, which is not the station that is set"));
+  EXPECT_DOUBLE_EQ(rtl_433.reading_of(kAcuriteWithDirection).speed_m_s, 6.795 / 3.6);
+}
+
+TEST(MqttDriver, HandsOnWhatTheStationSaysBesidesTheWind) {
+  Rtl433Run rtl_433;
+  // Of another device on the topic; and of ours before it is known which one that is.
+  rtl_433.run.reports("waits for");
+  rtl_433.expect_refused(R"({"model":"Acurite-Tower","id":1,"temperature_C":21.5})", decode::Refusal::kNotMine);
+  rtl_433.reading_of(kAcuriteWithDirection);
+  rtl_433.expect_refused(R"({"model":"Acurite-Tower","id":1,"temperature_C":21.5})", decode::Refusal::kNotMine);
+  rtl_433.reading_of(kAcuriteWithoutDirection);
+  const auto said = rtl_433.run.quantities();
+  ASSERT_EQ(said.size(), 2U);
+  EXPECT_DOUBLE_EQ(said[0].rain_total_mm.value(), 6.7 * 25.4);
+  EXPECT_FALSE(said[0].air_temperature_c.has_value());
+  EXPECT_NEAR(said[1].air_temperature_c.value(), 17.111, 0.001);
+  EXPECT_EQ(said[1].relative_humidity_percent, 86.0);
+  EXPECT_EQ(said[1].time.mono, rtl_433.run.last().time.mono);
+}
+
+TEST(MqttDriver, TakesTheSpeedUnitThatTasmotaSays) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"preset", std::string("tasmota")}, {"topic", std::string("")}});
+  const auto reading_in = [&](const std::string& unit) {
+    EXPECT_TRUE(run.reads_after([&] {
+      broker.publish("tele/roof/SENSOR",
+                     R"({"TX20":{"Speed":{"Act":10.0,"Max":20.0},"Dir":{"Deg":22.5}})" + unit + "}");
+    })) << unit;
+    return run.last();
+  };
+  EXPECT_DOUBLE_EQ(reading_in(R"(,"SpeedUnit":"km/h")").speed_m_s, 10.0 / 3.6);
+  EXPECT_DOUBLE_EQ(reading_in(R"(,"SpeedUnit":"m/s")").speed_m_s, 10.0);
+  EXPECT_DOUBLE_EQ(reading_in(R"(,"SpeedUnit":"m/s")").gust_m_s.value(), 20.0);
+  EXPECT_DOUBLE_EQ(reading_in(R"(,"SpeedUnit":"kn")").speed_m_s, 18520.0 / 3600.0);
+  EXPECT_DOUBLE_EQ(reading_in(R"(,"SpeedUnit":"mph")").speed_m_s, 4.4704);
+  EXPECT_DOUBLE_EQ(reading_in(R"(,"SpeedUnit":"ft/s")").speed_m_s, 3.048);
+  EXPECT_DOUBLE_EQ(reading_in(R"(,"SpeedUnit":"yd/s")").speed_m_s, 9.144);
+  EXPECT_DOUBLE_EQ(reading_in("").speed_m_s, 10.0 / 3.6) << "as Tasmota sets it by itself";
+}
+
+TEST(MqttDriver, RefusesASpeedUnitThatItDoesNotKnowUnlessOneIsSet) {
+  const std::string message = R"({"TX23":{"Speed":{"Act":10.0}},"SpeedUnit":"furlong"})";
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"preset", std::string("tasmota")}, {"topic", std::string("")}});
+  ASSERT_TRUE(run.reports("waits for"));
+  broker.publish("tele/roof/SENSOR", message);
+  EXPECT_TRUE(run.has_refused(decode::Refusal::kInvalid));
+  EXPECT_TRUE(run.reports("\"furlong\", which is not known: set speed_unit"));
+  EXPECT_EQ(run.count(), 0U);
+  MqttRun told(broker,
+               {{"preset", std::string("tasmota")}, {"topic", std::string("")}, {"speed_unit", std::string("m/s")}});
+  EXPECT_TRUE(told.reads_after([&] { broker.publish("tele/roof/SENSOR", message); }));
+  EXPECT_EQ(told.last().speed_m_s, 10.0);
+}
+
+TEST(MqttDriver, HandsOnWhatTasmotaSaysBesidesTheWindOfTheDeviceWithTheAnemometer) {
+  const MosquittoBroker broker;
+  MqttRun run(broker, {{"preset", std::string("tasmota")}, {"topic", std::string("")}});
+  ASSERT_TRUE(run.reports("waits for"));
+  broker.publish("tele/cellar/SENSOR", R"({"AM2301":{"Temperature":12.0,"Humidity":80.0},"TempUnit":"C"})");
+  ASSERT_TRUE(run.has_refused(decode::Refusal::kNotMine));
+  ASSERT_TRUE(run.reads_after([&] {
+    broker.publish("tele/roof/SENSOR", R"({"TX23":{"Speed":{"Act":14.4}},"BME280":{"Temperature":59.0,"Humidity":40.5,)"
+                                       R"("Pressure":750.0},"PressureUnit":"mmHg","TempUnit":"F","SpeedUnit":"km/h"})");
+  }));
+  const auto said = run.quantities();
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_DOUBLE_EQ(said[0].air_temperature_c.value(), 15.0);
+  EXPECT_EQ(said[0].relative_humidity_percent, 40.5);
+  EXPECT_NEAR(said[0].pressure_hpa.value(), 999.9, 0.1);
+}
+
 TEST(MqttDriver, TakesNoDirectionOfAnotherMessageOnTheSameTopic) {
   const MosquittoBroker broker;
   MqttRun run(broker, {{"preset", std::string("windnerd")}});
@@ -299,6 +504,11 @@ TEST(MqttDriver, RefusesWhatCannotWork) {
         open_mqtt_sensor({{"topic", std::string("a")}, {"speed_path", std::string("x")}});
       },
       ThrowsMessage<std::runtime_error>(HasSubstr("speed_path")));
+  EXPECT_THAT(
+      [] {
+        open_mqtt_sensor({{"topic", std::string("a")}, {"model", std::string("Acurite-5n1")}});
+      },
+      ThrowsMessage<std::runtime_error>(HasSubstr("model, id, channel: are for preset \"rtl_433\"")));
 }
 
 /// Memory of this process, MiB: "VmRSS" now, "VmHWM" at most since forget_the_most().
@@ -323,6 +533,23 @@ TEST(MqttDriver, TakesTwiceTheLengthOfAHugeMessageAndGivesItBackAtOnce) {
   MqttRun run(broker, {});
   ASSERT_TRUE(run.has_refused(decode::Refusal::kMalformed));
   EXPECT_LE(memory_mib("VmHWM") - before_mib, 2.0 * kHuge_mib + kOthers_mib);
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4"); }));
+  EXPECT_LE(memory_mib("VmRSS") - before_mib, kOthers_mib);
+}
+
+TEST(MqttDriver, KeepsNoMemoryOfLongMessages) {
+  // Long ones, but shorter than the longest block of which the C library would by itself keep the room: 36 MiB of
+  // these.
+  constexpr double kLong_mib = 12.0;
+  constexpr int kMessages = 4;
+  constexpr double kOthers_mib = 4.0;
+  const MosquittoBroker broker;
+  MqttRun run(broker, {});
+  ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4"); }));
+  const std::string payload(static_cast<std::size_t>(kLong_mib) << 20U, '7');
+  const double before_mib = memory_mib("VmRSS");
+  for (int i = 0; i < kMessages; ++i) broker.retain("garden/speed", payload);
+  ASSERT_TRUE(run.has_refused(decode::Refusal::kMalformed, kMessages));
   ASSERT_TRUE(run.reads_after([&] { broker.publish("garden/speed", "4"); }));
   EXPECT_LE(memory_mib("VmRSS") - before_mib, kOthers_mib);
 }

@@ -31,11 +31,27 @@ std::unique_ptr<sensor::Sensor> open_osc_sensor(const ParameterValues::Map& give
 /// A message of two floats, as any sender makes it.
 const std::string kWindOf5From90 = "/wind\0\0\0,ff\0\x40\xa0\0\0\x42\xb4\0\0"s;
 
-const std::string kPast = "\0\0\0\0\0\0\0\1"s;  // "at once", to be exact
-const std::string kFarFuture = "\xff\0\0\0\0\0\0\1"s;
+// Time tags. Those with a first byte from 0x80 count from 1900, others from 2036.
+const std::string kAtOnce = "\0\0\0\0\0\0\0\1"s;
+const std::string kIn1968 = "\x80\0\0\0\0\0\0\0"s;
+const std::string kIn2104 = "\x7f\xff\xff\xff\0\0\0\0"s;
+
+std::chrono::system_clock::time_point now() {
+  return std::chrono::system_clock::now();
+}
+
+/// A time before 2036, in whole seconds.
+std::string tag_of(std::chrono::system_clock::time_point time) {
+  constexpr std::int64_t kFrom1900To1970_s = 2'208'988'800;
+  const auto since_1900_s =
+      std::chrono::duration_cast<std::chrono::seconds>(time.time_since_epoch()).count() + kFrom1900To1970_s;
+  std::string tag;
+  for (const unsigned shift : {24U, 16U, 8U, 0U}) tag += static_cast<char>(since_1900_s >> shift);
+  return tag + "\0\0\0\0"s;
+}
 
 /// A bundle of one element.
-std::string bundle_of(const std::string& element, const std::string& time = kPast) {
+std::string bundle_of(const std::string& element, const std::string& time = kAtOnce) {
   const auto size = static_cast<std::uint32_t>(element.size());
   std::string bundle = "#bundle\0"s;
   bundle += time;
@@ -192,13 +208,23 @@ TEST(OscDriver, HasNoDirectionWhereNoneIsSent) {
   EXPECT_FALSE(run.last().direction_deg.has_value());
 }
 
-TEST(OscDriver, TakesBundlesAtOnceWhateverTheirTime) {
+TEST(OscDriver, TakesBundlesOfNowAndOfThePast) {
   OscRun run;
-  for (const std::string& time : {kPast, kFarFuture}) {
+  for (const std::string& time : {kAtOnce, std::string(8, '\0'), tag_of(now()), tag_of(now() - 1h), kIn1968}) {
     ASSERT_TRUE(run.reads_after([&] { run.send_bytes(bundle_of(kWindOf5From90, time)); }));
     EXPECT_EQ(run.last().speed_m_s, 5.0);
     EXPECT_EQ(run.last().direction_deg, 90.0);
   }
+}
+
+TEST(OscDriver, RefusesWindOfTheFutureAndSaysSo) {
+  OscRun run;
+  run.send_when_it_listens(bundle_of(kWindOf5From90, tag_of(now() + 1h)));
+  EXPECT_TRUE(run.has_refused(decode::Refusal::kInvalid));
+  EXPECT_TRUE(run.reports("s later: compare the clocks of both machines"));
+  run.expect_refused(bundle_of(kWindOf5From90, kIn2104), decode::Refusal::kInvalid);
+  run.expect_refused(bundle_of(bundle_of(kWindOf5From90), tag_of(now() + 1h)), decode::Refusal::kInvalid);
+  run.expect_refused(bundle_of(bundle_of(kWindOf5From90, tag_of(now() + 1h))), decode::Refusal::kInvalid);
 }
 
 TEST(OscDriver, ShowsEveryDatagramAsItCame) {

@@ -73,6 +73,16 @@ TEST_F(NmeaSensorTest, HandsOnWhatAStationSaysBesidesTheWind) {
   EXPECT_EQ(sink.readings.size(), 1U);
 }
 
+TEST_F(NmeaSensorTest, HandsOnTheVerticalWindOfAWindMaster) {
+  make_nmea();
+  receive(framed("Q,335.3,001.261,-001.282,M,+345.41,+023.05,00,"));
+  receive(framed("Q,335.3,001.261,-001.282,M,+345.41,+023.05,01,"));
+  ASSERT_EQ(sink.station_quantities.size(), 1U);
+  EXPECT_EQ(sink.station_quantities[0].vertical_speed_m_s, -1.282);
+  EXPECT_EQ(sink.readings.size(), 1U);
+  expect_last(1.261, 335.3);
+}
+
 TEST_F(NmeaSensorTest, PublishesOneWindOfABurstOnceAndPrefersNorth) {
   make_nmea();
   for (int second = 0; second < 10; ++second) {
@@ -126,6 +136,82 @@ TEST_F(NmeaSensorTest, NeverMixesFramesOfDirection) {
   run(750ms);
   receive(nmea_line("WIMWD,328.2,T,,M,11.2,N,5.8,M"));
   expect_last(5.8, 328.2);
+}
+
+/// A station without a compass: its MWD never has a direction.
+TEST_F(NmeaSensorTest, TakesTheDirectionOfAnotherSentenceWhereItsOwnHasNone) {
+  for (const bool is_mwd_first : {false, true}) {
+    SCOPED_TRACE(is_mwd_first);
+    sink = {};
+    make_nmea();
+    for (int second = 0; second < 10; ++second) {
+      if (is_mwd_first) far_end.send(nmea_line("WIMWD,,T,,M,13.0,N,6.7,M"));
+      far_end.send(nmea_line("WIMWV,57.5,R,13.0,N,A"));
+      if (!is_mwd_first) far_end.send(nmea_line("WIMWD,,T,,M,13.0,N,6.7,M"));
+      run(1s);
+    }
+    EXPECT_EQ(sink.readings.size(), 10U) << "each measurement once";
+    for (const wind::WindReading& reading : sink.readings) {
+      EXPECT_EQ(reading.speed_m_s, 6.7);
+      EXPECT_EQ(reading.direction_deg, 57.5);
+    }
+    EXPECT_THAT(sink.last_detail(), HasSubstr("MWD of WI with the direction of MWV of WI"));
+    EXPECT_LE(sink.links.size(), 2U) << "told once";
+  }
+}
+
+/// Once heard, never again: the direction that is left is better than none.
+TEST_F(NmeaSensorTest, FallsBackToTheDirectionThatIsLeftAndReturns) {
+  make_nmea({{"north_offset", 10.0}});
+  far_end.send(nmea_line("WIMWD,328.2,T,,M,13.0,N,6.7,M"));
+  receive(nmea_line("WIMWV,57.5,R,13.0,N,A"));
+  run(750ms);
+  expect_last(6.7, 328.2);
+  sink = {};
+  for (int second = 0; second < 90; ++second) {
+    receive(nmea_line("WIMWV,57.5,R,13.0,N,A"));
+    run(750ms);
+    if (second == 20) {
+      expect_last(6.6878, {});
+      EXPECT_THAT(sink.last_detail(), HasSubstr("MWV of WI without a direction, since MWD of WI gives none"));
+    }
+  }
+  expect_last(6.6878, 67.5);
+  EXPECT_THAT(sink.last_detail(), testing::StartsWith("MWV of WI at "));
+  const auto told = std::ranges::count_if(
+      sink.links, [](const auto& link) { return link.detail.find("without a direction") != std::string::npos; });
+  EXPECT_EQ(told, 1);
+
+  for (int second = 0; second < 3; ++second) {
+    receive(nmea_line("WIMWD,328.2,T,,M,13.0,N,6.7,M"));
+    run(750ms);
+  }
+  expect_last(6.7, 328.2);
+}
+
+TEST_F(NmeaSensorTest, ASentenceWithADirectionAloneLeavesTheSpeedToAnother) {
+  make_nmea();
+  for (int second = 0; second < 10; ++second) {
+    far_end.send(nmea_line("WIMWD,328.2,T,,M,,N,,M"));
+    receive(nmea_line("WIMWV,57.5,R,13.0,N,A"));
+    run(750ms);
+  }
+  EXPECT_EQ(sink.readings.size(), 10U);
+  for (const wind::WindReading& reading : sink.readings) {
+    EXPECT_NEAR(reading.speed_m_s, 6.6878, 1e-3);
+    EXPECT_EQ(reading.direction_deg, 328.2);
+  }
+}
+
+TEST_F(NmeaSensorTest, ACalmWithoutADirectionIsNoSilenceOfIt) {
+  make_nmea();
+  for (int second = 0; second < 200; ++second) {
+    far_end.send(nmea_line(second < 10 || second > 190 ? "WIMWD,328.2,T,,M,13.0,N,6.7,M" : "WIMWD,,T,,M,0.0,N,0.0,M"));
+    receive(nmea_line("WIMWV,57.5,R,0.1,N,A"));
+    run(750ms);
+  }
+  for (const wind::WindReading& reading : sink.readings) EXPECT_EQ(reading.direction_deg.value_or(328.2), 328.2);
+  EXPECT_EQ(sink.links.size(), 1U);
 }
 
 TEST_F(NmeaSensorTest, HasNoDirectionInACalmAndNeverAZero) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/windlog/recording_parts.hpp"
+#include "drivers/windlog/windlog_rewrite.hpp"
 #include "tests/drivers/windlog/hostile_recordings.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -121,6 +122,132 @@ TEST(WindlogQuantities, OfASeriesOfFilesFollowEachOther) {
   ASSERT_EQ(range.rows.size(), 2U);
   EXPECT_EQ(range.rows[0].quantities.air_temperature_c, 2.0);
   EXPECT_EQ(range.rows[1].quantities.air_temperature_c, 3.0);
+}
+
+/// A session of the mast with quantities and no reading.
+void write_no_reading(const std::filesystem::path& file, const std::vector<wind::StationQuantities>& said,
+                      std::int64_t begin_ms) {
+  auto writer = WindlogWriter::open(file);
+  ASSERT_TRUE(writer) << writer.error().message;
+  ASSERT_TRUE(writer->begin_session({test::at_ms(begin_ms, test::kSampleUtc_ms + begin_ms), "yuragi test", ""}));
+  const auto mast = writer->add_sensor("mast", "nmea", "");
+  ASSERT_TRUE(mast);
+  for (const wind::StationQuantities& quantities : said) ASSERT_TRUE(*writer->append(*mast, quantities));
+  ASSERT_TRUE(writer->close());
+}
+
+std::vector<double> temperatures_of(const ReadQuantities& read) {
+  std::vector<double> all;
+  for (const LoggedQuantities& row : read.rows) all.push_back(row.quantities.air_temperature_c.value_or(999.0));
+  return all;
+}
+
+TEST(WindlogQuantities, OfFilesWithoutAReadingFollowTheOthers) {
+  const test::TemporaryFolder folder;
+  const auto part = [&](std::int64_t begin_ms) {
+    return part_name(folder / "a.windlog", test::at_ms(0, test::kSampleUtc_ms + begin_ms).utc);
+  };
+  write_no_reading(part(10'000), {temperature_at(12'000, 1.0)}, 10'000);  // two of them first
+  write_no_reading(part(20'000), {temperature_at(22'000, 2.0)}, 20'000);
+  write_quantities(part(101'000), {temperature_at(103'000, 3.0)}, 101'000);
+  write_no_reading(part(201'000), {temperature_at(203'000, 4.0)}, 201'000);
+  write_quantities(part(301'000), {temperature_at(303'000, 5.0)}, 301'000);
+  write_no_reading(folder / "a.windlog", {temperature_at(403'000, 6.0)}, 401'000);
+
+  const auto whole = quantities_of(folder / "a.windlog");
+  EXPECT_EQ(temperatures_of(whole), (std::vector{1.0, 2.0, 3.0, 4.0, 5.0, 6.0}));
+  EXPECT_EQ(whole.skipped, 0U);
+  for (const LoggedQuantities& row : whole.rows) {
+    const std::int64_t mono_ms = row.quantities.time.mono.time_since_epoch().count() / 1'000'000;
+    EXPECT_EQ(row.log_time, std::chrono::milliseconds(mono_ms - 101'000)) << "from the first reading of all on";
+    EXPECT_EQ(row.quantities.time.utc, test::at_ms(0, test::kSampleUtc_ms + mono_ms).utc);
+  }
+  const auto reader = WindlogReader::open(folder / "a.windlog");
+  ASSERT_TRUE(reader);
+  for (const LoggedQuantities& row : whole.rows) EXPECT_EQ(reader->sensors()[row.sensor].name, "mast");
+  EXPECT_EQ(reader->sessions().size(), 2U);
+  EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 20U);
+
+  using std::chrono::seconds;
+  EXPECT_EQ(temperatures_of(quantities_of(folder / "a.windlog", seconds(1), seconds(102))), (std::vector{3.0}));
+  EXPECT_EQ(temperatures_of(quantities_of(folder / "a.windlog", seconds(50), seconds(250))), (std::vector{4.0, 5.0}));
+  EXPECT_EQ(temperatures_of(quantities_of(folder / "a.windlog", seconds(250))), (std::vector{6.0}));
+}
+
+TEST(WindlogQuantities, OfASeriesWithoutAnyReadingAreRead) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  write_no_reading(part_name(file, test::at_ms(0, test::kSampleUtc_ms + 1000).utc), {temperature_at(2000, 1.0)}, 1000);
+  write_no_reading(file, {temperature_at(63'000, 2.0)}, 61'000);
+  EXPECT_EQ(temperatures_of(quantities_of(file)), (std::vector{1.0, 2.0}));
+  EXPECT_TRUE(test::read_all(file).empty());
+}
+
+TEST(WindlogQuantities, AreKeptApartFromThoseOfASessionWhoseClockWasSetBack) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  write_quantities(file, {temperature_at(2000, 1.0), temperature_at(3'000'000, 2.0)});  // long after the last reading
+  // The next start, on a machine whose clock is two hours slow.
+  auto writer = WindlogWriter::open(file);
+  ASSERT_TRUE(writer);
+  const std::int64_t utc_ms = test::kSampleUtc_ms - 7'200'000;
+  ASSERT_TRUE(writer->begin_session({test::at_ms(5000, utc_ms), "yuragi test", ""}));
+  const auto mast = writer->add_sensor("mast", "nmea", "");
+  ASSERT_TRUE(mast);
+  ASSERT_TRUE(writer->append(*mast, reading_at(6000, 3.0)));
+  auto said = temperature_at(7000, 3.0);
+  said.time.utc = test::at_ms(0, utc_ms + 2000).utc;
+  ASSERT_TRUE(*writer->append(*mast, said));
+  ASSERT_TRUE(writer->close());
+
+  const auto read = quantities_of(file);
+  EXPECT_EQ(temperatures_of(read), (std::vector{1.0, 2.0, 3.0}));
+  EXPECT_EQ(read.rows[1].quantities.time.utc, test::at_ms(0, test::kSampleUtc_ms + 3'000'000).utc);
+  EXPECT_EQ(read.rows[2].quantities.time.utc, said.time.utc);
+}
+
+TEST(WindlogQuantities, AreNoReasonToRefuseASessionWhereTheirTimesCannotBe) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  write_quantities(file, {temperature_at(2000, 20.0)});
+  test::tamper(file,
+               "INSERT INTO quantity (time_ns, series, clock_ns, air_temperature_c) VALUES "
+               "(9223372036854775807, 1, 0, 20), (4611686018427387902, 1, 0, 20)");
+  auto writer = WindlogWriter::open(file);
+  ASSERT_TRUE(writer);
+  EXPECT_TRUE(writer->begin_session({test::at_ms(20'000, test::kSampleUtc_ms + 20'000), "yuragi test", ""}));
+}
+
+TEST(WindlogQuantities, SayWhenAFileWithoutAReadingWasBegun) {
+  const test::TemporaryFolder folder;
+  const auto began_of = [](const std::filesystem::path& file) {
+    auto writer = WindlogWriter::open(file);
+    return writer ? writer->began().value() : std::nullopt;
+  };
+  write_no_reading(folder / "a.windlog", {}, 5000);
+  EXPECT_FALSE(began_of(folder / "a.windlog").has_value());
+  write_no_reading(folder / "a.windlog", {temperature_at(9000, 1.0)}, 8000);
+  EXPECT_EQ(began_of(folder / "a.windlog"), test::at_ms(0, test::kSampleUtc_ms + 5000).utc);
+  test::tamper(folder / "a.windlog", "DROP TABLE quantity; CREATE TABLE quantity (text TEXT)");
+  EXPECT_FALSE(began_of(folder / "a.windlog").has_value());
+}
+
+TEST(WindlogQuantities, SurviveThatSecretsAreTakenOut) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  write_quantities(file, {temperature_at(2000, 1.0), temperature_at(5000, 2.0)});
+  const auto before = quantities_of(file);
+  const auto changed = rewrite_texts(file, {.configuration = [](const std::string&) { return "withheld"; },
+                                            .options = [](const std::string&, const std::string&) { return "none"; }});
+  ASSERT_TRUE(changed) << changed.error().message;
+  EXPECT_EQ(*changed, 2U);
+  const auto after = quantities_of(file);
+  ASSERT_EQ(after.rows.size(), before.rows.size());
+  for (std::size_t i = 0; i < after.rows.size(); ++i) {
+    EXPECT_EQ(after.rows[i].log_time, before.rows[i].log_time);
+    EXPECT_EQ(after.rows[i].quantities.time.utc, before.rows[i].quantities.time.utc);
+    EXPECT_EQ(after.rows[i].quantities.air_temperature_c, before.rows[i].quantities.air_temperature_c);
+  }
 }
 
 TEST(WindlogQuantities, AreNoneInAFileWithoutTheTable) {

@@ -29,6 +29,7 @@ struct PlayedDevice {
   const char* name;
   bool has_direction = true;
   bool has_gust = false;
+  const char* quantities = "";  ///< which of "thpr" it says besides: temperature, humidity, pressure, rain
 
   friend void PrintTo(const PlayedDevice& device, std::ostream* out) { *out << device.name; }
 };
@@ -39,15 +40,17 @@ const std::vector<PlayedDevice> kPlayedDevices = {
     {"dfrobot-sen0483", false},
     {"dfrobot-sen0483-sen0482"},
     {"dfrobot-sen0483-sen0482-v1"},
-    {"renke-multi-station"},
-    {"seeed-sensecap-one", true, true},
+    {"renke-multi-station", true, false, "thpr"},
+    {"renke-multi-station-x100", true, false, "thpr"},
+    {"ecowitt-wn90lp", true, true, "thpr"},
+    {"seeed-sensecap-one", true, true, "thp"},
     {"calypso-ulp", true, true},
-    {"lufft-umb", false, true},
+    {"lufft-umb", true, true, "thp"},
     {"vaisala-wm80", true, true},
     {"gill-maximet-gmx"},
     {"campbell-metsens200"},
     {"lambrecht-industry"},
-    {"thies-clima-sensor-us", true, true},
+    {"thies-clima-sensor-us", true, true, "thp"},
     {"xunchip-xm8589", false},
     {"generic-rs485-cup", false},
 };
@@ -64,8 +67,13 @@ class PlayedDeviceTest : public testing::TestWithParam<PlayedDevice> {
     parameters["poll_interval"] = 0.05;
     parameters["response_timeout"] = 5.0;
     RunningSensor sensor(test::open_modbus_sensor(parameters));
-    ASSERT_TRUE(sensor.wait_until([](const RecordingSink& sink) { return sink.readings.size() >= 2; }));
+    const bool says_more = *device.quantities != '\0';
+    ASSERT_TRUE(sensor.wait_until([&](const RecordingSink& sink) {
+      return sink.readings.size() >= 2 && (!says_more || !sink.station_quantities.empty());
+    }));
     sensor.look([&](const RecordingSink& sink) {
+      EXPECT_EQ(sink.station_quantities.empty(), !says_more);
+      if (says_more) expect_station(device, sink.station_quantities.back());
       EXPECT_TRUE(sink.refusals.empty());
       const wind::WindReading& reading = sink.readings.back();
       EXPECT_NEAR(reading.speed_m_s, 7.0, 1e-6);
@@ -74,6 +82,20 @@ class PlayedDeviceTest : public testing::TestWithParam<PlayedDevice> {
       EXPECT_EQ(reading.gust_m_s.has_value(), device.has_gust);
       EXPECT_NEAR(reading.gust_m_s.value_or(7.0), 7.0, 1e-6);
     });
+  }
+
+  /// What the simulated air is like besides the wind.
+  static void expect_station(const PlayedDevice& device, const wind::StationQuantities& said) {
+    const auto expect = [&](char letter, const std::optional<double>& value, double true_value) {
+      EXPECT_EQ(value.has_value(), std::string_view(device.quantities).find(letter) != std::string_view::npos);
+      EXPECT_NEAR(value.value_or(true_value), true_value, 1e-6);
+    };
+    expect('t', said.air_temperature_c, -3.7);
+    expect('h', said.relative_humidity_percent, 64.0);
+    expect('p', said.pressure_hpa, 1009.0);
+    expect('r', said.rain_total_mm, 12.6);
+    EXPECT_FALSE(said.rain_rate_mm_h.has_value());
+    EXPECT_FALSE(said.vertical_speed_m_s.has_value());
   }
 
   static std::string impatient_copy(const std::string& name, const test::TemporaryFolder& folder) {

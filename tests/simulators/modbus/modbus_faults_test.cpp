@@ -1,6 +1,7 @@
 // Every fault that a Modbus device, gateway or adapter can suffer, between the real driver in real time and the
 // simulator: what the driver says of it, that nothing false comes out, and that the reading returns by itself.
 #include <algorithm>
+#include <fstream>
 #include <functional>
 
 #include <gmock/gmock.h>
@@ -26,19 +27,21 @@ std::vector<std::string> options_with(std::vector<std::string> more) {
   return options;
 }
 
-ParameterValues::Map paced(ParameterValues::Map parameters, double timeout_s) {
+ParameterValues::Map paced(ParameterValues::Map parameters, double timeout_s, const std::string& profile) {
+  if (!profile.empty()) parameters["profile"] = profile;
   parameters["response_timeout"] = timeout_s;
   parameters["poll_interval"] = 0.05;
   return parameters;
 }
 
-/// A cup and a vane, played by the simulator, and the sensor that reads them. Says everything that the wind is.
+/// A device (a cup and a vane, unless said otherwise), played by the simulator, and the sensor that reads it. Says
+/// everything that the wind is.
 class ModbusFaultBench {
  public:
   explicit ModbusFaultBench(Transport transport, const std::vector<std::string>& options = {"--turbulence", "0"},
-                            double timeout_s = kTimeout_s)
+                            double timeout_s = kTimeout_s, const std::string& profile = "")
       : simulator(transport, options_with(options)),
-        sensor(test::open_modbus_sensor(paced(simulator.parameters(), timeout_s))) {
+        sensor(test::open_modbus_sensor(paced(simulator.parameters(), timeout_s, profile))) {
     EXPECT_TRUE(returns()) << detail();
   }
 
@@ -232,6 +235,58 @@ TEST(ModbusRtuFault, Exception) {
 }
 TEST(ModbusRtuFault, Unplug) {
   ModbusFaultBench(Transport::kRtu).expect_loss("unplug", {}, "bus");
+}
+
+/// A copy of its profile that looks at the quantities besides the wind once a second.
+std::string hasty_station(const test::TemporaryFolder& folder) {
+  std::ifstream in(test::source_path("drivers/modbus/profiles/ecowitt-wn90lp.toml"));
+  const std::string path = folder / "hasty.toml";
+  std::ofstream out(path);
+  for (std::string line; std::getline(in, line);) {
+    out << line << "\n";
+    if (line == "[timing]") out << "quantities_interval_s = 1\n";
+  }
+  return path;
+}
+
+/// A station that says more than the wind: no fault makes anything false of that either.
+void expect_true_air_under(Transport transport, const std::string& fault,
+                           const std::vector<drivers::decode::Refusal>& refusals, const std::string& text) {
+  const test::TemporaryFolder folder;
+  ModbusFaultBench bench(transport, {"--device", "ecowitt-wn90lp", "--turbulence", "0"}, kTimeout_s,
+                         hasty_station(folder));
+  const auto expect_true_air = [&bench] {
+    EXPECT_TRUE(bench.sensor.wait_until([](const RecordingSink& sink) { return !sink.station_quantities.empty(); }));
+    bench.sensor.look([](const RecordingSink& sink) {
+      for (const wind::StationQuantities& said : sink.station_quantities) {
+        EXPECT_NEAR(said.air_temperature_c.value(), -3.7, 1e-9);
+        EXPECT_NEAR(said.relative_humidity_percent.value(), 64.0, 1e-9);
+        EXPECT_NEAR(said.pressure_hpa.value(), 1009.0, 1e-9);
+        EXPECT_NEAR(said.rain_total_mm.value(), 12.6, 1e-9);
+      }
+    });
+  };
+  expect_true_air();
+  bench.expect_loss(fault, refusals, text);
+  expect_true_air();
+}
+
+TEST(ModbusStationFault, Silence) {
+  expect_true_air_under(Transport::kTcp, "silence", {drivers::decode::Refusal::kTimeout}, "slave 144 at 127.0.0.1:");
+}
+TEST(ModbusStationFault, Garbage) {
+  expect_true_air_under(Transport::kRtu, "garbage", kNoise, "slave 144 at ");
+}
+TEST(ModbusStationFault, Partial) {
+  expect_true_air_under(Transport::kTcp, "partial", {drivers::decode::Refusal::kTooShort}, "is invalid (too short)");
+}
+TEST(ModbusStationFault, BadChecksum) {
+  expect_true_air_under(Transport::kRtu, "bad-checksum", {drivers::decode::Refusal::kBadChecksum},
+                        "is invalid (bad checksum)");
+}
+TEST(ModbusStationFault, Exception) {
+  expect_true_air_under(Transport::kTcp, "exception", {drivers::decode::Refusal::kException},
+                        "refuses the request (exception 4, server device failure)");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/modbus_programs.hpp"
+#include "tests/support/modbus_servers.hpp"
 
 namespace yuragi::simulators::modbus {
 namespace {
@@ -20,7 +21,8 @@ const std::vector<std::string> kSteadyAir = {"--speed", "7", "--direction", "135
 class ModbusProbeTest : public testing::Test {
  protected:
   void play(Transport transport, std::vector<std::string> options) {
-    options.insert(options.end(), kSteadyAir.begin(), kSteadyAir.end());
+    if (std::ranges::find(options, "--speed") == options.end())
+      options.insert(options.end(), kSteadyAir.begin(), kSteadyAir.end());
     simulator_ = std::make_unique<test::ModbusSimulatorProgram>(transport, options);
     plan_.profiles = drivers::modbus::shipped_modbus_profiles(test::source_path("drivers/modbus/profiles"));
     if (transport == Transport::kTcp) {
@@ -55,14 +57,20 @@ class ModbusProbeTest : public testing::Test {
 
 TEST_F(ModbusProbeTest, FindsEachDeviceBehindAGatewayAndWhatItSays) {
   play(Transport::kTcp, {"--device", "thies-clima-sensor-us", "--device", "calypso-ulp@3", "--device",
-                         "lambrecht-industry@4", "--device", "gill-maximet-gmx@5"});
+                         "lambrecht-industry@4", "--device", "gill-maximet-gmx@6"});
   plan_.ids = {1, 2, 3, 4, 5, 6};
   const auto hits = probe();
-  ASSERT_EQ(hits.size(), 4U);
+  ASSERT_EQ(hits.size(), 5U);
   EXPECT_THAT(names_of(hits[0]), ElementsAre("thies-clima-sensor-us"));
   EXPECT_THAT(names_of(hits[1]), ElementsAre("calypso-ulp"));
-  EXPECT_THAT(names_of(hits[2]), ElementsAre("lambrecht-industry"));
-  EXPECT_THAT(names_of(hits[3]), testing::Contains("gill-maximet-gmx"));
+  // A pair is looked for under its own ids, 1 and 2: elsewhere each half is found by itself.
+  ASSERT_THAT(names_of(hits[2]), ElementsAre("lambrecht-industry"));
+  EXPECT_NEAR(*hits[2].fits[0].speed_m_s, 7.0, 1e-6);
+  EXPECT_FALSE(hits[2].fits[0].direction_deg.has_value());
+  EXPECT_EQ(hits[2].fits[0].direction_slave, 2);
+  ASSERT_THAT(names_of(hits[3]), ElementsAre("lambrecht-industry"));
+  EXPECT_FALSE(hits[3].fits[0].speed_m_s.has_value());
+  EXPECT_THAT(names_of(hits[4]), testing::Contains("gill-maximet-gmx"));
   EXPECT_NEAR(*hits[1].fits[0].speed_m_s, 7.0, 1e-6);
   EXPECT_NEAR(*hits[1].fits[0].direction_deg, 135.0, 1e-6);
   EXPECT_NEAR(*hits[1].fits[0].gust_m_s, 7.0, 1e-6);
@@ -80,6 +88,82 @@ TEST_F(ModbusProbeTest, FindsAPairOnASerialLineAndAVaneThatHasMoved) {
   EXPECT_FALSE(hits[1].fits.at(0).speed_m_s.has_value());
   EXPECT_THAT(names_of(hits[1]), testing::Contains("dfrobot-sen0483-sen0482"));
   EXPECT_EQ(hits[2].id, 9);
+}
+
+TEST_F(ModbusProbeTest, FindsThePairOfALambrechtUnderItsFactoryIds) {
+  play(Transport::kTcp, {"--device", "lambrecht-industry"});
+  plan_.ids = {1, 2};
+  const auto hits = probe();
+  ASSERT_EQ(hits.size(), 2U);
+  ASSERT_THAT(names_of(hits[0]), ElementsAre("lambrecht-industry"));
+  EXPECT_NEAR(*hits[0].fits[0].speed_m_s, 7.0, 1e-6);
+  EXPECT_NEAR(*hits[0].fits[0].direction_deg, 135.0, 1e-6);
+  EXPECT_EQ(hits[0].fits[0].direction_slave, 2);
+}
+
+TEST_F(ModbusProbeTest, FindsAStationByItsOwnRegistersWhereTheFirstOnesAreMissing) {
+  play(Transport::kTcp, {"--device", "ecowitt-wn90lp"});
+  plan_.ids = {144};
+  const auto hits = probe();
+  ASSERT_EQ(hits.size(), 1U);
+  ASSERT_THAT(names_of(hits[0]), ElementsAre("ecowitt-wn90lp"));
+  EXPECT_TRUE(hits[0].fits[0].is_at_home);
+  EXPECT_NEAR(*hits[0].fits[0].gust_m_s, 7.0, 1e-6);
+}
+
+TEST_F(ModbusProbeTest, SettlesAScaleByTheWindForceThatTheDeviceItselfMakesOfIt) {
+  using drivers::modbus::ForceVerdict;
+  play(Transport::kTcp, {"--device", "renke-multi-station@1", "--device", "renke-multi-station-x100@2"});
+  plan_.ids = {1, 2};
+  const auto hits = probe();
+  ASSERT_EQ(hits.size(), 2U);
+  for (const drivers::modbus::ModbusHit& hit : hits) {
+    // Both are shown, and the right one first.
+    ASSERT_EQ(hit.fits.size(), 2U);
+    EXPECT_NEAR(*hit.fits[0].speed_m_s, 7.0, 1e-6);
+    EXPECT_EQ(hit.fits[0].beaufort, 4.0);
+    EXPECT_EQ(hit.fits[0].verdict, ForceVerdict::kAgrees);
+    EXPECT_EQ(hit.fits[1].verdict, ForceVerdict::kContradicts);
+    EXPECT_THAT(hit.scale_doubts, testing::IsEmpty());
+  }
+  EXPECT_EQ(hits[0].fits[0].profile, "renke-multi-station");
+  EXPECT_NEAR(*hits[0].fits[1].speed_m_s, 0.7, 1e-6);
+  EXPECT_EQ(hits[1].fits[0].profile, "renke-multi-station-x100");
+  EXPECT_NEAR(*hits[1].fits[1].speed_m_s, 70.0, 1e-6);
+}
+
+TEST_F(ModbusProbeTest, LeavesAScaleOpenThatNothingSettles) {
+  // The SEN0657 has no wind force; and a calm has none in any scale.
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--device", "dfrobot-sen0657"},
+        std::vector<std::string>{"--device", "renke-multi-station", "--speed", "0", "--direction", "90", "--turbulence",
+                                 "0"}}) {
+    play(Transport::kTcp, options);
+    plan_.ids = {1};
+    const auto hits = probe();
+    ASSERT_EQ(hits.size(), 1U);
+    ASSERT_EQ(hits[0].fits.size(), 2U);
+    EXPECT_THAT(hits[0].scale_doubts, ElementsAre("renke-multi-station", "renke-multi-station-x100"));
+  }
+}
+
+TEST_F(ModbusProbeTest, RanksNothingThatReadsZerosAboveWhatIsLive) {
+  // A cup of 3.7 m/s, all of whose other registers are 0: profiles with direction and gust fit it, too.
+  std::vector<std::uint16_t> registers(250, 0);
+  registers[0] = 37;
+  const SerialBus bus({{3, registers}});
+  plan_.profiles = drivers::modbus::shipped_modbus_profiles(test::source_path("drivers/modbus/profiles"));
+  plan_.lines = drivers::modbus::likely_modbus_lines(bus.device(), plan_.profiles, {9600}, {'N'});
+  plan_.response_timeout = std::chrono::seconds(2);
+  plan_.ids = {3};
+  const auto hits = probe();
+  ASSERT_EQ(hits.size(), 1U);
+  const auto& fits = hits[0].fits;
+  EXPECT_THAT(names_of(hits[0]), testing::IsSupersetOf({"calypso-ulp", "xunchip-xm8589", "vaisala-wm80"}));
+  EXPECT_NEAR(*fits.at(0).speed_m_s, 3.7, 1e-9);
+  EXPECT_TRUE(std::ranges::is_partitioned(fits, drivers::modbus::is_live));
+  const auto calypso = std::ranges::find(fits, "calypso-ulp", &drivers::modbus::ModbusFit::profile);
+  EXPECT_FALSE(drivers::modbus::is_live(*calypso));
 }
 
 TEST_F(ModbusProbeTest, WritesTheTableThatTheDriverTakes) {

@@ -66,6 +66,14 @@ TEST(SimulationPlan, PlaysTheTextThatASensorTakes) {
   EXPECT_THAT(why_not("driver = \"line\"\ndevice = \"/dev/ttyACM0\"\nspeed_column = 3"), HasSubstr("4.2,270"));
 }
 
+TEST(SimulationPlan, PlaysADavisConsoleOverTcp) {
+  const SimulationPlan plan = plan_of_entry("driver = \"davis\"\ndevice = \"/dev/ttyUSB7\"");
+  EXPECT_THAT(plan.arguments,
+              ElementsAre("davis", "--tcp", "127.0.0.1:0", "--speed", "8", "--direction", "225", "--turbulence", "0"));
+  EXPECT_EQ(plan.sensor.values.text("transport"), "tcp");
+  EXPECT_NEAR(plan.expected.speed_tolerance_m_s, 0.447, 0.001) << "it says whole miles per hour";
+}
+
 TEST(SimulationPlan, ExpectsTheCalibratedWind) {
   const SimulationPlan plain = plan_of_entry("driver = \"modbus\"");
   EXPECT_DOUBLE_EQ(plain.expected.speed_m_s, 8.0);

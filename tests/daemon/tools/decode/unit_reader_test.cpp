@@ -58,7 +58,7 @@ TEST(UnitDecoders, GiveNothingUnsoundWhateverComes) {
   for (const UnitFormat& format : unit_formats()) {
     UnitDecoderOptions options;
     options.profile = "renke-rs-fsjt-rs-fxjt-n01";
-    options.checksum = drivers::decode::WhenMissing::kAccept;
+    options.checksum = options.makers_checksum = drivers::decode::WhenMissing::kAccept;
     options.status = drivers::decode::WhenMissing::kAccept;
     options.interval_s = 0.5;
     options.vane_reference_v = 5.0;

@@ -51,6 +51,8 @@ TEST(NamedDevices, AreWhatTheConfigurationSays) {
   EXPECT_THAT(names_in("driver = \"mqtt\"\ntopic = \"a\""), ElementsAre(Named(DeviceKind::kBroker, "127.0.0.1:1883")));
   EXPECT_THAT(names_in("driver = \"mqtt\"\ntopic = \"a\"\nhost = \"lan\"\ntls = true"),
               ElementsAre(Named(DeviceKind::kBroker, "lan:8883")));
+  EXPECT_THAT(names_in("driver = \"tempest\""), ElementsAre(Named(DeviceKind::kUdpPort, ":50222")));
+  EXPECT_THAT(names_in("driver = \"ecowitt\"\nhost = \"gw\""), ElementsAre(Named(DeviceKind::kNetwork, "gw:45000")));
   EXPECT_THAT(names_in("driver = \"hid\"\nstation = \"wmr300\""),
               ElementsAre(Named(DeviceKind::kUsb, "hid (station wmr300)")));
   EXPECT_THAT(names_in("driver = \"microphone\""), ElementsAre(Named(DeviceKind::kSoundCard, "microphone")));
@@ -142,6 +144,16 @@ TEST(LocalPort, IsFreeInUseOrOfAnotherMachine) {
   EXPECT_NE(listen_trouble("no address", is_in_use), "");
   EXPECT_EQ(udp_trouble(":0"), "");
   EXPECT_NE(udp_trouble("192.0.2.1:9000"), "");
+}
+
+TEST(LocalPort, IsFreeForThoseThatShareIt) {
+  const LoopbackPort other(SOCK_DGRAM);
+  const std::string place = fmt::format("127.0.0.1:{}", other.port());
+  EXPECT_THAT(udp_trouble(place), HasSubstr("in use"));
+  EXPECT_THAT(udp_trouble(place, true), HasSubstr("in use")) << "the other one does not share it";
+  const int yes = 1;
+  ASSERT_EQ(setsockopt(other.descriptor(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes), 0);
+  EXPECT_EQ(udp_trouble(place, true), "");
 }
 
 TEST(MachineProbe, SeesTheDiskOfAFolder) {

@@ -106,6 +106,21 @@ TEST(DriverReference, DescribesEveryDriverAndEveryKeyOfIt) {
   }
 }
 
+TEST(DriverReference, SaysOfEachDeviceThatADriverKnowsWhoConfirmsItAndWhatNobodyDoes) {
+  const drivers::sensor::DriverDescription driver{
+      .name = "knowing", .summary = "", .parameters = {}, .open = nullptr, .known_devices = [] {
+        return std::vector<drivers::sensor::KnownDevice>{
+            {.name = "a-1", .device = "A 1", .confirmed_by = {"maker", "decoder"}},
+            {.name = "b-2", .device = "B 2", .unconfirmed = "the id | all"}};
+      }};
+  const std::string text = describe_driver(driver);
+  EXPECT_THAT(text, HasSubstr("  a-1\n      A 1; confirmed by: maker, decoder\n  b-2\n"));
+  EXPECT_THAT(text, HasSubstr("      B 2; confirmed by: nobody\n      unconfirmed: the id | all\n"));
+  const std::vector<const drivers::sensor::DriverDescription*> drivers = {&driver};
+  EXPECT_THAT(driver_reference(drivers), HasSubstr("| `a-1` | A 1 | maker, decoder |  |\n"));
+  EXPECT_THAT(driver_reference(drivers), HasSubstr("| `b-2` | B 2 | nobody | the id \\| all |\n"));
+}
+
 TEST(DriverReference, KeepsItsTablesWhole) {
   const Parameter parameter{
       .name = "key", .unit = "", .default_value = std::string("a|b"), .help = "either | or <this>"};

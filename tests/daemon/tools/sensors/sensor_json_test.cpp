@@ -89,6 +89,14 @@ TEST(DescriptionJson, HasEachKeyOfEachDriverAndNoSecret) {
       EXPECT_EQ(json[i]["parameters"][k]["help"], drivers[i]->parameters[k].help);
     }
   }
+  const auto modbus = std::ranges::find(json, "modbus", [](const auto& driver) { return driver["name"]; });
+  ASSERT_NE(modbus, json.end());
+  const auto& devices = (*modbus)["known_devices"];
+  const auto wm80 = std::ranges::find(devices, "vaisala-wm80", [](const auto& device) { return device["name"]; });
+  ASSERT_NE(wm80, devices.end());
+  EXPECT_EQ((*wm80)["confirmed_by"], nlohmann::json::array({"maker"}));
+  EXPECT_THAT((*wm80)["unconfirmed"].get<std::string>(), testing::HasSubstr("slave id"));
+  EXPECT_TRUE(json[0]["known_devices"].is_array());
   const Parameter parameter{.name = "height", .unit = "m", .default_value = 2.0, .min = 0.0, .help = "how high"};
   const auto one = parameters_json(std::span(&parameter, 1))[0];
   EXPECT_EQ(one["unit"], "m");

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "daemon/tools/csv/csv_layout.hpp"
+#include "daemon/tools/csv/csv_options.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi::daemon::tools::csv {
+
+/// The fields of a row that have a role.
+struct CsvFields {
+  std::array<std::optional<std::string_view>, kCsvRoleCount> by_role;  ///< none for a missing column
+  std::string time;                                                    ///< all of its columns, with blanks between them
+  const std::optional<std::string_view>& at(CsvRole role) const { return by_role[static_cast<std::size_t>(role)]; }
+};
+
+/// Takes the rows of a file apart. Thread-safe: no.
+class CsvRowSplitter {
+ public:
+  /// Fails where a condition names a column that is not there.
+  static Result<CsvRowSplitter, Failure> make(const CsvLayout& layout, const CsvImportOptions& options);
+
+  /// The fields of a line, which is changed and must outlive them; false where a condition does not hold.
+  Result<bool, Failure> split(std::span<char> line, CsvFields& fields);
+
+ private:
+  CsvRowSplitter(const CsvLayout& layout) : layout_(layout) {}
+
+  const CsvLayout& layout_;
+  std::vector<std::pair<std::size_t, std::string>> conditions_;  ///< column and text
+  std::vector<std::string_view> all_fields_;
+};
+
+}  // namespace yuragi::daemon::tools::csv

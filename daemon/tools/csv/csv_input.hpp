@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <istream>
+#include <memory>
+#include <streambuf>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.hpp"
+
+namespace yuragi::daemon::tools::csv {
+
+/// A stream that is read twice: first to see what is in it, then for its rows. One that cannot go back (a pipe) is kept
+/// as far as kMostKept, and seen as far as that. Thread-safe: no.
+class CsvInput {
+ public:
+  static constexpr std::size_t kMostKept = std::size_t{32} << 20;
+
+  /// `in` must outlive this.
+  explicit CsvInput(std::istream& in);
+
+  /// The stream from its beginning, as far as it can be seen: all of it, or its first whole lines.
+  std::istream& first_pass();
+  /// The whole stream from its beginning.
+  std::istream& second_pass();
+  /// Has the first pass all of it?
+  bool is_whole() const { return is_whole_; }
+
+ private:
+  std::istream& in_;
+  std::streampos begin_{0};
+  bool is_whole_ = true;
+  std::string kept_;                             ///< what was read of a pipe
+  std::unique_ptr<std::streambuf> kept_buffer_;  ///< over kept_
+  std::unique_ptr<std::streambuf> joined_;       ///< kept_, and what follows
+  std::unique_ptr<std::istream> stream_;         ///< over one of them
+};
+
+/// The first lines of an input, comments and empty ones too, as many as a header is looked for in. Fails where one of
+/// them is too long.
+Result<std::vector<std::string>, Failure> first_lines(CsvInput& input, const std::string& name);
+
+/// The failure of a file with a line that is too long.
+Failure too_long_line(const std::string& name, std::size_t number);
+
+}  // namespace yuragi::daemon::tools::csv

@@ -1,0 +1,263 @@
+#include "daemon/tools/csv/csv_layout.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+#include "daemon/tools/csv/csv_lines.hpp"
+#include "daemon/tools/csv/csv_names.hpp"
+#include "daemon/tools/csv/csv_words.hpp"
+
+namespace yuragi::daemon::tools::csv {
+namespace {
+
+char delimiter_of(std::string_view header) {
+  char best = ',';
+  for (const char candidate : {';', '\t', '|'}) {
+    if (std::ranges::count(header, candidate) > std::ranges::count(header, best)) best = candidate;
+  }
+  if (header.find(best) != std::string_view::npos) return best;
+  return without_blanks(header).find(' ') == std::string_view::npos ? ',' : ' ';
+}
+
+bool is_number_or_date(std::string_view text) {
+  return parse_decimal(text, 0).has_value() || has_date(text);
+}
+
+/// A line without its comment sign.
+std::string_view uncommented(std::string_view line, char comment) {
+  while (comment != 0 && line.starts_with(comment)) line.remove_prefix(1);
+  return without_blanks(line);
+}
+
+/// Zone and unit of speeds that the lines before a header name.
+struct Preamble {
+  std::optional<std::string> zone;
+  std::optional<CsvUnit> speed_unit;
+};
+
+void read_key(Preamble& preamble, std::string_view key, std::string_view value) {
+  const std::string stem = joined(words_of(key));
+  value = without_blanks(value);
+  if (value.empty()) return;
+  if (stem == "utcoffsetseconds") {
+    if (const auto seconds = parse_decimal(value, 0)) {
+      const std::int64_t minutes = std::abs(*seconds) / 60;
+      const auto two = [](std::int64_t number) { return (number < 10 ? "0" : "") + std::to_string(number); };
+      preamble.zone = (*seconds < 0 ? "-" : "+") + two(minutes / 60) + ":" + two(minutes % 60);
+    }
+  } else if ((stem == "timezone" || stem == "utcoffset" || stem == "zeitzone") && !preamble.zone) {
+    std::string zone(value);
+    // Hours alone: "-7".
+    if (parse_decimal(zone, 0) && zone.find('.') == std::string::npos) {
+      const bool has_sign = zone.starts_with('-') || zone.starts_with('+');
+      zone = (has_sign ? zone.substr(0, 1) : "+") + (zone.size() - (has_sign ? 1 : 0) < 2 ? "0" : "") +
+             zone.substr(has_sign ? 1 : 0);
+    }
+    if (CsvZone::parse(zone)) preamble.zone = zone;
+  } else if (stem.starts_with("windspeed") || stem == "windunit") {
+    if (const auto unit = find_speed_unit(value)) preamble.speed_unit = unit;
+  }
+}
+
+/// "FH : hourly mean wind speed (in 0.1 m/s)" says the unit of a column.
+void read_legend(CsvColumns& columns, std::string_view key, std::string_view text) {
+  for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
+    auto& column = columns.by_role[role];
+    if (!column || lower(column->name) != lower(without_blanks(key))) continue;
+    const auto open = text.find_last_of("([");
+    if (open == std::string_view::npos) return;
+    std::string_view unit = text.substr(open + 1);
+    unit = unit.substr(0, unit.find_first_of(")]"));
+    if (unit.starts_with("in ")) unit.remove_prefix(3);
+    if (const auto found = find_unit(dimension_of(static_cast<CsvRole>(role)), unit)) {
+      column->unit = found;
+      column->unit_source = "as the lines before the header say";
+    }
+  }
+}
+
+class LayoutSearch {
+ public:
+  LayoutSearch(const std::vector<std::string>& lines, const CsvImportOptions& options)
+      : lines_(lines), options_(options) {}
+
+  Result<CsvLayout, Failure> find() const {
+    const std::size_t begin = next_line(options_.skip.value_or(0), false);
+    if (begin >= lines_.size()) return Failure{"has no header line"};
+    if (!options_.header.empty()) return layout_of_names(begin);
+    auto first = layout_at(begin, split(lines_[begin], delimiter(lines_[begin])), false);
+    if (first || options_.skip) return first;
+
+    // In its order: a line, two lines, a comment.
+    for (std::size_t i = begin + 1; i < lines_.size(); i = next_line(i + 1, false)) {
+      if (i == begin + 1) i = next_line(i, false);
+      if (i >= lines_.size()) break;
+      if (auto found = layout_at(i, split(lines_[i], delimiter(lines_[i])), false)) return found;
+      if (auto found = layout_of_two(i)) return std::move(*found);
+    }
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      if (!is_comment(lines_[i])) continue;
+      const std::string_view text = uncommented(lines_[i], options_.comment);
+      if (text.empty()) continue;
+      auto found = layout_at(i, split(text, delimiter(text)), true);
+      if (found && found->row.size() == found->header.size()) return found;
+    }
+    return failure_of(begin, first.error());
+  }
+
+ private:
+  bool is_comment(std::string_view line) const { return options_.comment != 0 && line.starts_with(options_.comment); }
+
+  /// The next line from `i` on that is not empty; with `are_comments_taken`, be it a comment.
+  std::size_t next_line(std::size_t i, bool are_comments_taken) const {
+    while (i < lines_.size() && (without_blanks(lines_[i]).empty() || (!are_comments_taken && is_comment(lines_[i]))))
+      ++i;
+    return i;
+  }
+
+  char delimiter(std::string_view line) const {
+    return options_.delimiter != 0 ? options_.delimiter : delimiter_of(line);
+  }
+
+  static std::vector<std::string> split(std::string_view line, char delimiter) {
+    std::string text(line);
+    std::vector<std::string_view> fields;
+    if (!split_csv_line(text, delimiter, fields)) return {};
+    return {fields.begin(), fields.end()};
+  }
+
+  Result<CsvLayout, Failure> layout_at(std::size_t i, std::vector<std::string> header, bool is_comment_header) const {
+    if (header.empty()) return Failure{"the header has a quote that is not closed"};
+    CsvLayout layout;
+    const std::string_view text = is_comment_header ? uncommented(lines_[i], options_.comment) : lines_[i];
+    layout.delimiter = delimiter(text);
+    layout.header = std::move(header);
+
+    // The first row has a number or a date; between it and the header stand rows of units.
+    constexpr std::size_t kMostUnitRows = 3;
+    std::vector<std::vector<std::string>> unit_rows;
+    std::size_t next = next_line(i + 1, is_comment_header);
+    layout.first_row = next_line(i + 1, false) + 1;
+    for (; next < lines_.size() && unit_rows.size() <= kMostUnitRows; next = next_line(next + 1, is_comment_header)) {
+      const bool is_commented = is_comment(lines_[next]);
+      std::vector<std::string> fields =
+          split(is_commented ? uncommented(lines_[next], options_.comment) : std::string_view(lines_[next]),
+                layout.delimiter);
+      if (!is_commented && std::ranges::any_of(fields, is_number_or_date)) {
+        layout.row = std::move(fields);
+        layout.first_row = next + 1;
+        break;
+      }
+      unit_rows.push_back(std::move(fields));
+    }
+    auto columns = choose_columns(layout.header, options_.columns, layout.row);
+    if (!columns) return columns.error();
+    layout.columns = std::move(*columns);
+    if (!layout.row.empty()) {
+      for (const auto& row : unit_rows) read_units(layout, row);
+    }
+    read_preamble(layout, i);
+    return layout;
+  }
+
+  /// A file without a header.
+  Result<CsvLayout, Failure> layout_of_names(std::size_t begin) const {
+    CsvLayout layout;
+    layout.delimiter = delimiter(lines_[begin]);
+    layout.header = options_.header;
+    layout.row = split(lines_[begin], layout.delimiter);
+    layout.first_row = begin + 1;
+    auto columns = choose_columns(layout.header, options_.columns, layout.row);
+    if (!columns) return columns.error();
+    layout.columns = std::move(*columns);
+    return layout;
+  }
+
+  /// A header over two lines: "Wind" above "Speed".
+  std::optional<CsvLayout> layout_of_two(std::size_t i) const {
+    if (i == 0 || is_comment(lines_[i - 1])) return std::nullopt;
+    const char delimiter_here = delimiter(lines_[i]);
+    const std::vector<std::string> above = split(lines_[i - 1], delimiter_here);
+    std::vector<std::string> names = split(lines_[i], delimiter_here);
+    if (above.size() != names.size() || std::ranges::any_of(above, is_number_or_date)) return std::nullopt;
+    for (std::size_t field = 0; field < names.size(); ++field) {
+      names[field] = std::string(without_blanks(above[field] + " " + names[field]));
+    }
+    auto found = layout_at(i, std::move(names), false);
+    if (!found) return std::nullopt;
+    return std::move(*found);
+  }
+
+  static void read_units(CsvLayout& layout, const std::vector<std::string>& row) {
+    if (row.size() != layout.header.size()) return;
+    for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
+      auto& column = layout.columns.by_role[role];
+      if (!column) continue;
+      if (const auto unit = find_unit(dimension_of(static_cast<CsvRole>(role)), row[column->index])) {
+        column->unit = unit;
+        column->unit_source = "as the row of units says";
+      }
+    }
+  }
+
+  void read_preamble(CsvLayout& layout, std::size_t header) const {
+    Preamble preamble;
+    for (std::size_t i = 0; i < header; ++i) {
+      const std::string_view line = uncommented(lines_[i], options_.comment);
+      if (line.empty()) continue;
+      // A table of one row: names above values.
+      const char delimiter_here = delimiter(line);
+      const std::vector<std::string> names = split(line, delimiter_here);
+      if (names.size() > 1 && i + 1 < header) {
+        const std::vector<std::string> values = split(lines_[i + 1], delimiter_here);
+        for (std::size_t field = 0; field < names.size() && names.size() == values.size(); ++field) {
+          read_key(preamble, names[field], values[field]);
+        }
+      }
+      const auto end_of_key = line.find_first_of(":=;,\t");
+      if (end_of_key == std::string_view::npos) continue;
+      read_key(preamble, line.substr(0, end_of_key), line.substr(end_of_key + 1));
+      read_legend(layout.columns, line.substr(0, end_of_key), line.substr(end_of_key + 1));
+    }
+    if (!layout.columns.zone) layout.columns.zone = preamble.zone;
+    if (!preamble.speed_unit) return;
+    for (const CsvRole role : {CsvRole::kSpeed, CsvRole::kGust, CsvRole::kU, CsvRole::kV}) {
+      auto& column = layout.columns.at(role);
+      if (!column || column->unit) continue;
+      column->unit = preamble.speed_unit;
+      column->unit_source = "as the lines before the header say";
+    }
+  }
+
+  /// Of the line that looks most like a header: the first with the most fields.
+  Failure failure_of(std::size_t begin, const Failure& first) const {
+    std::size_t best = begin;
+    std::size_t most = split(lines_[begin], delimiter(lines_[begin])).size();
+    constexpr std::size_t kLooked = 30;
+    for (std::size_t i = begin + 1; i < std::min(lines_.size(), begin + kLooked); ++i) {
+      const std::vector<std::string> fields = split(lines_[i], delimiter(lines_[i]));
+      if (fields.size() <= most || is_comment(lines_[i]) || std::ranges::any_of(fields, is_number_or_date)) continue;
+      best = i;
+      most = fields.size();
+    }
+    if (std::ranges::any_of(split(lines_[begin], delimiter(lines_[begin])), is_number_or_date)) {
+      return Failure{first.message + "; where the file has no header, --header NAMES gives it one"};
+    }
+    if (best == begin) return first;
+    const auto tried = layout_at(best, split(lines_[best], delimiter(lines_[best])), false);
+    return tried ? first : tried.error();
+  }
+
+  const std::vector<std::string>& lines_;
+  const CsvImportOptions& options_;
+};
+
+}  // namespace
+
+Result<CsvLayout, Failure> find_layout(const std::vector<std::string>& lines, const CsvImportOptions& options) {
+  return LayoutSearch(lines, options).find();
+}
+
+}  // namespace yuragi::daemon::tools::csv

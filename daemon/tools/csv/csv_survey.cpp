@@ -1,0 +1,265 @@
+#include "daemon/tools/csv/csv_survey.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "daemon/tools/csv/csv_fields.hpp"
+#include "daemon/tools/csv/csv_lines.hpp"
+#include "daemon/tools/csv/csv_unit_choice.hpp"
+#include "daemon/tools/csv/csv_value.hpp"
+#include "daemon/tools/csv/csv_words.hpp"
+
+namespace yuragi::daemon::tools::csv {
+namespace {
+
+/// How the times of a file look in one format.
+struct FormatTally {
+  std::size_t count = 0;  ///< rows that have such a time
+  std::size_t forward = 0;
+  std::size_t back = 0;
+  std::optional<UtcTime> last;
+
+  void add(const std::optional<CsvTime>& time) {
+    if (!time) return;
+    ++count;
+    const UtcTime utc = time->clock - time->utc_offset.value_or(Nanoseconds{0});
+    if (last && utc > *last) ++forward;
+    if (last && utc < *last) ++back;
+    last = utc;
+  }
+};
+
+/// The greatest numbers of a column.
+struct NumberTally {
+  std::optional<double> greatest;
+  std::size_t times = 0;  ///< that the greatest comes
+  std::optional<double> next;
+
+  void add(double value) {
+    if (!greatest || value > *greatest) {
+      next = greatest;
+      greatest = value;
+      times = 1;
+    } else if (value == *greatest) {
+      ++times;
+    } else if (!next || value > *next) {
+      next = value;
+    }
+  }
+
+  bool is_far_above_others() const {
+    constexpr double kFar = 0.75;
+    return next && *next < kFar * *greatest;
+  }
+};
+
+/// Above this median a wind in m/s is a storm all the time.
+constexpr double kStrangeMedian_m_s = 12.0;
+/// A single value above this, far above all others, is none.
+constexpr double kStrangeSpeed_m_s = 60.0;
+
+class Survey {
+ public:
+  Survey(const CsvLayout& layout, const CsvImportOptions& options) : layout_(layout), options_(options) {}
+
+  void add(const CsvFields& fields) {
+    add_time(fields.time);
+    const auto speed = add_number(fields, CsvRole::kSpeed);
+    const auto gust = add_number(fields, CsvRole::kGust);
+    if (speed && *speed > 0.0) {
+      ++moving_;
+      if (*speed > kStrangeMedian_m_s) ++strong_;
+    }
+    if (speed && gust && *speed > 1.0) {
+      constexpr double kRounding = 0.95;
+      ++gusty_;
+      if (*gust < kRounding * *speed) ++weak_gusts_;
+    }
+    add_number(fields, CsvRole::kU);
+    add_number(fields, CsvRole::kV);
+    for (const CsvRole role : kQuantityRoles) add_number(fields, role);
+  }
+
+  Result<CsvSurvey, Failure> finish() {
+    if (const auto done = settle_time(); !done) return done.error();
+    settle_marks();
+    if (const auto done = check_units(); !done) return done.error();
+    return std::move(result_);
+  }
+
+ private:
+  FormatTally& tally(CsvTimeFormat format) { return formats_[static_cast<std::size_t>(format)]; }
+
+  void add_time(std::string_view text) {
+    if (options_.time_format != CsvTimeFormat::kAuto) {
+      tally(options_.time_format).add(parse_time(text, options_.time_format));
+      return;
+    }
+    if (const auto count_format = guess_count_format(text)) {
+      ++numbers_;
+      if (!number_format_) number_format_ = is_in_ms() ? CsvTimeFormat::kUnixMs : *count_format;
+      tally(*number_format_).add(parse_time(text, *number_format_));
+      tally(CsvTimeFormat::kCompact).add(parse_time(text, CsvTimeFormat::kCompact));
+      return;
+    }
+    tally(CsvTimeFormat::kIso).add(parse_time(text, CsvTimeFormat::kIso));
+    const auto day_first = parse_time(text, CsvTimeFormat::kDayFirst);
+    const auto month_first = parse_time(text, CsvTimeFormat::kMonthFirst);
+    tally(CsvTimeFormat::kDayFirst).add(day_first);
+    tally(CsvTimeFormat::kMonthFirst).add(month_first);
+    if (day_first && month_first && day_first->clock != month_first->clock && ambiguous_.empty()) ambiguous_ = text;
+    if (text.size() > 5 && text.substr(0, 6).find('.') != std::string_view::npos) ++dotted_;
+  }
+
+  bool is_in_ms() const {
+    const auto& column = layout_.columns.at(CsvRole::kTime);
+    return column && column->unit && column->unit->name == "ms";
+  }
+
+  /// The number of a field in its base unit, unless it is missing.
+  std::optional<double> add_number(const CsvFields& fields, CsvRole role) {
+    const auto& text = fields.at(role);
+    if (!text || is_missing_word(*text)) return std::nullopt;
+    const auto number = parse_number(*text, dimension_of(role));
+    if (!number) return std::nullopt;
+    const CsvUnit unit = number->unit.value_or(layout_.columns.at(role)->unit.value_or(CsvUnit{}));
+    const double base = number->value * unit.factor + unit.offset;
+    if (is_missing_number(role, number->value, base)) return std::nullopt;
+    numbers_of_[static_cast<std::size_t>(role)].add(number->value);
+    if (is_possible_mark(role, number->value)) return std::nullopt;
+    return base;
+  }
+
+  Result<void, Failure> settle_time() {
+    if (options_.time_format != CsvTimeFormat::kAuto) return settle_as(options_.time_format);
+    const auto count = [this](CsvTimeFormat format) { return tally(format).count; };
+    const std::size_t dates =
+        std::max({count(CsvTimeFormat::kIso), count(CsvTimeFormat::kDayFirst), count(CsvTimeFormat::kMonthFirst)});
+    if (numbers_ > dates) {
+      const std::string name = lower(layout_.columns.at(CsvRole::kTime)->name);
+      const bool is_unix = name.find("unix") != std::string::npos || name.find("epoch") != std::string::npos;
+      const bool is_compact = !is_unix && !is_in_ms() && count(CsvTimeFormat::kCompact) == numbers_;
+      return settle_as(is_compact ? CsvTimeFormat::kCompact : *number_format_);
+    }
+    if (dates == 0 || count(CsvTimeFormat::kIso) == dates) return settle_as(CsvTimeFormat::kIso);
+    if (layout_.columns.is_day_first) {
+      return settle_as(*layout_.columns.is_day_first ? CsvTimeFormat::kDayFirst : CsvTimeFormat::kMonthFirst);
+    }
+    return settle_order_of_date();
+  }
+
+  Result<void, Failure> settle_as(CsvTimeFormat format) {
+    result_.time_format = format;
+    const FormatTally& times = tally(format);
+    result_.is_newest_first = times.back >= 2 && times.back > 4 * times.forward;
+    return {};
+  }
+
+  /// Of dates like 3/4/2023.
+  Result<void, Failure> settle_order_of_date() {
+    const FormatTally& day_first = tally(CsvTimeFormat::kDayFirst);
+    const FormatTally& month_first = tally(CsvTimeFormat::kMonthFirst);
+    if (ambiguous_.empty() && day_first.count == month_first.count) return settle_as(CsvTimeFormat::kDayFirst);
+    if (day_first.count != month_first.count) {
+      const bool is_day_first = day_first.count > month_first.count;
+      result_.notes.push_back(fmt::format("dates: the {} comes first, since a number above 12 stands in its place",
+                                          is_day_first ? "day" : "month"));
+      return settle_as(is_day_first ? CsvTimeFormat::kDayFirst : CsvTimeFormat::kMonthFirst);
+    }
+    if (dotted_ == day_first.count) {
+      result_.notes.emplace_back("dates: the day comes first, as it does where dots separate");
+      return settle_as(CsvTimeFormat::kDayFirst);
+    }
+    if ((day_first.back == 0) != (month_first.back == 0)) {
+      const bool is_day_first = day_first.back == 0;
+      result_.notes.push_back(fmt::format("dates: the {} comes first, since times would go back otherwise",
+                                          is_day_first ? "day" : "month"));
+      return settle_as(is_day_first ? CsvTimeFormat::kDayFirst : CsvTimeFormat::kMonthFirst);
+    }
+    return Failure{"which number of \"" + ambiguous_ +
+                   "\" is the day? All rows can be read either way; say --time-format day-first or month-first"};
+  }
+
+  void settle_marks() {
+    for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
+      const auto role = static_cast<CsvRole>(index);
+      const NumberTally& numbers = numbers_of_[index];
+      if (!numbers.greatest || !is_possible_mark(role, *numbers.greatest)) continue;
+      const CsvColumn& column = *layout_.columns.at(role);
+      const bool is_storm = dimension_of(role) == CsvDimension::kSpeed && column.unit &&
+                            *numbers.greatest * column.unit->factor > kStrangeSpeed_m_s;
+      if (numbers.is_far_above_others() && (numbers.times > 1 || is_storm)) {
+        result_.missing_mark[index] = numbers.greatest;
+        result_.notes.push_back(
+            fmt::format("{} in \"{}\" is taken as no value: it comes {} and is far above all others (the next is {})",
+                        *numbers.greatest, column.name,
+                        numbers.times == 1 ? "once" : fmt::format("{} times", numbers.times), *numbers.next));
+      } else {
+        result_.notes.push_back(
+            fmt::format("{} in \"{}\" is taken as it is; where it stands for no value, say --missing {}",
+                        *numbers.greatest, column.name, *numbers.greatest));
+      }
+    }
+  }
+
+  Result<void, Failure> check_units() {
+    const auto& speed = layout_.columns.at(CsvRole::kSpeed);
+    if (speed && speed->unit_source == kAssumedUnit) {
+      constexpr const char* kSayUnit = "say --unit m/s, km/h, kn, mph or ft/s";
+      if (2 * strong_ > moving_) {
+        return Failure{
+            fmt::format("nothing says the unit of \"{}\", and in m/s most of its rows would be above {} m/s; {}",
+                        speed->name, kStrangeMedian_m_s, kSayUnit)};
+      }
+      for (const CsvRole role : {CsvRole::kTemperature, CsvRole::kPressure}) {
+        const auto& other = layout_.columns.at(role);
+        if (!other || (other->unit->name != "F" && other->unit->name != "inHg")) continue;
+        return Failure{fmt::format("nothing says the unit of \"{}\", and \"{}\" is in {}; {}", speed->name, other->name,
+                                   other->unit->name, kSayUnit)};
+      }
+    }
+    if (gusty_ < 3 || 2 * weak_gusts_ <= gusty_) return {};
+    const CsvColumn& gust = *layout_.columns.at(CsvRole::kGust);
+    const std::string found =
+        fmt::format("in {} of {} rows the gust would be below the speed (\"{}\" in {}, \"{}\" in {})", weak_gusts_,
+                    gusty_, gust.name, gust.unit->name, speed->name, speed->unit->name);
+    if (gust.unit_source.starts_with("by ")) {
+      result_.notes.push_back(found);
+      return {};
+    }
+    return Failure{found + "; say --gust-unit and --unit"};
+  }
+
+  const CsvLayout& layout_;
+  const CsvImportOptions& options_;
+  std::array<FormatTally, kCsvTimeFormatCount> formats_;
+  std::size_t numbers_ = 0;  ///< times that are numbers
+  std::optional<CsvTimeFormat> number_format_;
+  std::string ambiguous_;  ///< the first date that can be read either way
+  std::size_t dotted_ = 0;
+  std::array<NumberTally, kCsvRoleCount> numbers_of_;
+  std::size_t moving_ = 0;  ///< rows with a speed above 0
+  std::size_t strong_ = 0;
+  std::size_t gusty_ = 0;  ///< rows with both speed and gust
+  std::size_t weak_gusts_ = 0;
+  CsvSurvey result_;
+};
+
+}  // namespace
+
+Result<CsvSurvey, Failure> survey_rows(std::istream& in, const CsvLayout& layout, const CsvImportOptions& options) {
+  auto splitter = CsvRowSplitter::make(layout, options);
+  if (!splitter) return splitter.error();
+  CsvLines lines(in, options.comment);
+  lines.begin_at(layout.first_row);
+  Survey survey(layout, options);
+  CsvFields fields;
+  while (lines.next()) {
+    const auto is_row = splitter->split(lines.line(), fields);
+    if (is_row && *is_row) survey.add(fields);
+  }
+  return survey.finish();
+}
+
+}  // namespace yuragi::daemon::tools::csv

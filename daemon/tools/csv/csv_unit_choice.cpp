@@ -1,0 +1,129 @@
+#include "daemon/tools/csv/csv_unit_choice.hpp"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+
+#include "daemon/tools/csv/csv_value.hpp"
+#include "daemon/tools/csv/csv_words.hpp"
+
+namespace yuragi::daemon::tools::csv {
+namespace {
+
+/// Files whose headers name no units, by columns that only they have. Sources: drivers/SOURCES.md S12.
+struct KnownWriter {
+  std::string_view name;
+  std::array<std::string_view, 2> columns;  ///< all of them are there, as joined(words_of())
+  std::string_view speed;
+  std::string_view temperature;
+};
+constexpr std::array kKnownWriters = {
+    KnownWriter{"Meteostat", {"wspd", "wpgt"}, "km/h", "C"},
+    KnownWriter{"Meteostat", {"wspd", "coco"}, "km/h", "C"},
+    KnownWriter{"DWD", {"messdatum", ""}, "m/s", "C"},
+    KnownWriter{"KNMI", {"yyyymmdd", "fh"}, "0.1 m/s", "0.1 C"},
+    KnownWriter{"MeteoSwiss", {"fkl010z0", ""}, "m/s", "C"},
+    KnownWriter{"MeteoSwiss", {"fkl010h0", ""}, "m/s", "C"},
+    KnownWriter{"the Iowa Environmental Mesonet", {"sknt", "drct"}, "kn", "F"},
+    KnownWriter{"NDBC", {"wspd", "gst"}, "m/s", "C"},
+    KnownWriter{"ECMWF", {"u10", "v10"}, "m/s", "K"},
+    KnownWriter{"WeatherFlow", {"windlull", "windavg"}, "m/s", "C"},
+};
+
+bool has_column(const CsvLayout& layout, std::string_view name) {
+  return std::ranges::any_of(layout.header, [&](const std::string& each) { return joined(words_of(each)) == name; });
+}
+
+void set_where_unknown(CsvLayout& layout, CsvRole role, std::string_view unit, const std::string& source) {
+  auto& column = layout.columns.at(role);
+  if (!column || column->unit) return;
+  column->unit = find_unit(dimension_of(role), unit);
+  if (column->unit) column->unit_source = source;
+}
+
+/// What weewx writes says which system of units it is in: 1 US, 16 metric, 17 metric with m/s (weewx, "Units").
+void use_weewx_system(CsvLayout& layout) {
+  for (std::size_t i = 0; i < std::min(layout.header.size(), layout.row.size()); ++i) {
+    if (joined(words_of(layout.header[i])) != "usunits") continue;
+    const auto system = parse_decimal(layout.row[i], 0);
+    const bool is_us = system == 1;
+    if (!is_us && system != 16 && system != 17) return;
+    const std::string source = "by the column \"" + layout.header[i] + "\"";
+    const std::string_view speed = is_us ? "mph" : (system == 16 ? "km/h" : "m/s");
+    for (const CsvRole role : {CsvRole::kSpeed, CsvRole::kGust}) set_where_unknown(layout, role, speed, source);
+    set_where_unknown(layout, CsvRole::kTemperature, is_us ? "F" : "C", source);
+    set_where_unknown(layout, CsvRole::kPressure, is_us ? "inHg" : "mbar", source);
+    set_where_unknown(layout, CsvRole::kRainRate, is_us ? "in/h" : (system == 16 ? "cm/h" : "mm/h"), source);
+  }
+}
+
+void use_known_writer(CsvLayout& layout) {
+  for (const KnownWriter& writer : kKnownWriters) {
+    const bool is_it = std::ranges::all_of(
+        writer.columns, [&](std::string_view name) { return name.empty() || has_column(layout, name); });
+    if (!is_it) continue;
+    const std::string source = "as " + std::string(writer.name) + " writes it";
+    for (const CsvRole role : {CsvRole::kSpeed, CsvRole::kGust, CsvRole::kU, CsvRole::kV}) {
+      set_where_unknown(layout, role, writer.speed, source);
+    }
+    set_where_unknown(layout, CsvRole::kTemperature, writer.temperature, source);
+    return;
+  }
+}
+
+/// A column without a unit is in that of one beside it.
+void use_unit_beside(CsvLayout& layout, CsvRole role, CsvRole beside) {
+  const auto& known = layout.columns.at(beside);
+  auto& column = layout.columns.at(role);
+  if (!column || column->unit || !known || !known->unit) return;
+  column->unit = known->unit;
+  column->unit_source = "as \"" + known->name + "\" beside it";
+}
+
+/// "5.4 mph": the fields say it themselves.
+void use_unit_of_fields(CsvLayout& layout) {
+  for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
+    auto& column = layout.columns.by_role[index];
+    if (!column || column->unit || column->index >= layout.row.size()) continue;
+    const auto number = parse_number(layout.row[column->index], dimension_of(static_cast<CsvRole>(index)));
+    if (!number || !number->unit) continue;
+    column->unit = number->unit;
+    column->unit_source = "as its fields say";
+  }
+}
+
+void set_by_option(CsvLayout& layout, CsvRole role, const std::optional<CsvUnit>& unit, const char* option) {
+  auto& column = layout.columns.at(role);
+  if (!column || !unit) return;
+  column->unit = unit;
+  column->unit_source = std::string("by ") + option;
+}
+
+}  // namespace
+
+void choose_units(CsvLayout& layout, const CsvImportOptions& options) {
+  for (const CsvRole role : {CsvRole::kSpeed, CsvRole::kGust, CsvRole::kU, CsvRole::kV, CsvRole::kVerticalSpeed}) {
+    set_by_option(layout, role, options.unit, "--unit");
+  }
+  set_by_option(layout, CsvRole::kGust, options.gust_unit, "--gust-unit");
+  use_unit_of_fields(layout);
+  use_weewx_system(layout);
+  use_known_writer(layout);
+  use_unit_beside(layout, CsvRole::kGust, CsvRole::kSpeed);
+  use_unit_beside(layout, CsvRole::kSpeed, CsvRole::kGust);
+  use_unit_beside(layout, CsvRole::kU, CsvRole::kV);
+  use_unit_beside(layout, CsvRole::kV, CsvRole::kU);
+  use_unit_beside(layout, CsvRole::kVerticalSpeed, CsvRole::kU);
+  for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
+    auto& column = layout.columns.by_role[index];
+    const auto role = static_cast<CsvRole>(index);
+    if (!column || column->unit || dimension_of(role) == CsvDimension::kNone || role == CsvRole::kTime ||
+        role == CsvRole::kElapsed) {
+      continue;
+    }
+    column->unit = base_unit(dimension_of(role));
+    column->unit_source = kAssumedUnit;
+  }
+}
+
+}  // namespace yuragi::daemon::tools::csv

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace yuragi::daemon::tools::csv {
+
+/// What a column of numbers measures, as far as its units go.
+enum class CsvDimension : std::uint8_t {
+  kNone,         ///< no unit, or one that does not matter
+  kTime,         ///< milliseconds and the like
+  kSpeed,        ///< in m/s
+  kDirection,    ///< in degrees
+  kTemperature,  ///< in degrees Celsius
+  kPressure,     ///< in hPa
+  kHumidity,     ///< in percent
+  kRain,         ///< in mm
+  kRainRate,     ///< in mm/h
+};
+
+/// A unit: value * factor + offset is in the unit that CsvDimension names.
+struct CsvUnit {
+  std::string_view name;  ///< of static storage duration
+  double factor = 1.0;
+  double offset = 0.0;
+};
+
+/// The unit that a text is, whatever its case and punctuation ("km/h", "[m s-1]", "degC", "0.1 m/s"); nothing where it
+/// is no unit of this dimension. Thread-safe: yes.
+std::optional<CsvUnit> find_unit(CsvDimension dimension, std::string_view text);
+
+/// The unit of speed that a text is.
+inline std::optional<CsvUnit> find_speed_unit(std::string_view text) {
+  return find_unit(CsvDimension::kSpeed, text);
+}
+
+/// The unit that is taken where nothing says one: the dimension's own.
+CsvUnit base_unit(CsvDimension dimension);
+
+}  // namespace yuragi::daemon::tools::csv

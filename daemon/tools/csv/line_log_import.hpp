@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/tools/csv/csv_import.hpp"
+#include "daemon/tools/csv/csv_options.hpp"
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi::daemon::tools::csv {
+
+struct LineLogOptions {
+  CsvTimeFormat time_format = CsvTimeFormat::kAuto;
+  std::optional<CsvZone> zone;          ///< of times that name none; empty: UTC
+  std::optional<UtcTime> start;         ///< of the first reading, where the log has no times
+  std::optional<Nanoseconds> interval;  ///< from one reading to the next, where the log has no times
+  std::string sentence;                 ///< take this one ("MWD"); empty: the best that the log has
+  std::string sensor = "imported";
+  bool strict = false;
+};
+
+/// Do the first lines of a file look like a log of messages (NMEA 0183, Gill, FT, UMB, keys), and not like a table?
+bool looks_like_line_log(const std::vector<std::string>& lines);
+
+/// Reads a log of an anemometer's messages, one a line: each reading has the time that the logger wrote before it, or
+/// the one that the log's own RMC, ZDA, GLL or GGA said last, or `start` and a number of `interval`s. A device says one
+/// measurement in several sentences: one of them is taken, of those that it says often the one whose angle is from
+/// north.
+///
+/// Fails, with the option that helps, where no line has a wind, and where nothing says the time. Otherwise as
+/// import_csv().
+Result<CsvImportReport, Failure> import_line_log(CsvInput& input, const std::string& name,
+                                                 const LineLogOptions& options, const CsvSinks& sinks);
+
+}  // namespace yuragi::daemon::tools::csv

@@ -1,0 +1,102 @@
+#include "daemon/tools/csv/line_log_time.hpp"
+
+#include <chrono>
+#include <string>
+
+#include "daemon/tools/csv/csv_words.hpp"
+#include "drivers/decode/text_fields.hpp"
+
+namespace yuragi::daemon::tools::csv {
+namespace {
+
+namespace decode = drivers::decode;
+
+/// hhmmss, with or without a fraction.
+std::optional<Nanoseconds> time_of_day_in(std::string_view field) {
+  if (field.size() < 6) return std::nullopt;
+  const std::string text = "2000-01-01 " + std::string(field.substr(0, 2)) + ":" + std::string(field.substr(2, 2)) +
+                           ":" + std::string(field.substr(4));
+  const auto time = parse_time(text, CsvTimeFormat::kIso);
+  constexpr std::chrono::sys_days kDay = std::chrono::year(2000) / 1 / 1;
+  if (!time || time->utc_offset) return std::nullopt;
+  return time->clock - UtcTime(kDay);
+}
+
+std::optional<std::chrono::sys_days> day_in(std::string_view day, std::string_view month, std::string_view year) {
+  const auto time =
+      parse_time(std::string(day) + "/" + std::string(month) + "/" + std::string(year), CsvTimeFormat::kDayFirst);
+  if (!time) return std::nullopt;
+  return std::chrono::floor<std::chrono::days>(time->clock);
+}
+
+/// The field "c" of a tag block: seconds since 1970, or milliseconds.
+std::optional<CsvTime> tag_block_time(std::string_view prefix) {
+  for (const std::string_view key : {"\\c:", ",c:"}) {
+    const auto at = prefix.find(key);
+    if (at == std::string_view::npos) continue;
+    const std::string_view rest = prefix.substr(at + key.size());
+    const std::string_view number = rest.substr(0, rest.find_first_not_of("0123456789"));
+    if (const auto format = guess_count_format(number)) return parse_time(number, *format);
+  }
+  return std::nullopt;
+}
+
+std::optional<CsvTime> time_in(std::string_view text, CsvTimeFormat format) {
+  if (format != CsvTimeFormat::kAuto) return parse_time(text, format);
+  if (const auto compact = parse_time(text, CsvTimeFormat::kCompact); compact && text.size() >= 12) return compact;
+  if (const auto count = guess_count_format(text)) {
+    return *count == CsvTimeFormat::kSeconds ? std::nullopt : parse_time(text, *count);
+  }
+  return parse_time(text, CsvTimeFormat::kIso);
+}
+
+}  // namespace
+
+bool NmeaClock::take(std::string_view line) {
+  const auto sentence = decode::sentence_of(line, decode::WhenMissing::kAccept);
+  if (!sentence || sentence->size() < 6) return false;
+  const decode::TextFields fields = decode::split_fields(*sentence, ',');
+  const std::string_view name = fields[0].size() >= 3 ? fields[0].substr(fields[0].size() - 3) : std::string_view();
+  std::string_view time = fields[1];
+  if (name == "RMC") {
+    if (fields[2] != "A" || fields[9].size() != 6) return false;
+    day_ = day_in(fields[9].substr(0, 2), fields[9].substr(2, 2), fields[9].substr(4, 2));
+  } else if (name == "ZDA") {
+    day_ = day_in(fields[2], fields[3], fields[4]);
+  } else if (name == "GLL") {
+    time = fields[5];
+  } else if (name != "GGA") {
+    return false;
+  }
+  const auto time_of_day = time_of_day_in(time);
+  return day_ && time_of_day && set_time_of_day(*time_of_day);
+}
+
+bool NmeaClock::set_time_of_day(Nanoseconds time_of_day) {
+  // A time alone, shortly after midnight, is of the next day.
+  constexpr Nanoseconds kHalfDay = std::chrono::hours(12);
+  UtcTime time = UtcTime(*day_) + time_of_day;
+  if (now_ && *now_ - time > kHalfDay && *now_ - time < 2 * kHalfDay) {
+    *day_ += std::chrono::days(1);
+    time += 2 * kHalfDay;
+  }
+  now_ = time;
+  return true;
+}
+
+std::optional<CsvTime> leading_time(std::string_view prefix, CsvTimeFormat format) {
+  if (const auto time = tag_block_time(prefix)) return time;
+  constexpr std::string_view kAround = " \t,;|>[](){}\"'\x02";
+  const auto begin = prefix.find_first_not_of(kAround);
+  if (begin == std::string_view::npos) return std::nullopt;
+  prefix = prefix.substr(begin, prefix.find_last_not_of(kAround) - begin + 1);
+  if (const auto time = time_in(prefix, format)) return time;
+  // Behind the time may stand more: a port, a priority.
+  for (const char separator : {';', ',', '\t', ']', ')'}) {
+    const std::string_view first = without_blanks(prefix.substr(0, prefix.find(separator)));
+    if (const auto time = time_in(first, format)) return time;
+  }
+  return std::nullopt;
+}
+
+}  // namespace yuragi::daemon::tools::csv

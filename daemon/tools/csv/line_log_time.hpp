@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "daemon/tools/csv/csv_time.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi::daemon::tools::csv {
+
+/// The clock that a log of NMEA 0183 has in itself: RMC and ZDA say date and time, GLL and GGA the time of the day of
+/// the last date. Source: gpsd www/NMEA.adoc. Thread-safe: no.
+class NmeaClock {
+ public:
+  /// Takes a line, whatever it is; true where it set the clock.
+  bool take(std::string_view line);
+  /// The last time that was said; nothing before the first date.
+  std::optional<UtcTime> now() const { return now_; }
+
+ private:
+  bool set_time_of_day(Nanoseconds time_of_day);
+
+  std::optional<std::chrono::sys_days> day_;
+  std::optional<UtcTime> now_;
+};
+
+/// The time that a logger wrote before a message: "2023-06-25 22:00:00.5,", "[1687730400.25] ", "1687730400153;A;", or
+/// the "c:" of an NMEA 4 tag block. Nothing where it is no time with a date. `format`: kAuto takes ISO 8601, digits and
+/// Unix times, but no dates of which day and month could be either.
+std::optional<CsvTime> leading_time(std::string_view prefix, CsvTimeFormat format);
+
+}  // namespace yuragi::daemon::tools::csv

@@ -1,0 +1,117 @@
+// The console of a Davis Vantage Pro, Vantage Pro2 or Vantage Vue, by its data logger: WeatherLink for RS-232 or USB
+// (which is a serial port), WeatherLinkIP (TCP, port 22222), or a serial port that a server in the network has. Its
+// dialogue: Davis, "Vantage Pro, Vantage Pro2 and Vantage Vue Serial Communication Reference Manual" 2.6.1, chapters V,
+// VII and VIII; drivers/SOURCES.md S10.1.
+//
+//   request                 reply                         for
+//   LF                      LF CR                         waking it, and ending its packets; up to 3 times, 1.2 s apart
+//   "EEBRD 2B 01" LF        ACK, a byte, its checksum     its rain collector
+//   "LPS 2 n" LF            ACK, n packets LOOP2          one each 2 to 2.5 s
+//   "LOOP n" LF             ACK, n packets LOOP           the same, of consoles with firmware before 1.90
+#include <array>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/bus/serial_ports.hpp"
+#include "drivers/davis/vantage_sensor.hpp"
+#include "drivers/sensor/driver.hpp"
+
+namespace yuragi::drivers::davis {
+namespace {
+
+constexpr std::array<std::string_view, 2> kDavisTransports = {"serial", "tcp"};
+constexpr std::array<std::string_view, 3> kDavisPackets = {"auto", "loop", "loop2"};
+
+const std::array kDavisParameters = {
+    Parameter{.name = "transport",
+              .unit = "",
+              .default_value = std::string("serial"),
+              .help = "serial: the logger's serial port or USB; tcp: a WeatherLinkIP, or a serial port in the network",
+              .choices = kDavisTransports},
+    Parameter{.name = "device",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
+    Parameter{.name = "baud",
+              .unit = "bit/s",
+              .default_value = std::int64_t{19200},
+              .min = 1200,
+              .max = 19200,
+              .help = "serial: as set in the console; 8 data bits, no parity, 1 stop bit"},
+    Parameter{.name = "host",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "tcp: name or address; one program at a time can be connected to a WeatherLinkIP"},
+    Parameter{.name = "port",
+              .unit = "",
+              .default_value = std::int64_t{22222},
+              .min = 1,
+              .max = 65535,
+              .help = "tcp: 22222 is a WeatherLinkIP's"},
+    Parameter{.name = "packets",
+              .unit = "",
+              .default_value = std::string("auto"),
+              .help = "loop2: with the strongest gust of 10 minutes; loop: without, for firmware before 1.90; auto: "
+                      "loop2, or loop where the console does not know it. Speeds are whole miles per hour",
+              .choices = kDavisPackets},
+};
+
+}  // namespace
+
+VantageSettings vantage_settings_of(const ParameterValues& values) {
+  VantageSettings settings;
+  bus::BytePortAddress& address = settings.address;
+  address.baud = static_cast<int>(values.integer("baud"));
+  address.path = values.text("device");
+  address.host = values.text("host");
+  address.port = static_cast<std::uint16_t>(values.integer("port"));
+  if (values.text("transport") == "tcp") {
+    address.kind = bus::BytePortKind::kTcpClient;
+    if (address.host.empty()) throw std::runtime_error("host: is missing; transport tcp needs a server to connect to");
+  } else {
+    if (address.path.empty())
+      throw std::runtime_error("device: is missing; transport serial needs a port, such as /dev/ttyUSB0");
+    if (std::ranges::find(bus::kBytePortBauds, address.baud) == bus::kBytePortBauds.end())
+      throw std::runtime_error(fmt::format("baud: is {}; allowed: 1200, 2400, 4800, 9600, 19200", address.baud));
+  }
+  const std::string& packets = values.text("packets");
+  settings.packets = packets == "loop"    ? VantagePackets::kLoop
+                     : packets == "loop2" ? VantagePackets::kLoop2
+                                          : VantagePackets::kAuto;
+  return settings;
+}
+
+namespace {
+
+std::unique_ptr<sensor::Sensor> open_davis(const ParameterValues& values) {
+  const VantageSettings settings = vantage_settings_of(values);
+  return std::make_unique<VantageSensor>(settings, bus::make_byte_port(settings.address));
+}
+
+std::vector<sensor::FoundDevice> find_davis() {
+  std::vector<sensor::FoundDevice> found;
+  for (const bus::SerialPortInfo& port : bus::find_serial_ports()) {
+    found.push_back({.what = "serial port " + port.node,
+                     .settings = fmt::format("device = \"{}\"", port.name),
+                     .trouble = port.trouble,
+                     .remedy = port.remedy});
+  }
+  return found;
+}
+
+}  // namespace
+
+extern const sensor::DriverDescription kDavisDriver;
+const sensor::DriverDescription kDavisDriver{
+    .name = "davis",
+    .summary = "Davis Vantage Pro, Vantage Pro2 and Vantage Vue, by the data logger of their console",
+    .parameters = kDavisParameters,
+    .open = open_davis,
+    .find = find_davis,
+    .claims = [](const ParameterValues& values) {
+      return sensor::claims_of(bus::sole_device_of(vantage_settings_of(values).address));
+    }};
+
+}  // namespace yuragi::drivers::davis

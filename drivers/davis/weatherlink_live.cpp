@@ -1,0 +1,71 @@
+// The WeatherLink Live of Davis stations, in the local network: Davis, "WeatherLink Live Local API"; drivers/SOURCES.md
+// S10.2.
+//
+//   GET /v1/current_conditions         all that its stations say; at most every 10 s
+//   GET /v1/real_time?duration=300    the wind every 2.5 s for so many seconds, broadcast to UDP port 22222
+#include <array>
+#include <stdexcept>
+
+#include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/davis/weatherlink_live_sensor.hpp"
+#include "drivers/sensor/driver.hpp"
+
+namespace yuragi::drivers::davis {
+namespace {
+
+const std::array kWeatherLinkLiveParameters = {
+    Parameter{.name = "host",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "name or address of the WeatherLink Live; broadcasts come only from one in the same network"},
+    Parameter{.name = "http_port",
+              .unit = "",
+              .default_value = std::int64_t{80},
+              .min = 1,
+              .max = 65535,
+              .help = "its port for HTTP"},
+    Parameter{.name = "port",
+              .unit = "",
+              .default_value = std::int64_t{22222},
+              .min = 1,
+              .max = 65535,
+              .help = "the UDP port that it broadcasts to; without broadcasts there is a wind every 10 s only"},
+    Parameter{.name = "transmitter",
+              .unit = "",
+              .default_value = std::int64_t{0},
+              .min = 0,
+              .max = 8,
+              .help = "the station's id, 1 to 8, as set on it; 0: the first that has a wind"},
+};
+
+std::unique_ptr<sensor::Sensor> open_weatherlink_live(const ParameterValues& values) {
+  const WeatherLinkLiveSettings settings = weatherlink_live_settings_of(values);
+  return std::make_unique<WeatherLinkLiveSensor>(settings, bus::make_byte_port(settings.http),
+                                                 bus::make_byte_port(settings.broadcasts));
+}
+
+}  // namespace
+
+WeatherLinkLiveSettings weatherlink_live_settings_of(const ParameterValues& values) {
+  WeatherLinkLiveSettings settings;
+  settings.http.kind = bus::BytePortKind::kTcpClient;
+  settings.http.host = values.text("host");
+  settings.http.port = static_cast<std::uint16_t>(values.integer("http_port"));
+  if (settings.http.host.empty()) throw std::runtime_error("host: is missing; give the WeatherLink Live's address");
+  settings.broadcasts.kind = bus::BytePortKind::kUdp;
+  settings.broadcasts.port = static_cast<std::uint16_t>(values.integer("port"));
+  settings.transmitter = static_cast<int>(values.integer("transmitter"));
+  return settings;
+}
+
+extern const sensor::DriverDescription kWeatherLinkLiveDriver;
+const sensor::DriverDescription kWeatherLinkLiveDriver{
+    .name = "weatherlink",
+    .summary = "the WeatherLink Live of Davis stations, over the local network",
+    .parameters = kWeatherLinkLiveParameters,
+    .open = open_weatherlink_live,
+    .claims = [](const ParameterValues& values) {
+      return sensor::claims_of(bus::sole_device_of(weatherlink_live_settings_of(values).broadcasts));
+    }};
+
+}  // namespace yuragi::drivers::davis

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/bus/mqtt_client.hpp"
+#include "drivers/sensor/found_device.hpp"
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi::drivers::mqtt {
+
+/// A broker that is searched, and how a sensor's table says to reach it.
+struct BrokerSearch {
+  bus::MqttSubscription broker;                 ///< but for the topics
+  std::string settings;                         ///< the lines of TOML that say the same
+  std::string prefix = "homeassistant";         ///< of the announcements' topics
+  Nanoseconds pause = std::chrono::seconds(1);  ///< it has ended when the broker has sent nothing for so long
+};
+
+/// The anemometers that publishers announce on the broker by Home Assistant's discovery (home_assistant.hpp).
+/// Announcements are retained: the broker sends all that it has at once. At most 64 MiB of them, or 30 s, are read. The
+/// failure's text: why the broker cannot be asked, and what to do.
+Result<std::vector<sensor::FoundDevice>, Failure> find_announced(const BrokerSearch& search);
+
+}  // namespace yuragi::drivers::mqtt

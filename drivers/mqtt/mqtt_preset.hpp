@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "drivers/mqtt/mqtt_payload.hpp"
+#include "engine/wind/station_quantities.hpp"
+
+namespace yuragi::drivers::mqtt {
+
+/// One place in the messages of a publisher where a quantity can stand.
+struct PresetPlace {
+  std::string_view pointer;  ///< a JSON pointer
+  std::string_view unit;     ///< of a speed, as its key says it; empty: as in MqttPreset::unit
+};
+
+/// What is known of a publisher: where it says the wind, and in which unit. Of several places for one quantity the
+/// first that a message has counts.
+struct MqttPreset {
+  std::string_view name;
+  std::string_view topic;  ///< empty: it is up to the user
+  std::span<const PresetPlace> speed = {};
+  std::span<const PresetPlace> direction = {};
+  std::span<const PresetPlace> gust = {};
+  std::string_view unit;               ///< of speed and gust, where neither their key nor the message says it
+  std::string_view unit_pointer = {};  ///< where a message says the unit; empty: nowhere
+  bool names_stations = false;         ///< a message says which of several stations sent it (StationIdentity)
+  /// What a message says besides the wind; nullptr: nothing is known of that.
+  std::optional<wind::StationQuantities> (*quantities)(const Payload& payload) = nullptr;
+};
+
+inline constexpr std::array<std::string_view, 4> kMqttPresetNames = {"number", "tasmota", "rtl_433", "windnerd"};
+
+/// The preset of one of kMqttPresetNames.
+const MqttPreset& mqtt_preset_of(std::string_view name) noexcept;
+
+/// The one of sensor::kSpeedUnitNames that publishers write so: mi/h for mph, kt for kn, and the like; empty for any
+/// other word. Thread-safe and realtime-safe: yes.
+std::string_view speed_unit_of_word(std::string_view word) noexcept;
+
+/// The factor to m/s of a unit as publishers write it: one of those, or yd/s; nothing for any other word. Thread-safe
+/// and realtime-safe: yes.
+std::optional<double> metres_per_second_of_word(std::string_view word) noexcept;
+
+}  // namespace yuragi::drivers::mqtt

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "drivers/mqtt/mqtt_payload.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi::drivers::mqtt {
+
+/// Which station sent a message, as rtl_433 says it (merbanan/rtl_433, its document of data fields): numbers as text.
+/// Empty: not told, or, where a station is looked for, any. The id of many stations changes with their batteries.
+struct StationIdentity {
+  std::string model;    ///< "Acurite-5n1"
+  std::string id;       ///< "115", "0a003b"
+  std::string channel;  ///< "A", "1"
+
+  bool operator==(const StationIdentity&) const = default;
+
+  bool is_empty() const noexcept { return model.empty() && id.empty() && channel.empty(); }
+  /// Is `other` one of those that this one stands for?
+  bool covers(const StationIdentity& other) const noexcept;
+};
+
+/// /model, /id and /channel of a message.
+StationIdentity station_of(const Payload& payload);
+
+/// "Acurite-5n1, id 115, channel A". Each of the three is shown up to 40 characters, printable.
+std::string describe(const StationIdentity& station);
+
+/// Which of several stations on one topic is read: the first that is heard, until it has been silent for a given time
+/// and another is heard. So two winds are never mixed.
+class StationChoice {
+ public:
+  /// `patience`: how long the station that is read may be silent before another takes its place.
+  explicit StationChoice(Nanoseconds patience) : patience_(patience) {}
+
+  /// A message with wind of `station` has come. Is it the one that is read?
+  bool offer(const StationIdentity& station, MonoTime now);
+  /// Is it the one that is read?
+  bool is_read(const StationIdentity& station) const noexcept { return read_ == station; }
+  /// The connection was opened again: it begins anew.
+  void restart() noexcept;
+
+  /// What a person should know: another station has been heard within that time; empty: none has.
+  std::string warning(MonoTime now) const;
+
+ private:
+  Nanoseconds patience_;
+  std::optional<StationIdentity> read_;
+  MonoTime read_at_{};
+  std::optional<StationIdentity> other_;  // the last one that is not read
+  MonoTime other_at_{};
+};
+
+}  // namespace yuragi::drivers::mqtt

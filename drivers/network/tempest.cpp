@@ -1,0 +1,252 @@
+// The stations of WeatherFlow (Tempest; Sky before it), whose hub broadcasts what they say in the local network
+// (WeatherFlow, "Tempest UDP Reference", v171; drivers/SOURCES.md S9.1). Nothing is asked for and nothing is sent.
+//
+// The wind is that of `rapid_wind`, usually every 3 s: every 6 s, minute or 5 minutes where the station saves its
+// battery. A station that says none between two of its observations (each minute) gives the mean wind of those.
+#include "drivers/decode/network/tempest.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/bus/sender_filter.hpp"
+#include "drivers/network/tempest_stations.hpp"
+#include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/reading_limit.hpp"
+#include "drivers/sensor/reopening_sensor.hpp"
+
+namespace yuragi::drivers::network {
+namespace {
+
+using decode::network::TempestKind;
+using decode::network::TempestMessage;
+
+/// A look at the clock at least so often.
+constexpr Nanoseconds kTempestWait = std::chrono::milliseconds(250);
+/// So many of its usual pauses are silence.
+constexpr int kSilentPauses = 5;
+
+const std::array kTempestParameters = {
+    Parameter{.name = "serial_number",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "the station, as it says on it: ST-00000512 (Tempest), SK-00008453 (Sky); empty: the first one "
+                      "that is heard, with a warning while there are others"},
+    Parameter{.name = "port",
+              .unit = "",
+              .default_value = std::int64_t{50222},
+              .min = 1,
+              .max = 65535,
+              .help = "the UDP port that hubs broadcast to; other programs on this machine may listen there, too"},
+    Parameter{.name = "host",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "the local address to listen at; empty: all, which broadcasts need"},
+    Parameter{.name = "from",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "the hubs that are heard: addresses and nets (192.168.1.20, 10.0.0.0/8) separated by commas; "
+                      "empty: any; at most 100 readings a second are taken"},
+    Parameter{
+        .name = "silence",
+        .unit = "s",
+        .default_value = 60.0,
+        .min = 0.1,
+        .max = 86400.0,
+        .help = "without wind for this long, and for five times its usual interval, the station counts as silent"},
+};
+
+struct TempestSettings {
+  bus::BytePortAddress port{.kind = bus::BytePortKind::kUdp, .is_port_shared = true};
+  std::string serial_number;
+  Nanoseconds silence = std::chrono::seconds(60);
+};
+
+class TempestSensor final : public sensor::ReopeningSensor {
+ public:
+  explicit TempestSensor(TempestSettings settings)
+      : sensor::ReopeningSensor(sensor::seed_of("tempest" + settings.serial_number)),
+        settings_(std::move(settings)),
+        where_(describe(settings_.port)),
+        port_(bus::make_byte_port(settings_.port)),
+        stations_(settings_.serial_number) {}
+
+  void interrupt() noexcept override { port_->interrupt(); }
+
+ protected:
+  Result<MonoTime, Failure> open(const sensor::Clock& clock) override {
+    if (const auto opened = port_->open(); !opened) return opened.error();
+    is_silent_ = true;
+    has_read_ = false;
+    hub_.clear();
+    last_pauses_ = {};
+    since_ = clock.now().mono;
+    return since_;
+  }
+
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
+    const bus::ByteArrival arrival = port_->read(buffer_, kTempestWait);
+    if (arrival.overrun > 0) sink.refused(decode::Refusal::kOverrun, arrival.overrun);
+    const Instant now = clock.now();
+    if (arrival.status == bus::ByteStatus::kInterrupted) return Failure{"interrupted"};
+    if (arrival.status == bus::ByteStatus::kLost || arrival.status == bus::ByteStatus::kEnd)
+      return Failure{"lost " + where_};
+    if (arrival.status == bus::ByteStatus::kForeign) sink.refused(decode::Refusal::kNotMine);
+    if (arrival.status == bus::ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
+
+    if (now.mono - since_ >= silence_limit()) {
+      is_silent_ = true;
+      stations_.lose();
+    }
+    if (is_silent_) report_unusable(sink, trouble(now.mono));
+    return now.mono;
+  }
+
+  void close() noexcept override { port_->close(); }
+
+ private:
+  void take_datagram(std::span<const std::uint8_t> datagram, const Instant& now, sensor::SensorSink& sink) {
+    sink.raw(sensor::RawDirection::kReceived, datagram);
+    const auto message =
+        decode::network::decode_tempest({reinterpret_cast<const char*>(datagram.data()), datagram.size()});
+    if (!message) return sink.refused(message.error());
+    hub_ = message->hub_serial_number;
+    hub_heard_at_ = now.mono;
+    if (message->kind == TempestKind::kOther) return sink.refused(decode::Refusal::kNotMine);
+    if (!stations_.hears(message->serial_number, now.mono)) {
+      other_ = message->serial_number;
+      return sink.refused(decode::Refusal::kNotMine);
+    }
+    if (!is_new(*message)) return;
+    if (message->kind == TempestKind::kObservation) {
+      wind::StationQuantities said = message->quantities;
+      said.time = now;
+      sink.quantities(said);
+    }
+    if (!message->wind) return sink.refused(message->wind.error());
+    if (is_wind(message->kind)) publish(*message, now, sink);
+  }
+
+  /// A machine with two interfaces in the hub's network hears everything twice.
+  bool is_new(const TempestMessage& message) {
+    std::int64_t& last_s = message.kind == TempestKind::kRapidWind ? last_rapid_wind_s_ : last_observation_s_;
+    return std::exchange(last_s, message.time_s) != message.time_s;
+  }
+
+  /// Is it to be published as the wind? An observation is where no rapid wind has come since the one before.
+  bool is_wind(TempestKind kind) {
+    if (kind == TempestKind::kRapidWind) {
+      rapid_winds_are_missing_ = false;
+      return true;
+    }
+    return std::exchange(rapid_winds_are_missing_, true);
+  }
+
+  void publish(const TempestMessage& message, const Instant& now, sensor::SensorSink& sink) {
+    if (!limit_.admits(now.mono)) return sink.refused(decode::Refusal::kTooFrequent);
+    if (has_read_) last_pauses_ = {last_pauses_[1], now.mono - since_};
+    has_read_ = true;
+    is_silent_ = false;
+    since_ = now.mono;
+    report_connected(sink, fmt::format("station {} of hub {} at {}{}", message.serial_number, hub_, where_,
+                                       stations_.warning(now.mono)));
+    sink.reading({.time = now,
+                  .speed_m_s = *message.wind->speed_m_s,
+                  .direction_deg = message.wind->direction_deg,
+                  .gust_m_s = message.wind->gust_m_s,
+                  .quality = wind::ReadingQuality::kGood});
+  }
+
+  /// The smaller one of two pauses: one message that is lost is not the usual interval.
+  Nanoseconds silence_limit() const {
+    return std::max(settings_.silence, kSilentPauses * std::min(last_pauses_[0], last_pauses_[1]));
+  }
+
+  /// Why there is no wind.
+  std::string trouble(MonoTime now) const {
+    const bool has_waited = now - since_ >= settings_.silence;
+    const std::string station = settings_.serial_number.empty() ? "a station" : settings_.serial_number;
+    if (!hub_.empty() && now - hub_heard_at_ < std::max(settings_.silence, kHubPatience)) {
+      if (!settings_.serial_number.empty() && !other_.empty())
+        return fmt::format(
+            "hears hub {} and station {} at {}, but not {}: check serial_number, and that station's "
+            "battery",
+            hub_, other_, where_, station);
+      return fmt::format("hears hub {} at {}, but no wind of {}{}", hub_, where_, station,
+                         has_waited ? ": check the station's battery, and that the hub is within its reach" : " yet");
+    }
+    if (!has_waited) return fmt::format("waits for a hub's broadcasts at {}", where_);
+    return fmt::format(
+        "no hub has been heard at {} for {:g} s: check that it is on, that it is in this network, and "
+        "that no firewall stops UDP port {}",
+        where_, seconds(settings_.silence), settings_.port.port);
+  }
+
+  /// A hub tells its own state every 10 s.
+  static constexpr Nanoseconds kHubPatience = std::chrono::seconds(30);
+
+  TempestSettings settings_;
+  std::string where_;
+  std::unique_ptr<bus::BytePort> port_;
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kLargestDatagram);
+  sensor::ReadingLimit limit_;
+  TempestStations stations_;
+  std::string hub_;    // that was heard last; empty: none
+  std::string other_;  // a station that is not followed; empty: none
+  MonoTime hub_heard_at_{};
+  MonoTime since_{};  // the last reading, or since when there could have been one
+  bool is_silent_ = true;
+  bool has_read_ = false;                     // since it has the port
+  std::array<Nanoseconds, 2> last_pauses_{};  // between readings
+  std::int64_t last_rapid_wind_s_ = 0;        // by the hub's clock
+  std::int64_t last_observation_s_ = 0;
+  bool rapid_winds_are_missing_ = false;  // since the last observation
+};
+
+TempestSettings tempest_settings_of(const ParameterValues& values) {
+  TempestSettings settings;
+  settings.port.host = values.text("host");
+  settings.port.port = static_cast<std::uint16_t>(values.integer("port"));
+  settings.port.senders = values.text("from");
+  settings.serial_number = values.text("serial_number");
+  settings.silence = from_seconds(values.number("silence"));
+  return settings;
+}
+
+std::unique_ptr<sensor::Sensor> open_tempest(const ParameterValues& values) {
+  TempestSettings settings = tempest_settings_of(values);
+  if (const auto filter = bus::SenderFilter::parse(settings.port.senders); !filter)
+    throw std::runtime_error("from: " + filter.error().message);
+  if (const std::string& host = settings.port.host; !host.empty()) {
+    if (const auto address = bus::is_loopback(host); !address)
+      throw std::runtime_error("host: " + address.error().message);
+  }
+  return std::make_unique<TempestSensor>(std::move(settings));
+}
+
+/// Sensors of different stations share the port. One that may follow any station has it to itself among ours, so that
+/// no station counts twice.
+std::vector<sensor::DeviceClaim> tempest_claims(const ParameterValues& values) {
+  const TempestSettings settings = tempest_settings_of(values);
+  const std::string port = fmt::format("UDP port {}", settings.port.port);
+  if (settings.serial_number.empty()) return {{.device = port}};
+  return {{.device = port, .is_shared = true},
+          {.device = fmt::format("station {} at {}", settings.serial_number, port)}};
+}
+
+}  // namespace
+
+extern const sensor::DriverDescription kTempestDriver;
+const sensor::DriverDescription kTempestDriver{
+    .name = "tempest",
+    .summary = "weather stations of WeatherFlow (Tempest, Sky), by their hub's broadcasts in the local network",
+    .parameters = kTempestParameters,
+    .open = open_tempest,
+    .claims = tempest_claims};
+
+}  // namespace yuragi::drivers::network

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace yuragi::wind::blend {
+
+/// How often a source says something new, from the gaps between its readings (engine/wind/README.md W38).
+///
+/// A station that speaks regularly has the median of its last nine gaps. One that speaks in bursts (it repeats each
+/// message, or sends several at once, or has two rates in turn) would be taken for a quick one by that: what lies
+/// between its bursts counts. It speaks in bursts where at least a quarter of the last 16 gaps are shorter than a
+/// quarter of its usual pause; the usual pause is the gap that half of the time, but for the longest gap, is spent in
+/// gaps up to. So one outage is no pause, and every pattern that comes again within 16 readings is known.
+///
+/// A source that speaks on change only says something new where its reading is another one; its interval is the median
+/// of the last nine times from one change to the next.
+///
+/// Thread-safe: no. Realtime-safe: yes; no allocation.
+class ReadingInterval {
+ public:
+  enum class Speaks : bool { kAtIntervals, kOnChange };
+
+  explicit ReadingInterval(Speaks speaks = Speaks::kAtIntervals) noexcept : speaks_(speaks) {}
+
+  /// Takes a reading but the first, which came `gap_s` (0 or more) after the one before. `is_same`: with the same
+  /// values. Returns whether it is a new one: false for a repetition, or another one of the same burst.
+  bool take(double gap_s, bool is_same) noexcept;
+
+  /// s; 0 before the second reading.
+  double interval_s() const noexcept { return interval_s_; }
+
+  /// Is the interval known well? Not while all that has been said at it is the same few readings, which may be one
+  /// message of a station that repeats each.
+  bool is_settled() const noexcept { return is_settled_; }
+
+ private:
+  static constexpr std::size_t kKept = 16;
+
+  bool take_change(double gap_s, bool is_same) noexcept;
+  std::size_t count() const noexcept { return seen_ < kKept ? seen_ : kKept; }
+  double median_s() const noexcept;
+  void measure() noexcept;
+
+  Speaks speaks_;
+  std::array<double, kKept> gaps_s_{};  ///< a ring of those above 0
+  std::size_t seen_ = 0;
+  double interval_s_ = 0.0;
+  bool is_in_bursts_ = false;
+  bool is_settled_ = false;
+  double since_new_s_ = 0.0;       ///< from the last new reading to the last one
+  double soonest_change_s_ = 0.0;  ///< the shortest gap in which the reading changed; 0: none did
+};
+
+}  // namespace yuragi::wind::blend

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <random>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulators/played_wind.hpp"
+#include "simulators/simulator.hpp"
+#include "simulators/text/text_wire.hpp"
+
+namespace yuragi::simulators::davis {
+
+struct WeatherLinkLiveOptions {
+  double interval_s = 2.5;               ///< from broadcast to broadcast
+  std::uint16_t broadcast_port = 22222;  ///< what it says that they go to
+  std::uint64_t garbage_seed = 1;
+};
+
+/// A WeatherLink Live with one station, transmitter 1, as the maker's "WeatherLink Live Local API" has it: a server of
+/// HTTP, which replies with current conditions, and is asked there for broadcasts, which end by themselves.
+class WeatherLinkLive final : public Simulator {
+ public:
+  WeatherLinkLive(std::unique_ptr<text::TextWire> http, std::unique_ptr<text::TextWire> broadcasts,
+                  const WeatherLinkLiveOptions& options, MeasuredWind wind);
+
+  const text::TextWire& http() const noexcept { return *http_; }
+  /// How often it was asked for broadcasts.
+  int broadcast_requests() const noexcept { return broadcast_requests_; }
+  /// How long after the start its broadcasts end.
+  double broadcasts_until_s() const noexcept { return broadcasts_until_s_; }
+
+  std::span<const FaultKind> known_faults() const override { return known_faults_; }
+  std::vector<int> descriptors() const override { return http_->descriptors(); }
+  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  std::string status() const override;
+
+ private:
+  void obey(std::string_view request, double time_s, std::optional<FaultKind> fault);
+  void broadcast(double time_s, std::optional<FaultKind> fault);
+  std::string conditions(bool is_broadcast) const;
+  void reply(int status, const std::string& body, double time_s, std::optional<FaultKind> fault);
+  std::string garbage();
+
+  /// Bytes that wait for their moment.
+  struct Waiting {
+    double time_s;
+    std::string bytes;
+  };
+
+  std::unique_ptr<text::TextWire> http_;
+  std::unique_ptr<text::TextWire> broadcasts_;
+  WeatherLinkLiveOptions options_;
+  MeasuredWind wind_;
+  std::mt19937_64 random_;
+  std::vector<FaultKind> known_faults_;
+  std::string received_;
+  std::deque<Waiting> waiting_;
+  double broadcasts_until_s_ = 0.0;
+  double next_broadcast_s_ = 0.0;
+  int broadcast_requests_ = 0;
+  PlayedMoment moment_;
+  std::uint64_t sent_ = 0;
+  std::optional<FaultKind> fault_;
+};
+
+}  // namespace yuragi::simulators::davis

@@ -1,0 +1,46 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "simulators/commands.hpp"
+#include "simulators/common_options.hpp"
+#include "simulators/davis/weatherlink_live.hpp"
+
+namespace yuragi::simulators::davis {
+namespace {
+
+struct LiveOptions {
+  std::string tcp;
+  std::string udp = "127.0.0.1:22222";
+  WeatherLinkLiveOptions live;
+  CommonOptions common;
+
+  void run() const {
+    const Address http = address_option("--tcp", tcp);
+    const Address broadcasts = address_option("--udp", udp);
+    WeatherLinkLiveOptions made = live;
+    made.broadcast_port = broadcasts.port;
+    made.garbage_seed = common.synthetic.seed;
+    WeatherLinkLive simulator(text::make_tcp_wire(http.host, http.port),
+                              text::make_udp_wire(broadcasts.host, broadcasts.port), made, common.make_wind());
+    std::printf("%s\n", simulator.http().place().c_str());
+    std::fflush(stdout);
+    common.run_simulator(simulator);
+  }
+};
+
+}  // namespace
+
+void add_weatherlink_live_command(CLI::App& app) {
+  auto options = std::make_shared<LiveOptions>();
+  CLI::App* command = app.add_subcommand("weatherlink-live", "Davis WeatherLink Live: HTTP, and broadcasts by UDP");
+  command->add_option("--tcp", options->tcp, "where it serves HTTP, HOST:PORT; port 0 takes a free one")->required();
+  command->add_option("--udp", options->udp, "where its broadcasts go, HOST:PORT")->capture_default_str();
+  command->add_option("--interval", options->live.interval_s, "seconds from broadcast to broadcast")
+      ->check(CLI::Range(0.05, 60.0))
+      ->capture_default_str();
+  options->common.add_to(*command);
+  command->callback([options] { options->run(); });
+}
+
+}  // namespace yuragi::simulators::davis

@@ -1,0 +1,48 @@
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "simulators/commands.hpp"
+#include "simulators/common_options.hpp"
+#include "simulators/network/ecowitt_simulator.hpp"
+
+namespace yuragi::simulators::network {
+namespace {
+
+struct EcowittCommand {
+  std::string tcp = "127.0.0.1:45000";
+  EcowittOptions ecowitt;
+  CommonOptions common;
+};
+
+void simulate_ecowitt(EcowittCommand& command) {
+  const Address address = address_option("--tcp", command.tcp);
+  command.ecowitt.host = address.host;
+  command.ecowitt.port = address.port;
+  command.ecowitt.seed = command.common.synthetic.seed;
+  EcowittSimulator simulator(command.ecowitt, command.common.make_wind());
+
+  // Scripts wait for this line.
+  std::printf("listening on %s\n", to_string(Address{address.host, simulator.port()}).c_str());
+  std::fflush(stdout);
+  command.common.run_simulator(simulator);
+}
+
+}  // namespace
+
+void add_ecowitt_command(CLI::App& app) {
+  auto options = std::make_shared<EcowittCommand>();
+  CLI::App* command = app.add_subcommand("ecowitt", "Ecowitt gateway (GW1000), which is asked over TCP");
+  command->add_option("--tcp", options->tcp, "HOST:PORT to listen on; port 0 takes a free one")->capture_default_str();
+  command->add_option("--interval", options->ecowitt.interval_s, "seconds between the anemometer's radio messages")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  command->add_option("--late-by", options->ecowitt.late_s, "delay of a reply under the fault late, s")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  options->common.add_to(*command);
+  command->callback([options] { simulate_ecowitt(*options); });
+}
+
+}  // namespace yuragi::simulators::network

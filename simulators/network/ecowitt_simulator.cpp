@@ -1,0 +1,254 @@
+#include "simulators/network/ecowitt_simulator.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <list>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
+#include <fmt/format.h>
+
+#include "engine/base/count_text.hpp"
+#include "simulators/network/socket_address.hpp"
+
+namespace yuragi::simulators::network {
+namespace {
+
+using boost::asio::ip::tcp;
+using GatewayBytes = std::vector<std::uint8_t>;
+
+constexpr double kPieceGap_s = 0.03;
+constexpr std::size_t kGatewayGarbageBytes = 40;
+const GatewayBytes kLiveDataRequest = {0xFF, 0xFF, 0x27, 0x03, 0x2A};
+
+/// What the anemometer has said last.
+struct RadioWind {
+  double speed_m_s = 0.0;
+  double gust_m_s = 0.0;
+  double direction_deg = 0.0;
+};
+
+void append(GatewayBytes& bytes, std::uint8_t id, double value, int size) {
+  const auto number = static_cast<std::uint32_t>(std::lround(value));
+  bytes.push_back(id);
+  for (int shift = 8 * (size - 1); shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(number >> shift));
+}
+
+/// A reply with its size and checksum.
+GatewayBytes framed(std::uint8_t command, const GatewayBytes& items) {
+  const std::size_t size = 1 + 2 + items.size() + 1;
+  GatewayBytes reply(2, 0xFF);
+  append(reply, command, static_cast<double>(size), 2);
+  for (const std::uint8_t byte : items) reply.push_back(byte);
+  reply.push_back(static_cast<std::uint8_t>(std::accumulate(reply.begin() + 2, reply.end(), 0U)));
+  return reply;
+}
+
+/// The values of a gateway whose anemometer is heard, or not, in the order of a GW1000.
+GatewayBytes live_items(const RadioWind* wind) {
+  GatewayBytes items;
+  append(items, 0x01, 225, 2);    // inside: 22.5 degrees Celsius
+  append(items, 0x06, 37, 1);     // 37 %
+  append(items, 0x08, 10163, 2);  // 1016.3 hPa
+  append(items, 0x09, 10178, 2);
+  if (wind != nullptr) {
+    append(items, 0x02, 65531, 2);  // outside: -0.5 degrees Celsius
+    append(items, 0x07, 93, 1);
+    append(items, 0x0A, wind->direction_deg, 2);
+    append(items, 0x0B, wind->speed_m_s * 10.0, 2);
+    append(items, 0x0C, wind->gust_m_s * 10.0, 2);
+    append(items, 0x15, 37820, 4);  // light
+    append(items, 0x16, 32, 2);
+    append(items, 0x17, 0, 1);
+    append(items, 0x19, 71, 2);  // greatest wind of the day
+  }
+  append(items, 0x0E, 12, 2);  // 1.2 mm/h
+  append(items, 0x10, 8, 2);
+  append(items, 0x13, 3979, 4);  // 397.9 mm
+  return items;
+}
+
+}  // namespace
+
+class EcowittSimulator::State {
+ public:
+  State(const EcowittOptions& options, MeasuredWind wind)
+      : options_(options),
+        wind_(std::move(wind)),
+        random_(options.seed),
+        endpoint_(socket_address(options.host), options.port) {
+    if (const auto error = listen())
+      throw std::runtime_error(fmt::format("cannot listen on {}:{} ({}): choose another port, or 0 for a free one",
+                                           options.host, options.port, error.message()));
+    endpoint_ = listener_.local_endpoint();
+  }
+
+  std::uint16_t port() const { return endpoint_.port(); }
+
+  std::vector<int> descriptors() const {
+    std::vector<int> all;
+    if (listener_.is_open()) all.push_back(const_cast<tcp::acceptor&>(listener_).native_handle());
+    for (const Client& client : clients_) all.push_back(const_cast<tcp::socket&>(client.socket).native_handle());
+    return all;
+  }
+
+  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+    fault_ = fault;
+    measure(time_s);
+    if (fault == FaultKind::kDisconnect) {
+      clients_.clear();
+      boost::system::error_code ignored;
+      listener_.close(ignored);
+      return;
+    }
+    if (!listener_.is_open() && listen()) return;
+    for (Client& client : clients_) {
+      if (std::ranges::find(ready, client.socket.native_handle()) != ready.end()) read(client, time_s);
+      send_what_is_due(client, time_s);
+    }
+    std::erase_if(clients_, [](const Client& client) { return !client.socket.is_open(); });
+    accept_all();
+  }
+
+  std::string status() const {
+    return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}{}{}", moment_.speed_m_s, moment_.direction_deg,
+                       count_text(replied_, "request"), fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
+  }
+
+ private:
+  struct Due {
+    double time_s;
+    GatewayBytes bytes;
+  };
+  struct Client {
+    tcp::socket socket;
+    GatewayBytes received = {};
+    std::deque<Due> waiting = {};
+  };
+
+  boost::system::error_code listen() {
+    boost::system::error_code error;
+    const bool failed = listener_.open(endpoint_.protocol(), error) ||
+                        listener_.set_option(tcp::acceptor::reuse_address(true), error) ||
+                        listener_.bind(endpoint_, error) || listener_.listen(8, error) ||
+                        listener_.non_blocking(true, error);
+    boost::system::error_code ignored;
+    if (failed) listener_.close(ignored);
+    return error;
+  }
+
+  void accept_all() {
+    for (;;) {
+      boost::system::error_code error;
+      tcp::socket socket = listener_.accept(error);
+      if (error) return;
+      socket.non_blocking(true, error);
+      if (!error) clients_.push_back({.socket = std::move(socket)});
+    }
+  }
+
+  /// The anemometer measures all the time, and speaks at its own pace.
+  void measure(double time_s) {
+    moment_ = wind_.at(time_s, fault_);
+    gust_m_s_ = std::max(gust_m_s_, moment_.speed_m_s);
+    if (time_s < next_radio_s_) return;
+    while (next_radio_s_ <= time_s) next_radio_s_ += options_.interval_s;
+    radio_ = {.speed_m_s = moment_.speed_m_s, .gust_m_s = gust_m_s_, .direction_deg = moment_.direction_deg};
+    gust_m_s_ = 0.0;
+  }
+
+  void read(Client& client, double time_s) {
+    std::array<std::uint8_t, 256> block{};
+    boost::system::error_code error;
+    const std::size_t size = client.socket.read_some(boost::asio::buffer(block), error);
+    client.received.insert(client.received.end(), block.begin(), block.begin() + static_cast<std::ptrdiff_t>(size));
+    if (error && error != boost::asio::error::would_block) client.socket.close(error);
+    if (client.received == kLiveDataRequest) reply(client, time_s);
+    if (client.received.size() >= kLiveDataRequest.size()) client.received.clear();
+  }
+
+  void reply(Client& client, double time_s) {
+    ++replied_;
+    GatewayBytes bytes = framed(0x27, live_items(fault_ == FaultKind::kUnplug ? nullptr : &radio_));
+    if (fault_ == FaultKind::kSilence) return;
+    if (fault_ == FaultKind::kGarbage) {
+      bytes.resize(kGatewayGarbageBytes);
+      std::ranges::generate(bytes, [this] { return static_cast<std::uint8_t>(random_()); });
+    }
+    if (fault_ == FaultKind::kPartial) bytes.resize(bytes.size() / 2);
+    if (fault_ == FaultKind::kBadChecksum) bytes.back() ^= 0xFFU;
+    if (fault_ == FaultKind::kWrongTransaction) bytes = framed(0x34, {0x0E, 0x00, 0x0C});
+    if (fault_ != FaultKind::kSplit) {
+      client.waiting.push_back({time_s + (fault_ == FaultKind::kLate ? options_.late_s : 0.0), std::move(bytes)});
+      return;
+    }
+    // The head in two, and then the rest.
+    for (std::size_t from = 0, piece = 0; from < bytes.size(); ++piece) {
+      const std::size_t to = piece < 2 ? from + 2 : bytes.size();
+      client.waiting.push_back(
+          {time_s + static_cast<double>(piece) * kPieceGap_s,
+           {bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.begin() + static_cast<std::ptrdiff_t>(to)}});
+      from = to;
+    }
+  }
+
+  static void send_what_is_due(Client& client, double time_s) {
+    while (client.socket.is_open() && !client.waiting.empty() && client.waiting.front().time_s <= time_s) {
+      boost::system::error_code error;
+      boost::asio::write(client.socket, boost::asio::buffer(client.waiting.front().bytes), error);
+      if (error && error != boost::asio::error::would_block) client.socket.close(error);
+      client.waiting.pop_front();
+    }
+  }
+
+  EcowittOptions options_;
+  MeasuredWind wind_;
+  std::mt19937_64 random_;
+  boost::asio::io_context context_;
+  tcp::endpoint endpoint_;
+  tcp::acceptor listener_{context_};
+  std::list<Client> clients_;
+
+  double next_radio_s_ = 0.0;
+  double gust_m_s_ = 0.0;
+  RadioWind radio_;
+  PlayedMoment moment_;
+  std::optional<FaultKind> fault_;
+  std::uint64_t replied_ = 0;
+};
+
+EcowittSimulator::EcowittSimulator(const EcowittOptions& options, MeasuredWind wind)
+    : state_(std::make_unique<State>(options, std::move(wind))) {}
+
+EcowittSimulator::~EcowittSimulator() = default;
+
+std::uint16_t EcowittSimulator::port() const {
+  return state_->port();
+}
+
+std::span<const FaultKind> EcowittSimulator::known_faults() const {
+  using enum FaultKind;
+  static constexpr std::array kKnown = {kSilence,     kFreeze,           kSpike, kGarbage,    kSplit, kPartial,
+                                        kBadChecksum, kWrongTransaction, kLate,  kDisconnect, kUnplug};
+  return kKnown;
+}
+
+std::vector<int> EcowittSimulator::descriptors() const {
+  return state_->descriptors();
+}
+
+void EcowittSimulator::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+  state_->serve(ready, time_s, fault);
+}
+
+std::string EcowittSimulator::status() const {
+  return state_->status();
+}
+
+}  // namespace yuragi::simulators::network

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "simulators/played_wind.hpp"
+#include "simulators/simulator.hpp"
+
+namespace yuragi::simulators::network {
+
+struct EcowittOptions {
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 45000;  ///< 0 takes a free one
+  double interval_s = 16.0;    ///< of the anemometer's radio
+  double late_s = 5.0;         ///< the delay of a late reply
+  std::uint64_t seed = 1;      ///< of the bytes of the garbage fault
+};
+
+/// A gateway of Fine Offset's with a wind sensor, as the maker's "Data exchange TCP Protocol for GW1000" describes it:
+/// it replies to the request for its current values, and to no other.
+///
+/// Faults: silence, freeze, spike, garbage, split, partial, bad-checksum, wrong-transaction (the reply to another
+/// command), late, disconnect, unplug (the anemometer is not heard).
+class EcowittSimulator final : public Simulator {
+ public:
+  /// Throws std::runtime_error where the address cannot be listened on.
+  EcowittSimulator(const EcowittOptions& options, MeasuredWind wind);
+  ~EcowittSimulator() override;
+
+  std::uint16_t port() const;
+
+  std::span<const FaultKind> known_faults() const override;
+  std::vector<int> descriptors() const override;
+  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  std::string status() const override;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace yuragi::simulators::network

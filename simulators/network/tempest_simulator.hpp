@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "simulators/played_wind.hpp"
+#include "simulators/simulator.hpp"
+
+namespace yuragi::simulators::network {
+
+struct TempestOptions {
+  std::string host = "127.0.0.1";  ///< whom it sends to: an address, or that of a broadcast
+  std::uint16_t port = 50222;
+  std::string hub = "HB-00013030";
+  std::vector<std::string> stations = {"ST-00000512"};  ///< they stand in the same wind
+  double rapid_wind_interval_s = 3.0;                   ///< 0: none, as with an empty battery
+  double report_interval_s = 60.0;
+  std::uint64_t seed = 1;  ///< of the bytes of the garbage fault
+};
+
+/// A hub of WeatherFlow's and its stations (Tempest), as the maker's "Tempest UDP Reference", v171, describes what they
+/// send. The hub's clock begins at 1 700 000 000 s.
+///
+/// Faults: silence (the hub is off), freeze, spike, garbage, partial (the ends of messages are missing), wrong-id (the
+/// messages of other stations), unplug (the stations are off: the hub alone speaks).
+class TempestSimulator final : public Simulator {
+ public:
+  /// Throws std::runtime_error for a host that is no address.
+  TempestSimulator(const TempestOptions& options, MeasuredWind wind);
+  ~TempestSimulator() override;
+
+  std::span<const FaultKind> known_faults() const override;
+  std::vector<int> descriptors() const override { return {}; }
+  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  std::string status() const override;
+  /// Datagrams so far.
+  std::uint64_t sent() const noexcept;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace yuragi::simulators::network
