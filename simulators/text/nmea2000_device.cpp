@@ -1,7 +1,7 @@
 // Wind of an NMEA 2000 bus, as gateways write it. The formats are written here, independently of the drivers' decoders,
 // so that a mistake on either side shows.
 //
-//   yacht-devices  17:33:21.179 R 09FD0223 64 56 01 2E 9D FA FF FF      a frame's identifier and bytes
+//   yacht-devices  17:33:21.179 R 09FD0223 64 56 01 37 9D FA FF FF      a frame's identifier and bytes
 //   canboat        {"version":"4.12.0","units":"std"}                   to each new client; then, in degrees:
 //                  {"timestamp":"...","prio":2,"src":35,"dst":255,"pgn":130306,"description":"Wind Data",
 //                   "fields":{"SID":100,"Wind Speed":3.42,"Wind Angle":230.6,"Reference":"Apparent"}}
