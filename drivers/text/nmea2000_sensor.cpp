@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "drivers/decode/marine/yacht_devices.hpp"
+#include "drivers/decode/text_fields.hpp"
 
 namespace yuragi::drivers::text {
 

@@ -103,6 +103,7 @@ class Nmea2000Device final : public TextDevice {
 
 std::vector<std::string> nmea2000_format_names() {
   std::vector<std::string> names;
+  names.reserve(kBusFormats.size());
   for (const BusFormat& format : kBusFormats) names.emplace_back(format.name);
   return names;
 }

@@ -4,7 +4,6 @@
 #include <array>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -112,7 +111,7 @@ class TcpWire final : public TextWire {
     std::erase_if(clients_, [](const tcp::socket& client) { return !client.is_open(); });
   }
 
-  void greet_with(std::string bytes) override { greeting_ = std::move(bytes); }
+  void greet_with(const std::string& bytes) override { greeting_ = bytes; }
 
   void take_away() override {
     clients_.clear();

@@ -70,31 +70,24 @@ Result<WindDataReference, Refusal> reference_field(const CanboatJson& fields) {
   return static_cast<WindDataReference>(code);
 }
 
-/// The record in a line, and what holds it.
-struct CanboatRecord {
-  CanboatJson whole;
-  const CanboatJson* record = nullptr;
-};
-
-/// The record of wind data, or why there is none.
-std::optional<Refusal> read_wind_record(std::string_view line, CanboatRecord& read) {
-  read.whole = CanboatJson::parse(line, nullptr, false);
-  if (!read.whole.is_object()) return Refusal::kMalformed;
-  read.record = &read.whole;
+/// The record of wind data in a line, or why there is none.
+Result<const CanboatJson*, Refusal> wind_record_in(const CanboatJson& line) {
+  if (!line.is_object()) return Refusal::kMalformed;
+  const CanboatJson* record = &line;
   for (const char* name : {"windData", "WindData"}) {
-    const auto wrapped = read.whole.find(name);
-    if (wrapped != read.whole.end() && wrapped->is_object()) read.record = &*wrapped;
+    const auto wrapped = line.find(name);
+    if (wrapped != line.end() && wrapped->is_object()) record = &*wrapped;
   }
-  const auto pgn = read.record->find("pgn");
-  if (pgn == read.record->end() || number_of(*pgn) != static_cast<double>(kWindDataPgn)) return Refusal::kNotMine;
-  const auto fields = read.record->find("fields");
-  if (fields == read.record->end() || !fields->is_object()) return Refusal::kMalformed;
-  return {};
+  const auto pgn = record->find("pgn");
+  if (pgn == record->end() || number_of(*pgn) != static_cast<double>(kWindDataPgn)) return Refusal::kNotMine;
+  const auto fields = record->find("fields");
+  if (fields == record->end() || !fields->is_object()) return Refusal::kMalformed;
+  return record;
 }
 
 }  // namespace
 
-std::optional<AngleUnit> canboat_angle_unit(std::string_view line) noexcept {
+std::optional<AngleUnit> canboat_angle_unit(std::string_view line) {
   if (line.find("\"units\"") == std::string_view::npos) return {};
   const CanboatJson header = CanboatJson::parse(line, nullptr, false);
   if (!header.is_object() || !header.contains("version")) return {};
@@ -105,15 +98,17 @@ std::optional<AngleUnit> canboat_angle_unit(std::string_view line) noexcept {
   return {};
 }
 
-Result<BusWind, Refusal> decode_canboat(const CanboatOptions& options, std::string_view line) noexcept {
-  CanboatRecord read;
-  if (const auto refusal = read_wind_record(line, read)) return *refusal;
-  const CanboatJson& fields = read.record->at("fields");
+Result<BusWind, Refusal> decode_canboat(const CanboatOptions& options, std::string_view line) {
+  const CanboatJson json = CanboatJson::parse(line, nullptr, false);
+  const auto found = wind_record_in(json);
+  if (!found) return found.error();
+  const CanboatJson& record = **found;
+  const CanboatJson& fields = record.at("fields");
   const auto speed_m_s = number_field(fields, kWindSpeedNames);
   const auto angle = number_field(fields, kWindAngleNames);
   const auto reference = reference_field(fields);
-  const auto src = read.record->find("src");
-  const double address = src == read.record->end() ? -1.0 : number_of(*src).value_or(-1.0);
+  const auto src = record.find("src");
+  const double address = src == record.end() ? -1.0 : number_of(*src).value_or(-1.0);
   if (!speed_m_s || !angle || !reference || !(address >= 0.0 && address <= 255.0)) return Refusal::kMalformed;
   if (!*speed_m_s) return Refusal::kInvalid;
 

@@ -27,11 +27,11 @@ struct CanboatOptions {
 };
 
 /// The unit that the first line of the analyzer says; nothing where the line says none. Thread-safe: yes.
-std::optional<AngleUnit> canboat_angle_unit(std::string_view line) noexcept;
+std::optional<AngleUnit> canboat_angle_unit(std::string_view line);
 
 /// The wind in one line. Refusals, in this order: kMalformed (no JSON object), kNotMine (another PGN, or none),
 /// kMalformed (fields of another kind), kInvalid (no speed), kImplausible. An impossible angle leaves the speed, marked
-/// uncertain. Thread-safe: yes; allocates.
-Result<BusWind, Refusal> decode_canboat(const CanboatOptions& options, std::string_view line) noexcept;
+/// uncertain. Never throws for any line, but for want of memory. Thread-safe: yes.
+Result<BusWind, Refusal> decode_canboat(const CanboatOptions& options, std::string_view line);
 
 }  // namespace yuragi::drivers::decode::marine

@@ -46,7 +46,9 @@ std::string source_of(const SignalKJson& update) {
   named = shown_text(*source, "label");
   for (const char* part : {"src", "talker"}) {
     const std::string text = shown_text(*source, part);
-    if (!text.empty()) return (named + "." + text).substr(0, kLongestText);
+    if (text.empty()) continue;
+    named.append(".").append(text);
+    return named.substr(0, kLongestText);
   }
   return named;
 }
@@ -93,7 +95,7 @@ bool take_value(const SignalKJson& entry, SignalKValues& values, WindFinds& find
 
 }  // namespace
 
-std::optional<SignalKHello> signalk_hello(std::string_view line) noexcept {
+std::optional<SignalKHello> signalk_hello(std::string_view line) {
   if (line.find("\"version\"") == std::string_view::npos || line.find("\"updates\"") != std::string_view::npos)
     return {};
   const SignalKJson json = SignalKJson::parse(line, nullptr, false);
@@ -101,7 +103,7 @@ std::optional<SignalKHello> signalk_hello(std::string_view line) noexcept {
   return SignalKHello{.timestamp = shown_text(json, "timestamp"), .self = full_text(json, "self")};
 }
 
-Result<SignalKDelta, Refusal> decode_signalk(std::string_view line) noexcept {
+Result<SignalKDelta, Refusal> decode_signalk(std::string_view line) {
   const SignalKJson json = SignalKJson::parse(line, nullptr, false);
   if (!json.is_object()) return Refusal::kMalformed;
   const auto updates = json.find("updates");

@@ -56,13 +56,13 @@ struct SignalKHello {
   std::string self;       ///< the context of its own vessel; empty: it has none
 };
 
-/// The server's first message; nothing where the line is another one. Thread-safe: yes; allocates.
-std::optional<SignalKHello> signalk_hello(std::string_view line) noexcept;
+/// The server's first message; nothing where the line is another one. Thread-safe: yes.
+std::optional<SignalKHello> signalk_hello(std::string_view line);
 
 /// The updates of one line that have a value of the wind. Refusals, in this order: kMalformed (no JSON object, or not
 /// this format), kNotMine (no value of the wind), kInvalid (null alone), kImplausible (a speed that is none). An
-/// impossible angle is left out. Thread-safe: yes; allocates.
-Result<SignalKDelta, Refusal> decode_signalk(std::string_view line) noexcept;
+/// impossible angle is left out. Never throws for any line, but for want of memory. Thread-safe: yes.
+Result<SignalKDelta, Refusal> decode_signalk(std::string_view line);
 
 /// A wind that values of one moment make, in one frame.
 struct SignalKWind {
