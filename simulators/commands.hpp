@@ -31,6 +31,8 @@ void add_tempest_command(CLI::App& app);
 namespace yuragi::simulators::text {
 void add_line_command(CLI::App& app);
 void add_nmea_command(CLI::App& app);
+void add_nmea2000_command(CLI::App& app);
+void add_signalk_command(CLI::App& app);
 }  // namespace yuragi::simulators::text
 
 namespace yuragi::simulators::usb {

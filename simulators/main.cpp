@@ -20,6 +20,8 @@ int run(int argc, char** argv) {
   yuragi::simulators::microphone::add_microphone_command(app);
   yuragi::simulators::modbus::add_modbus_command(app);
   yuragi::simulators::text::add_nmea_command(app);
+  yuragi::simulators::text::add_nmea2000_command(app);
+  yuragi::simulators::text::add_signalk_command(app);
   yuragi::simulators::text::add_line_command(app);
   yuragi::simulators::davis::add_davis_command(app);
   yuragi::simulators::davis::add_weatherlink_live_command(app);

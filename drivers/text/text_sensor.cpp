@@ -71,7 +71,7 @@ TextSensor::TextSensor(const TextSensorSettings& settings, std::unique_ptr<bus::
       settings_(settings),
       where_(describe(settings.address)),
       port_(std::move(port)),
-      assembler_(settings.ending),
+      assembler_(settings.ending, settings.longest_line),
       buffer_(bus::kLargestDatagram) {
   settings_.response_timeout = std::min(settings_.response_timeout, settings_.poll_interval);
 }
@@ -84,6 +84,7 @@ Result<MonoTime, Failure> TextSensor::open(const sensor::Clock& clock) {
   if (const auto opened = port_->open(); !opened) return opened.error();
   const MonoTime now = clock.now().mono;
   is_fresh_ = settings_.delay_after_open > 0ns;
+  is_greeted_ = settings_.greeting.empty() || !is_connection();
   skips_line_ = settings_.doubts_first_line;
   awaits_reply_ = false;
   next_request_ = now;
@@ -107,6 +108,7 @@ Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::S
     for (int i = 0; i < kForgottenBlocks && port_->read(buffer_, 0ns).status == bus::ByteStatus::kBytes; ++i) {
     }
   }
+  if (!std::exchange(is_greeted_, true) && !greet(sink)) return Failure{where_ + " accepts no message: opened again"};
   if (is_polled() && !request_if_due(clock.now().mono, sink))
     return Failure{where_ + " accepts no request: opened again"};
 
@@ -161,6 +163,18 @@ Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::S
   return now.mono;
 }
 
+bool TextSensor::is_connection() const noexcept {
+  return settings_.address.kind == bus::BytePortKind::kSerial ||
+         settings_.address.kind == bus::BytePortKind::kTcpClient;
+}
+
+/// False: the port is lost.
+bool TextSensor::greet(sensor::SensorSink& sink) {
+  if (!port_->write(bytes_of(settings_.greeting))) return false;
+  sink.raw(sensor::RawDirection::kSent, bytes_of(settings_.greeting));
+  return true;
+}
+
 /// False: the port is lost.
 bool TextSensor::request_if_due(MonoTime now, sensor::SensorSink& sink) {
   if (awaits_reply_ || now < next_request_) return true;
@@ -190,8 +204,7 @@ Nanoseconds TextSensor::longest_read(MonoTime now) const {
 bool TextSensor::take_bytes(const Instant& now, sensor::SensorSink& sink) {
   // On a line in which bytes follow each other, a pause within a line means that its end is missing. Files and pipes
   // come in blocks that end anywhere, and datagrams end by themselves.
-  const bool flows =
-      settings_.address.kind == bus::BytePortKind::kSerial || settings_.address.kind == bus::BytePortKind::kTcpClient;
+  const bool flows = is_connection();
   if (flows && now.mono - last_bytes_ >= kLineCut) drop_cut_line(sink);
   last_bytes_ = now.mono;
 

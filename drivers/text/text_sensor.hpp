@@ -24,10 +24,12 @@ namespace yuragi::drivers::text {
 struct TextSensorSettings {
   bus::BytePortAddress address;
   decode::text::LineEnding ending = decode::text::LineEnding::kNewline;
-  bool doubts_first_line = false;  ///< the first line may lack its beginning
-  Nanoseconds delay_after_open{};  ///< messages before that are discarded
+  std::size_t longest_line = decode::text::LineAssembler::kMaxLine;  ///< longer ones are refused
+  bool doubts_first_line = false;                                    ///< the first line may lack its beginning
+  Nanoseconds delay_after_open{};                                    ///< messages before that are discarded
   Nanoseconds silence_timeout{};   ///< after which the device is opened again; zero: from its usual pauses
   double play_rate_hz = 0.0;       ///< of a file that is played
+  std::string greeting;            ///< what to send once after opening, where the transport can send
   std::string request;             ///< what to send for one reply
   Nanoseconds poll_interval{};     ///< zero: the device sends without requests
   Nanoseconds response_timeout{};  ///< at most the poll interval
@@ -69,6 +71,9 @@ class TextSensor : public sensor::ReopeningSensor {
 
   bool is_polled() const noexcept { return settings_.poll_interval > Nanoseconds::zero(); }
   bool is_played() const noexcept;
+  /// Serial or TCP: bytes follow each other, and can be sent.
+  bool is_connection() const noexcept;
+  bool greet(sensor::SensorSink& sink);
   bool request_if_due(MonoTime now, sensor::SensorSink& sink);
   void give_up_reply(MonoTime now, sensor::SensorSink& sink);
   Nanoseconds longest_read(MonoTime now) const;
@@ -97,6 +102,7 @@ class TextSensor : public sensor::ReopeningSensor {
   std::span<const std::uint8_t> rest_;  // of the buffer: not processed yet
   bool ends_with_rest_ = false;         // rest_ is the end of a datagram
   bool is_fresh_ = false;
+  bool is_greeted_ = false;
   bool skips_line_ = false;
   bool is_finished_ = false;
 

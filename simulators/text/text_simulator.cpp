@@ -13,7 +13,7 @@ constexpr std::size_t kPieces = 3;
 constexpr double kPieceGap_s = 0.03;
 /// The delay of a late reply: longer than a client should wait.
 constexpr double kLate_s = 1.3;
-constexpr std::size_t kLongestRequest = 64;
+constexpr std::size_t kLongestRequest = 256;
 
 }  // namespace
 
@@ -32,6 +32,7 @@ TextSimulator::TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr
   add(device_->known_faults());
   if (rate_hz_ <= 0.0) known_faults_.push_back(FaultKind::kLate);
   add(wire_->known_faults());
+  wire_->greet_with(device_->greeting());
 }
 
 void TextSimulator::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
@@ -60,6 +61,7 @@ void TextSimulator::receive(std::string_view bytes, double time_s, std::optional
       continue;
     }
     const std::string request = std::exchange(request_, "");
+    device_->hear(request);
     if (!request.empty() && device_->is_request(request)) send_messages(time_s, fault);
   }
 }

@@ -28,6 +28,12 @@ class TextDevice {
   /// Its messages about one moment, with their line ends.
   virtual std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> fault) = 0;
 
+  /// What it says to each new client, with its line end.
+  virtual std::string greeting() const { return {}; }
+
+  /// A client has said this line, without its end.
+  virtual void hear(std::string_view /*line*/) {}
+
   /// Is this line, without its end, the device's request?
   virtual bool is_request(std::string_view line) const = 0;
 };

@@ -85,7 +85,7 @@ class TcpWire final : public TextWire {
       received.append(block.data(), size);
       if (error && error != boost::asio::error::would_block) client.close(error);
     }
-    while (auto client = listener_.accept()) clients_.push_back(std::move(*client));
+    accept_all();
     std::erase_if(clients_, [](const tcp::socket& client) { return !client.is_open(); });
     return received;
   }
@@ -99,6 +99,8 @@ class TcpWire final : public TextWire {
     std::erase_if(clients_, [](const tcp::socket& client) { return !client.is_open(); });
   }
 
+  void greet_with(const std::string& bytes) override { greeting_ = bytes; }
+
   void take_away() override {
     clients_.clear();
     listener_.close();
@@ -107,8 +109,17 @@ class TcpWire final : public TextWire {
   std::string place() const override { return "listening on " + text_of(listener_.endpoint()); }
 
  private:
+  void accept_all() {
+    while (auto client = listener_.accept()) {
+      boost::system::error_code error;
+      boost::asio::write(*client, boost::asio::buffer(greeting_), error);
+      if (!error) clients_.push_back(std::move(*client));
+    }
+  }
+
   TcpListener listener_;
   std::vector<tcp::socket> clients_;
+  std::string greeting_;
 };
 
 class UdpWire final : public TextWire {

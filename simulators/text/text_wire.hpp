@@ -22,6 +22,8 @@ class TextWire {
   virtual std::vector<int> descriptors() const = 0;
   /// The bytes that clients have sent; `ready` are the descriptors that can be read.
   virtual std::string read(std::span<const int> ready) = 0;
+  /// What each client gets first. A wire that knows no clients does not send it.
+  virtual void greet_with(const std::string& /*bytes*/) {}
   /// Sends the bytes to all clients.
   virtual void write(std::string_view bytes) = 0;
 

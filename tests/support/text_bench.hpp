@@ -47,6 +47,7 @@ class ObservedWire final : public simulators::text::TextWire {
   std::span<const simulators::FaultKind> known_faults() const override { return wire_->known_faults(); }
   std::vector<int> descriptors() const override { return wire_->descriptors(); }
   std::string read(std::span<const int> ready) override { return wire_->read(ready); }
+  void greet_with(const std::string& bytes) override { wire_->greet_with(bytes); }
   void write(std::string_view bytes) override {
     has_written_ = true;
     wire_->write(bytes);

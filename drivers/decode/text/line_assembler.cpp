@@ -23,7 +23,7 @@ std::optional<LineAssembler::Line> LineAssembler::next(std::span<const std::uint
       if (auto line = take()) return line;
     } else if (is_skipping_ || (byte == kEndOfText && size_ == 0)) {
       continue;
-    } else if (size_ == kMaxLine) {
+    } else if (size_ == text_.size()) {
       size_ = 0;
       is_skipping_ = true;
       return Line(Refusal::kMalformed);

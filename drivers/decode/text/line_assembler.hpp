@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "drivers/decode/refusal.hpp"
 #include "engine/base/result.hpp"
@@ -18,7 +18,7 @@ enum class LineEnding : std::uint8_t {
   kEtx,      ///< at ETX too
 };
 
-/// Makes lines of bytes, however these were split on their way. Bounded: a line longer than kMaxLine is refused once
+/// Makes lines of bytes, however these were split on their way. Bounded: a line longer than it is told is refused once
 /// and skipped up to its end. STX begins a line anew; empty lines, and an ETX at the beginning of one, are skipped.
 /// Every other byte is kept, whatever it is.
 ///
@@ -26,18 +26,19 @@ enum class LineEnding : std::uint8_t {
 ///       if (const auto line = assembler.next(bytes)) use(*line);
 ///     }
 ///
-/// Not thread-safe; realtime-safe: no allocation.
+/// Not thread-safe; realtime-safe: allocates when it is made, and never again.
 class LineAssembler {
  public:
-  /// The longest line without its end: NMEA allows 80, and 129 are seen.
+  /// The longest line of an anemometer without its end: NMEA allows 80, and 129 are seen.
   static constexpr std::size_t kMaxLine = 512;
 
   using Line = Result<std::string_view, Refusal>;
 
-  explicit LineAssembler(LineEnding ending = LineEnding::kNewline) noexcept : ending_(ending) {}
+  explicit LineAssembler(LineEnding ending = LineEnding::kNewline, std::size_t longest = kMaxLine)
+      : text_(longest), ending_(ending) {}
 
   /// Takes bytes from the front of `bytes` until a line is whole or they are used up. The view is valid until the next
-  /// call. Refusals: kMalformed (longer than kMaxLine), kTooShort (cut off by the STX of the next one).
+  /// call. Refusals: kMalformed (longer than the longest), kTooShort (cut off by the STX of the next one).
   std::optional<Line> next(std::span<const std::uint8_t>& bytes) noexcept;
 
   /// What has come since the last end: the last line of a file or datagram. Leaves nothing behind.
@@ -49,7 +50,7 @@ class LineAssembler {
  private:
   std::optional<Line> take() noexcept;
 
-  std::array<char, kMaxLine> text_{};
+  std::vector<char> text_;  // of the longest line's size
   std::size_t size_ = 0;
   bool is_skipping_ = false;  // an overlong line has been refused, and goes on
   LineEnding ending_;

@@ -142,6 +142,18 @@ TEST(LineAssembler, RefusesAnOverlongLineOnceAndGoesOnBehindIt) {
               ElementsAre("!malformed", "b"));
 }
 
+TEST(LineAssembler, TakesLinesAsLongAsItIsTold) {
+  text::LineAssembler assembler(text::LineEnding::kNewline, 2000);
+  for (const auto& [length, is_taken] : {std::pair(2000U, true), std::pair(2001U, false)}) {
+    const std::string sent = std::string(length, 'x') + "\n";
+    std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(sent.data()), sent.size());
+    const auto line = assembler.next(bytes);
+    ASSERT_TRUE(line);
+    EXPECT_EQ(line->has_value(), is_taken);
+    EXPECT_FALSE(assembler.next(bytes));
+  }
+}
+
 TEST(LineAssembler, ForgetsWhenItIsCleared) {
   text::LineAssembler assembler;
   const std::vector<std::uint8_t> half = {'$', 'W'};

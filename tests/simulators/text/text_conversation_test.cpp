@@ -109,6 +109,29 @@ TEST(TextConversation, AsksOverTcp) {
   }
 }
 
+TEST(TextConversation, AgreesOnTheWindOfABus) {
+  for (const std::string format : {"yacht-devices", "canboat", "canboat-si"}) {
+    SCOPED_TRACE(format);
+    TextSimulatorProcess gateway("nmea2000", {"--tcp", "127.0.0.1:0", "--format", format, "--rate", "20"});
+    TextSensorRun live("nmea2000", tcp_to(gateway.port()));
+    ASSERT_TRUE(live.receives(5)) << live.sink.last_detail();
+    live.expect_the_wind();
+  }
+}
+
+TEST(TextConversation, AgreesWithASignalKServerAndADevice) {
+  TextSimulatorProcess server("signalk", {"--tcp", "127.0.0.1:0", "--rate", "20"});
+  TextSensorRun client("signalk", tcp_to(server.port()));
+  ASSERT_TRUE(client.receives(5)) << client.sink.last_detail();
+  client.expect_the_wind();
+
+  const std::int64_t udp_port = free_port(SOCK_DGRAM);
+  TextSimulatorProcess device("signalk", {"--udp", "127.0.0.1:" + std::to_string(udp_port), "--rate", "20"});
+  TextSensorRun listener("signalk", {{"transport", std::string("udp")}, {"port", udp_port}});
+  ASSERT_TRUE(listener.receives(5)) << listener.sink.last_detail();
+  listener.expect_the_wind();
+}
+
 TEST(TextConversation, AgreesOnLinesOfNumbers) {
   for (const std::string format : {"csv", "key-value"}) {
     TextSimulatorProcess simulator("line", {"--tcp", "127.0.0.1:0", "--format", format, "--rate", "20"});

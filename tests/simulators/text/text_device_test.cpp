@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "simulators/text/line_device.hpp"
+#include "simulators/text/nmea2000_device.hpp"
 #include "simulators/text/nmea_device.hpp"
+#include "simulators/text/signalk_device.hpp"
 #include "simulators/text/text_simulator.hpp"
 
 namespace yuragi::simulators::text {
@@ -62,6 +64,38 @@ TEST(NmeaDevice, KnowsWhatItIsAsked) {
   EXPECT_TRUE(make_nmea_device({"wxt"})->is_request("0r1Goe"));
   EXPECT_FALSE(make_nmea_device({"mwv"})->is_request("01TR4"));
   EXPECT_THROW(make_nmea_device({"mwx"}), std::runtime_error);
+}
+
+TEST(Nmea2000Device, SaysEachFormatByteForByte) {
+  const auto line_in = [](const std::string& format) {
+    return make_nmea2000_device(format)->send_messages(kMoment, {}).at(0);
+  };
+  // 3.42 m/s is 342, 230.6 degrees are 4.0247 rad.
+  EXPECT_EQ(line_in("yacht-devices"), "00:00:00.179 R 09FD0223 00 56 01 37 9D FA FF FF\r\n");
+  EXPECT_EQ(
+      line_in("canboat"),
+      R"({"timestamp":"2026-06-21-15:00:00.626","prio":2,"src":35,"dst":255,"pgn":130306,"description":"Wind Data",)"
+      R"("fields":{"SID":0,"Wind Speed":3.42,"Wind Angle":230.6,"Reference":"Apparent"}})"
+      "\n");
+  EXPECT_THAT(line_in("canboat-si"),
+              testing::HasSubstr(R"("windAngle":4.0247,"reference":{"value":2,"name":"Apparent"})"));
+  EXPECT_THAT(make_nmea2000_device("canboat")->greeting(), testing::HasSubstr("std"));
+  EXPECT_THROW(make_nmea2000_device("mwv"), std::runtime_error);
+}
+
+TEST(SignalKDevice, SaysItsWindToWhomAsksForItAfterWhatItRemembers) {
+  const auto server = make_signalk_device(true);
+  EXPECT_TRUE(server->send_messages(kMoment, {}).empty());
+  server->hear(R"({"context":"vessels.self","subscribe":[{"path":"navigation.*"}]})");
+  EXPECT_TRUE(server->send_messages(kMoment, {}).empty());
+  server->hear(R"({"context":"vessels.self","subscribe":[{"path":"environment.wind.*"}]})");
+  const auto first = server->send_messages(kMoment, {});
+  ASSERT_EQ(first.size(), 4U);
+  EXPECT_THAT(first[0], testing::HasSubstr("33.0000"));
+  EXPECT_THAT(first[2], testing::HasSubstr(R"("path":"environment.wind.speedApparent","value":3.4200)"));
+  EXPECT_THAT(first[3], testing::HasSubstr(R"("path":"environment.wind.angleApparent","value":-2.2585)"));
+  EXPECT_EQ(server->send_messages(kMoment, {}).size(), 2U);
+  EXPECT_EQ(make_signalk_device(false)->send_messages(kMoment, {}).size(), 2U);
 }
 
 TEST(LineDevice, SaysColumnsAndKeys) {

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/text/wind_choice.hpp"
+#include "engine/base/parameter.hpp"
+#include "engine/wind/wind_reading.hpp"
+
+namespace yuragi::drivers::text {
+
+/// Which winds are taken, and how their angles are turned to north.
+struct ChosenWindSettings {
+  std::optional<WindFrame> frame;  ///< accept this frame only; nothing: the best received
+  double north_offset_deg = 0.0;   ///< what to add to a direction from the device's own mark
+  double variation_deg = 0.0;      ///< what to add to a direction from magnetic north
+};
+
+/// The parameters of these: reference, north_offset, variation.
+std::vector<Parameter> chosen_wind_parameters();
+ChosenWindSettings chosen_wind_settings_of(const ParameterValues& values);
+
+/// Makes one wind of what several sources say, each in its own frame (WindChoice), with directions from north.
+/// Thread-safe: no.
+class ChosenWind {
+ public:
+  explicit ChosenWind(const ChosenWindSettings& settings) : settings_(settings), choice_(settings.frame) {}
+
+  /// A source has said this, with a speed. Returns what to publish now: nothing where it is another source's wind, or
+  /// is held until the first burst is over. kNotMine: not in the configured frame.
+  Result<std::optional<wind::WindReading>, decode::Refusal> offer(const std::string& source,
+                                                                  const decode::DecodedWind& wind, const Instant& now);
+  /// The burst is over: what was held until then.
+  std::optional<wind::WindReading> take_held();
+  /// The device was opened again.
+  void restart();
+
+  /// The source that was taken last; empty: none yet.
+  const std::string& taken() const noexcept { return taken_; }
+
+ private:
+  struct KeptDirection {
+    std::string source;
+    double direction_deg = 0.0;
+    MonoTime time{};
+  };
+
+  /// What another source said last, as long as it holds.
+  std::optional<double> direction_for(const std::string& source, MonoTime now) const;
+  std::optional<double> from_north_deg(const decode::DecodedWind& wind) const;
+
+  ChosenWindSettings settings_;
+  WindChoice choice_;
+  std::optional<wind::WindReading> held_;
+  std::optional<KeptDirection> kept_direction_;
+  std::string taken_;
+};
+
+}  // namespace yuragi::drivers::text

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "simulators/text/text_simulator.hpp"
+
+namespace yuragi::simulators::text {
+
+/// A Signal K server with one anemometer, whose angles count from its mark. It says hello to each client. `is_asked`:
+/// it sends its wind only after a client has subscribed to it, and then first, as servers do, what it remembers of a
+/// day before, a storm; otherwise it sends deltas unasked, as a device does by UDP.
+std::unique_ptr<TextDevice> make_signalk_device(bool is_asked);
+
+}  // namespace yuragi::simulators::text

@@ -1,0 +1,46 @@
+// Any bytes as lines of an NMEA 2000 gateway, of canboat and of a Signal K server: what is decoded has a speed and is
+// physical.
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "drivers/decode/marine/canboat.hpp"
+#include "drivers/decode/marine/signalk.hpp"
+#include "drivers/decode/marine/yacht_devices.hpp"
+
+namespace {
+
+using namespace yuragi::drivers::decode;
+
+void require_marine(bool holds) {
+  if (!holds) std::abort();
+}
+
+void require_wind(const yuragi::Result<marine::BusWind, Refusal>& said) {
+  if (said) require_marine(said->wind.speed_m_s.has_value() && checked(said->wind).has_value());
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
+                                      std::size_t size) {  // NOLINT(readability-identifier-naming)
+  const std::string line(reinterpret_cast<const char*>(data), size);
+  require_wind(marine::decode_yacht_devices(line));
+  require_wind(marine::decode_wind_data(1, ByteSpan(data, size)));
+  for (const std::string& record : {line, R"({"src":1,"pgn":130306,"fields":{)" + line + "}}"}) {
+    require_wind(marine::decode_canboat({.angle_unit = {}}, record));
+    require_wind(marine::decode_canboat({.angle_unit = marine::AngleUnit::kRadians}, record));
+    static_cast<void>(marine::canboat_angle_unit(record));
+  }
+  static_cast<void>(marine::signalk_hello(line));
+  for (const std::string& delta : {line, R"({"updates":[{"values":[)" + line + "]}]}"}) {
+    const auto said = marine::decode_signalk(delta);
+    if (!said) continue;
+    for (const marine::SignalKUpdate& update : said->updates) {
+      for (const auto& wind : marine::signalk_winds(update.values)) {
+        if (wind) require_marine(checked(wind->wind).has_value());
+      }
+    }
+  }
+  return 0;
+}
