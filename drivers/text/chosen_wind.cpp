@@ -15,7 +15,9 @@ constexpr double kCalm_m_s = 0.5;
 /// A direction of another source holds for so long, or for one and a half of its own pauses.
 constexpr Nanoseconds kDirectionHolds = std::chrono::seconds(2);
 
-WindFrame frame_of_reference(decode::WindReference reference) {
+}  // namespace
+
+WindFrame frame_of_reference(decode::WindReference reference) noexcept {
   switch (reference) {
     case decode::WindReference::kNorth:
     case decode::WindReference::kMagnetic:
@@ -28,8 +30,6 @@ WindFrame frame_of_reference(decode::WindReference reference) {
   }
   return WindFrame::kRelative;
 }
-
-}  // namespace
 
 std::vector<Parameter> chosen_wind_parameters() {
   return {
@@ -77,7 +77,8 @@ Result<std::optional<wind::WindReading>, decode::Refusal> ChosenWind::offer(cons
   if (verdict == WindChoice::Verdict::kForeign) return decode::Refusal::kNotMine;
 
   // The speed may be another source's than the direction.
-  std::optional<double> direction_deg = choice_.takes_direction() ? from_north_deg(wind) : std::nullopt;
+  std::optional<double> direction_deg =
+      choice_.takes_direction() ? direction_from_north_deg(settings_, wind) : std::nullopt;
   if (direction_deg) {
     kept_direction_ = KeptDirection{source, *direction_deg, now.mono};
     if (held_ && !held_->direction_deg) held_->direction_deg = direction_deg;
@@ -118,11 +119,12 @@ std::optional<double> ChosenWind::direction_for(const std::string& source, MonoT
   return holds ? std::optional(kept_direction_->direction_deg) : std::nullopt;
 }
 
-std::optional<double> ChosenWind::from_north_deg(const decode::DecodedWind& wind) const {
+std::optional<double> direction_from_north_deg(const ChosenWindSettings& settings,
+                                               const decode::DecodedWind& wind) noexcept {
   if (!wind.direction_deg) return {};
-  double turn_deg = settings_.north_offset_deg;
+  double turn_deg = settings.north_offset_deg;
   if (wind.reference == decode::WindReference::kNorth) turn_deg = 0.0;
-  if (wind.reference == decode::WindReference::kMagnetic) turn_deg = settings_.variation_deg;
+  if (wind.reference == decode::WindReference::kMagnetic) turn_deg = settings.variation_deg;
   const double turned_deg = std::fmod(*wind.direction_deg + turn_deg, 360.0);
   return decode::wrapped_direction_deg(turned_deg < 0.0 ? turned_deg + 360.0 : turned_deg);
 }

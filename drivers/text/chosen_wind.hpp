@@ -22,6 +22,14 @@ struct ChosenWindSettings {
 std::vector<Parameter> chosen_wind_parameters();
 ChosenWindSettings chosen_wind_settings_of(const ParameterValues& values);
 
+/// The frame in which a direction of that reference is. Thread-safe and realtime-safe: yes.
+WindFrame frame_of_reference(decode::WindReference reference) noexcept;
+
+/// The direction from true north, as far as the settings say how the device stands; nothing where there is none.
+/// Thread-safe and realtime-safe: yes.
+std::optional<double> direction_from_north_deg(const ChosenWindSettings& settings,
+                                               const decode::DecodedWind& wind) noexcept;
+
 /// Makes one wind of what several sources say, each in its own frame (WindChoice), with directions from north.
 /// Thread-safe: no.
 class ChosenWind {
@@ -49,7 +57,6 @@ class ChosenWind {
 
   /// What another source said last, as long as it holds.
   std::optional<double> direction_for(const std::string& source, MonoTime now) const;
-  std::optional<double> from_north_deg(const decode::DecodedWind& wind) const;
 
   ChosenWindSettings settings_;
   WindChoice choice_;

@@ -15,17 +15,20 @@
 namespace yuragi::drivers::text {
 namespace {
 
-constexpr std::array<std::string_view, 3> kLineFormats = {"auto", "columns", "keys"};
+constexpr std::array<std::string_view, 4> kLineFormats = {"auto", "columns", "keys", "json"};
 constexpr std::array<std::string_view, 4> kLineSeparators = {"comma", "semicolon", "tab", "blank"};
 constexpr std::array<char, 4> kLineSeparatorBytes = {',', ';', '\t', ' '};
 
 /// How a line is read.
 const std::array kLineReading = {
-    Parameter{.name = "format",
-              .unit = "",
-              .default_value = std::string("auto"),
-              .help = "columns: 4.2,270; keys: speed=4.2 direction=270; auto: keys where the line has '=' or ':'",
-              .choices = kLineFormats},
+    Parameter{
+        .name = "format",
+        .unit = "",
+        .default_value = std::string("auto"),
+        .help =
+            "columns: 4.2,270; keys: speed=4.2 direction=270; json: {\"speed\": 4.2}; auto: json where the line begins "
+            "with '{', keys where it has '=' or ':'",
+        .choices = kLineFormats},
     Parameter{.name = "separator",
               .unit = "",
               .default_value = std::string("comma"),
@@ -49,14 +52,17 @@ const std::array kLineReading = {
               .min = 0,
               .max = static_cast<double>(decode::kMaxTextFields),
               .help = "0: none"},
-    Parameter{.name = "speed_key", .unit = "", .default_value = std::string("speed"), .help = "exact; empty: none"},
+    Parameter{.name = "speed_key",
+              .unit = "",
+              .default_value = std::string("speed"),
+              .help = "exact; json: or a pointer such as /wind/speed; empty: none"},
     Parameter{
         .name = "direction_key", .unit = "", .default_value = std::string("direction"), .help = "exact; empty: none"},
     Parameter{.name = "gust_key", .unit = "", .default_value = std::string("gust"), .help = "exact; empty: none"},
     Parameter{.name = "speed_unit",
               .unit = "",
               .default_value = std::string("m/s"),
-              .help = "of speed and gust, after scale and offset",
+              .help = "of speed and gust, after scale and offset, where the line itself says none (speed: 15 km/h)",
               .choices = sensor::kSpeedUnitNames},
     Parameter{.name = "speed_scale",
               .unit = "",
@@ -116,8 +122,9 @@ decode::text::LineOptions line_options_of(const ParameterValues& values) {
   const double m_s_per_unit = sensor::metres_per_second_in(values.text("speed_unit"));
   line.speed = {.column = column_of(values.integer("speed_column")),
                 .key = values.text("speed_key"),
-                .scale = values.number("speed_scale") * m_s_per_unit,
-                .offset = values.number("speed_offset") * m_s_per_unit};
+                .scale = values.number("speed_scale"),
+                .offset = values.number("speed_offset"),
+                .unit = m_s_per_unit};
   line.gust = line.speed;
   line.gust.column = column_of(values.integer("gust_column"));
   line.gust.key = values.text("gust_key");

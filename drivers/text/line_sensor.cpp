@@ -9,6 +9,7 @@ namespace {
 
 /// How many separators a line has. Two lines that ran into each other have more, and one that was cut has fewer.
 std::size_t shape_of(std::string_view line, char separator) {
+  if (line.starts_with('{')) return 0;  // an object that is whole is JSON, and one that is not is none
   const bool has_keys = line.find_first_of("=:") != std::string_view::npos;
   if (has_keys)
     return static_cast<std::size_t>(std::ranges::count_if(line, [](char c) { return c == '=' || c == ':'; }));

@@ -159,12 +159,7 @@ NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values) {
   settings.format = nmea_format_of(values.text("format"));
   settings.sentences = sentences_of(values.text("sentences"));
   settings.talker = values.text("talker");
-  const std::string& reference = values.text("reference");
-  if (reference == "north") settings.frame = WindFrame::kNorth;
-  if (reference == "relative") settings.frame = WindFrame::kRelative;
-  if (reference == "true") settings.frame = WindFrame::kTrue;
-  settings.north_offset_deg = values.number("north_offset");
-  settings.variation_deg = values.number("variation");
+  settings.wind = chosen_wind_settings_of(values);
 
   const std::string& checksum = values.text("missing_checksum");
   const bool is_serial = settings.text.address.kind == bus::BytePortKind::kSerial;

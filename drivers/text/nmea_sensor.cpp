@@ -65,15 +65,13 @@ MessageName name_of_message(NmeaFormat format, std::string_view line) {
 /// The frame of MWD and MDA follows from the sentence: in a calm they leave out the direction, and its letter.
 WindFrame frame_of(std::string_view sentence, decode::WindReference reference) {
   if (sentence == "MWD" || sentence == "MDA") return WindFrame::kNorth;
-  if (reference == decode::WindReference::kTrue) return WindFrame::kTrue;
-  const bool is_north = reference == decode::WindReference::kNorth || reference == decode::WindReference::kMagnetic;
-  return is_north ? WindFrame::kNorth : WindFrame::kRelative;
+  return frame_of_reference(reference);
 }
 
 }  // namespace
 
 NmeaSensor::NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<bus::BytePort> port)
-    : TextSensor(settings.text, std::move(port)), settings_(std::move(settings)), choice_(settings_.frame) {}
+    : TextSensor(settings.text, std::move(port)), settings_(std::move(settings)), choice_(settings_.wind.frame) {}
 
 void NmeaSensor::begin() {
   choice_.restart();
@@ -129,7 +127,8 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
   if (verdict == WindChoice::Verdict::kForeign) return decode::Refusal::kNotMine;
 
   // The speed may come in another message than the direction.
-  std::optional<double> direction_deg = choice_.takes_direction() ? north_direction_deg(*wind) : std::nullopt;
+  std::optional<double> direction_deg =
+      choice_.takes_direction() ? direction_from_north_deg(settings_.wind, *wind) : std::nullopt;
   if (direction_deg) {
     kept_direction_ = KeptDirection{source.name, *direction_deg, now.mono, !said.has_speed};
     if (held_ && !held_->direction_deg) held_->direction_deg = direction_deg;
@@ -204,19 +203,6 @@ std::optional<wind::StationQuantities> NmeaSensor::quantities_of(std::string_vie
 std::optional<wind::WindReading> NmeaSensor::take_held() {
   if (held_) choice_.settle();
   return std::exchange(held_, std::nullopt);
-}
-
-/// From true north, as far as the settings know how the device stands.
-std::optional<double> NmeaSensor::north_direction_deg(const decode::DecodedWind& wind) const {
-  if (!wind.direction_deg) return {};
-  double turn_deg = 0.0;
-  if (wind.reference == decode::WindReference::kMagnetic) {
-    turn_deg = settings_.variation_deg;
-  } else if (wind.reference != decode::WindReference::kNorth) {
-    turn_deg = settings_.north_offset_deg;
-  }
-  const double turned_deg = std::fmod(*wind.direction_deg + turn_deg, 360.0);
-  return decode::wrapped_direction_deg(turned_deg < 0.0 ? turned_deg + 360.0 : turned_deg);
 }
 
 std::string NmeaSensor::name() const {

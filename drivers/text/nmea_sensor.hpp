@@ -9,6 +9,7 @@
 
 #include "drivers/decode/decoded_wind.hpp"
 #include "drivers/decode/text_fields.hpp"
+#include "drivers/text/chosen_wind.hpp"
 #include "drivers/text/text_sensor.hpp"
 #include "drivers/text/wind_choice.hpp"
 #include "engine/base/parameter.hpp"
@@ -28,15 +29,13 @@ enum class NmeaFormat : std::uint8_t {
 struct NmeaSensorSettings {
   TextSensorSettings text;
   NmeaFormat format = NmeaFormat::kAuto;
-  std::vector<std::string> sentences;                           ///< take these only (MWV, MWD, ...); none: all
-  std::string talker;                                           ///< take this one only; empty: any
-  std::optional<WindFrame> frame;                               ///< accept this frame only; nothing: the best received
+  std::vector<std::string> sentences;  ///< take these only (MWV, MWD, ...); none: all
+  std::string talker;                  ///< take this one only; empty: any
+  ChosenWindSettings wind;
   decode::WhenMissing checksum = decode::WhenMissing::kRefuse;  ///< of NMEA sentences, and Vaisala's messages
   decode::WhenMissing makers_checksum =
       decode::WhenMissing::kRefuse;  ///< of the other makers' own formats, which always have one
   decode::WhenMissing status = decode::WhenMissing::kAccept;
-  double north_offset_deg = 0.0;  ///< what to add to a direction from the device's own mark
-  double variation_deg = 0.0;     ///< what to add to a direction from magnetic north
   int xdr_first_id = 0;
   double speed_range_m_s = 75.0;  ///< of Lufft's ASCII mode
 };
@@ -58,7 +57,6 @@ class NmeaSensor final : public TextSensor {
   std::string advice(decode::Refusal why, std::string_view line) const override;
 
   Result<decode::DecodedWind, decode::Refusal> decode(NmeaFormat format, std::string_view line) const;
-  std::optional<double> north_direction_deg(const decode::DecodedWind& wind) const;
 
   /// The last direction that was taken, kept for the speeds that follow.
   struct KeptDirection {

@@ -1,6 +1,7 @@
 #include "simulators/text/line_device.hpp"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -8,37 +9,57 @@
 namespace yuragi::simulators::text {
 namespace {
 
+struct LineFormat {
+  std::string_view name;
+  std::string (*line_of)(const PlayedMoment& moment);
+};
+
+constexpr std::array<LineFormat, 4> kLineFormats = {
+    {{"csv", [](const PlayedMoment& now) { return fmt::format("{:.2f},{:.1f}", now.speed_m_s, now.direction_deg); }},
+     {"key-value",
+      [](const PlayedMoment& now) {
+        return fmt::format("speed={:.2f} direction={:.1f}", now.speed_m_s, now.direction_deg);
+      }},
+     {"units",
+      [](const PlayedMoment& now) {
+        return fmt::format("speed: {:.2f} km/h, direction: {:.1f} deg", 3.6 * now.speed_m_s, now.direction_deg);
+      }},
+     {"json", [](const PlayedMoment& now) {
+        return fmt::format("{{\"speed\":{:.2f},\"direction\":{:.1f}}}", now.speed_m_s, now.direction_deg);
+      }}}};
+
 class LineDevice final : public TextDevice {
  public:
-  explicit LineDevice(bool has_keys) : has_keys_(has_keys) {}
+  explicit LineDevice(const LineFormat& format) : format_(format) {}
 
   std::span<const FaultKind> known_faults() const override { return {}; }
 
+  /// As Serial.println() of an Arduino ends a line.
   std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> /*fault*/) override {
-    // As Serial.println() of an Arduino ends a line.
-    constexpr std::string_view kKeys = "speed={:.2f} direction={:.1f}\r\n";
-    constexpr std::string_view kColumns = "{:.2f},{:.1f}\r\n";
-    return {fmt::format(fmt::runtime(has_keys_ ? kKeys : kColumns), moment.speed_m_s, moment.direction_deg)};
+    return {format_.line_of(moment) + "\r\n"};
   }
 
   bool is_request(std::string_view line) const override { return line == "?"; }
 
  private:
-  bool has_keys_;
+  LineFormat format_;
 };
 
 }  // namespace
 
 std::vector<std::string> line_format_names() {
-  return {"csv", "key-value"};
+  std::vector<std::string> names;
+  for (const LineFormat& format : kLineFormats) names.emplace_back(format.name);
+  return names;
 }
 
 std::unique_ptr<TextDevice> make_line_device(const std::string& format) {
-  const auto names = line_format_names();
-  if (std::ranges::find(names, format) == names.end()) {
-    throw std::runtime_error(fmt::format("no simulated format \"{}\"; known: {}", format, fmt::join(names, ", ")));
+  const auto* const found = std::ranges::find(kLineFormats, format, &LineFormat::name);
+  if (found == kLineFormats.end()) {
+    throw std::runtime_error(
+        fmt::format("no simulated format \"{}\"; known: {}", format, fmt::join(line_format_names(), ", ")));
   }
-  return std::make_unique<LineDevice>(format == "key-value");
+  return std::make_unique<LineDevice>(*found);
 }
 
 }  // namespace yuragi::simulators::text

@@ -51,7 +51,7 @@ void decode_everything(std::string_view line, unsigned choices) {
   gill.checksum = checksum;
   gill.status = status;
   decode::text::LineOptions numbers;
-  numbers.format = static_cast<decode::text::LineFormat>((choices >> 2U) % 3);
+  numbers.format = static_cast<decode::text::LineFormat>((choices >> 2U) % 4);
   numbers.separator = (choices & 32U) != 0 ? ' ' : ',';
   for (const std::string_view text : {line, std::string_view(sentence), std::string_view(frame)}) {
     require_physical(decode::text::decode_nmea({.checksum = checksum, .status = status, .xdr_first_id = 0}, text));

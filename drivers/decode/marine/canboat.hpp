@@ -17,7 +17,7 @@ namespace yuragi::drivers::decode::marine {
 // Fields are also named windSpeed or WindSpeed (-camel, -upper-camel), the whole then stands in {"windData": ...};
 // the reference may be {"value":2,"name":"Apparent"} (-nv), and numbers may be texts (before 2014). What has no value
 // is left out or null. Speeds are in m/s. Angles are in degrees ("units":"std"), or in radians with -si ("si") and from
-// canboatjs: the first line says so, and who comes later does not learn it. Sources: drivers/SOURCES.md S13.
+// canboatjs: the first line says so, and who comes later does not learn it. Sources: drivers/SOURCES.md S11.
 
 enum class AngleUnit : std::uint8_t { kDegrees, kRadians };
 

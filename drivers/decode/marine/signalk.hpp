@@ -21,7 +21,7 @@ namespace yuragi::drivers::decode::marine {
 //     {"path":"environment.wind.speedApparent","value":4.01},{"path":"environment.wind.angleApparent","value":-0.22}]}]}
 //
 // Values are in m/s and radians; angles from the bow are negative to port. What is not known is null. A server sends
-// each value of a message in a delta of its own, with the message's source and time. Sources: drivers/SOURCES.md S13.
+// each value of a message in a delta of its own, with the message's source and time. Sources: drivers/SOURCES.md S11.
 
 /// The values below environment.wind that are read.
 enum class SignalKQuantity : std::uint8_t {

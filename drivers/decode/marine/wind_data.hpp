@@ -19,7 +19,7 @@ namespace yuragi::drivers::decode::marine {
 //   5      bits 0 to 2: what the angle counts from (WindDataReference); the others are reserved
 //   6, 7   reserved
 //
-// 0xFFFD to 0xFFFF stand for no value. Sources: drivers/SOURCES.md S13.
+// 0xFFFD to 0xFFFF stand for no value. Sources: drivers/SOURCES.md S11.
 
 inline constexpr std::uint32_t kWindDataPgn = 130306;
 

@@ -1,31 +1,87 @@
 #include "drivers/decode/text/line.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/base/units.hpp"
 
 namespace yuragi::drivers::decode::text {
 namespace {
 
 using LineValue = Result<std::optional<double>, Refusal>;
 
-/// The three texts as they stand in the line.
-struct LineTexts {
-  std::string_view speed;
-  std::string_view direction;
-  std::string_view gust;
+/// A value as it stands in the line, and the unit behind it.
+struct LineText {
+  std::string_view number;
+  std::string_view unit;
 };
+struct LineTexts {
+  LineText speed;
+  LineText direction;
+  LineText gust;
+};
+
+/// Words for units of speed, and their size in m/s.
+struct SpeedWord {
+  std::string_view word;
+  double metres_per_second;
+};
+constexpr std::array<SpeedWord, 13> kSpeedWords = {{{"m/s", 1.0},
+                                                    {"mps", 1.0},
+                                                    {"km/h", kMetresPerSecondPerKmh},
+                                                    {"kmh", kMetresPerSecondPerKmh},
+                                                    {"kph", kMetresPerSecondPerKmh},
+                                                    {"kn", kMetresPerSecondPerKnot},
+                                                    {"kt", kMetresPerSecondPerKnot},
+                                                    {"kts", kMetresPerSecondPerKnot},
+                                                    {"knots", kMetresPerSecondPerKnot},
+                                                    {"mph", kMetresPerSecondPerMph},
+                                                    {"mi/h", kMetresPerSecondPerMph},
+                                                    {"ft/s", 0.3048},
+                                                    {"fps", 0.3048}}};
+constexpr std::array<std::string_view, 3> kDegreeWords = {"deg", "degrees", "\xC2\xB0"};
+
+/// The size of a unit of that word for that quantity; nothing where it is none.
+std::optional<double> unit_named(std::string_view word, bool is_direction) {
+  if (is_direction)
+    return std::ranges::find(kDegreeWords, word) != kDegreeWords.end() ? std::optional(1.0) : std::nullopt;
+  const auto* const found = std::ranges::find(kSpeedWords, word, &SpeedWord::word);
+  return found != kSpeedWords.end() ? std::optional(found->metres_per_second) : std::nullopt;
+}
+
+bool is_unit(std::string_view word) {
+  return unit_named(word, false) || unit_named(word, true);
+}
 
 bool says_nothing(std::string_view text) {
   return text.empty() || text == "nan" || text == "NaN" || text == "NAN" || text == "null";
 }
 
-LineValue value_of(const LineOptions& options, const LineQuantity& quantity, std::string_view text) {
-  if (says_nothing(text)) return std::optional<double>();
-  const auto number = parse_number(text);
-  if (!number) return number.error();
-  if (*number == options.invalid) return std::optional<double>();
-  const double value = **number * quantity.scale + quantity.offset;
+/// "4.2" or "4.2 km/h", in which the unit need not be known.
+LineText with_unit(std::string_view text) {
+  text = trimmed(text);
+  const std::size_t end = std::min(text.find_first_not_of("+-.0123456789"), text.size());
+  return end > 0 ? LineText{text.substr(0, end), trimmed(text.substr(end))} : LineText{text, {}};
+}
+
+/// The value of a number in the quantity's unit, or in `unit` where the line says one.
+LineValue scaled(const LineOptions& options, const LineQuantity& quantity, double number, std::optional<double> unit) {
+  if (number == options.invalid) return std::optional<double>();
+  const double value = (number * quantity.scale + quantity.offset) * unit.value_or(quantity.unit);
   if (!std::isfinite(value)) return Refusal::kImplausible;
   return std::optional(value);
+}
+
+LineValue value_of(const LineOptions& options, const LineQuantity& quantity, const LineText& text, bool is_direction) {
+  if (says_nothing(text.number)) return std::optional<double>();
+  const auto number = parse_number(text.number);
+  if (!number) return number.error();
+  const std::optional<double> unit = unit_named(text.unit, is_direction);
+  if (!text.unit.empty() && !unit) return Refusal::kMalformed;
+  return scaled(options, quantity, **number, unit);
 }
 
 /// The next piece of `rest` that stands between separators; empty at the end.
@@ -54,7 +110,7 @@ Result<LineTexts, Refusal> texts_of_columns(const LineOptions& options, std::str
   if (!fields.are_all) return Refusal::kMalformed;
 
   const auto column = [&](const LineQuantity& quantity) {
-    return quantity.column ? fields[*quantity.column] : std::string_view();
+    return with_unit(quantity.column ? fields[*quantity.column] : std::string_view());
   };
   return LineTexts{column(options.speed), column(options.direction), column(options.gust)};
 }
@@ -75,11 +131,22 @@ Result<LineTexts, Refusal> texts_of_keys(const LineOptions& options, std::string
       if (next.find_first_of("=:") == std::string_view::npos) text = next_piece(line, " \t,;&");
     }
 
-    const auto take = [&](const LineQuantity& quantity, std::string_view& into, bool& has) {
+    LineText value = with_unit(text);
+    if (value.unit.empty() && !value.number.empty()) {  // "4.2 km/h"
+      std::string_view ahead = line;
+      const std::string_view word = next_piece(ahead, " \t");
+      const std::string_view unit = word.substr(0, word.find_first_of(",;&"));
+      if (is_unit(unit)) {
+        value.unit = unit;
+        line.remove_prefix(static_cast<std::size_t>(unit.data() + unit.size() - line.data()));
+      }
+    }
+
+    const auto take = [&](const LineQuantity& quantity, LineText& into, bool& has) {
       if (quantity.key.empty() || key != quantity.key) return true;
       if (has) return false;
       has = true;
-      into = text;
+      into = value;
       return true;
     };
     const bool is_first_of_its_key = take(options.speed, texts.speed, has_speed) &&
@@ -91,6 +158,67 @@ Result<LineTexts, Refusal> texts_of_keys(const LineOptions& options, std::string
   return texts;
 }
 
+/// The three values, in m/s and degrees.
+struct LineValues {
+  std::optional<double> speed_m_s;
+  std::optional<double> direction_deg;
+  std::optional<double> gust_m_s;
+};
+
+Result<LineValues, Refusal> values_of_texts(const LineOptions& options, const LineTexts& texts) {
+  const LineValue speed_m_s = value_of(options, options.speed, texts.speed, false);
+  if (!speed_m_s) return speed_m_s.error();
+  const LineValue direction_deg = value_of(options, options.direction, texts.direction, true);
+  if (!direction_deg) return direction_deg.error();
+  const LineValue gust_m_s = value_of(options, options.gust, texts.gust, false);
+  if (!gust_m_s) return gust_m_s.error();
+  return LineValues{*speed_m_s, *direction_deg, *gust_m_s};
+}
+
+/// What a JSON object has at a key, or at a JSON pointer; nullptr: no such place.
+const nlohmann::json* find_in(const nlohmann::json& object, const std::string& key) {
+  if (!key.starts_with('/')) return object.contains(key) ? &object[key] : nullptr;
+  try {
+    const nlohmann::json::json_pointer pointer(key);
+    return object.contains(pointer) ? &object[pointer] : nullptr;
+  } catch (const nlohmann::json::exception&) {
+    return nullptr;
+  }
+}
+
+Result<LineValues, Refusal> values_of_json(const LineOptions& options, std::string_view line) {
+  const nlohmann::json object = nlohmann::json::parse(line, nullptr, false);
+  if (!object.is_object()) return Refusal::kMalformed;
+  bool has_any = false;
+  const auto value_at = [&](const LineQuantity& quantity, bool is_direction) -> LineValue {
+    const nlohmann::json* found = quantity.key.empty() ? nullptr : find_in(object, quantity.key);
+    if (found == nullptr) return std::optional<double>();
+    has_any = true;
+    if (found->is_null()) return std::optional<double>();
+    if (found->is_number()) return scaled(options, quantity, found->get<double>(), std::nullopt);
+    if (!found->is_string()) return Refusal::kMalformed;
+    return value_of(options, quantity, with_unit(found->get_ref<const std::string&>()), is_direction);
+  };
+  const LineValue speed_m_s = value_at(options.speed, false);
+  if (!speed_m_s) return speed_m_s.error();
+  const LineValue direction_deg = value_at(options.direction, true);
+  if (!direction_deg) return direction_deg.error();
+  const LineValue gust_m_s = value_at(options.gust, false);
+  if (!gust_m_s) return gust_m_s.error();
+  if (!has_any) return Refusal::kNotMine;
+  return LineValues{*speed_m_s, *direction_deg, *gust_m_s};
+}
+
+Result<LineValues, Refusal> values_of_line(const LineOptions& options, std::string_view line) {
+  const bool is_auto = options.format == LineFormat::kAuto;
+  if (options.format == LineFormat::kJson || (is_auto && line.front() == '{')) return values_of_json(options, line);
+  const bool has_keys =
+      options.format == LineFormat::kKeys || (is_auto && line.find_first_of("=:") != std::string_view::npos);
+  const auto texts = has_keys ? texts_of_keys(options, line) : texts_of_columns(options, line);
+  if (!texts) return texts.error();
+  return values_of_texts(options, *texts);
+}
+
 }  // namespace
 
 Result<DecodedWind, Refusal> decode_line(const LineOptions& options, std::string_view line) noexcept {
@@ -98,24 +226,14 @@ Result<DecodedWind, Refusal> decode_line(const LineOptions& options, std::string
   if (line.empty()) return Refusal::kTooShort;
   if (line.front() == '#') return Refusal::kNotMine;
 
-  const bool has_keys = options.format == LineFormat::kKeys ||
-                        (options.format == LineFormat::kAuto && line.find_first_of("=:") != std::string_view::npos);
-  const auto texts = has_keys ? texts_of_keys(options, line) : texts_of_columns(options, line);
-  if (!texts) return texts.error();
-
-  const LineValue speed_m_s = value_of(options, options.speed, texts->speed);
-  if (!speed_m_s) return speed_m_s.error();
-  const LineValue direction_deg = value_of(options, options.direction, texts->direction);
-  if (!direction_deg) return direction_deg.error();
-  const LineValue gust_m_s = value_of(options, options.gust, texts->gust);
-  if (!gust_m_s) return gust_m_s.error();
-
+  const auto values = values_of_line(options, line);
+  if (!values) return values.error();
   DecodedWind wind;
   wind.reference = options.reference;
-  wind.speed_m_s = *speed_m_s;
-  wind.gust_m_s = *gust_m_s;
-  if (*direction_deg) {
-    wind.direction_deg = wrapped_direction_deg(**direction_deg);
+  wind.speed_m_s = values->speed_m_s;
+  wind.gust_m_s = values->gust_m_s;
+  if (values->direction_deg) {
+    wind.direction_deg = wrapped_direction_deg(*values->direction_deg);
     if (!wind.direction_deg) return Refusal::kImplausible;
   }
   return checked(wind);

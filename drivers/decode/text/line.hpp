@@ -15,22 +15,29 @@ namespace yuragi::drivers::decode::text {
 //
 //   4.2,270,6.1                      columns
 //   speed=4.2 direction=270; gust=6.1    keys; ':' does as well as '=', and blank, tab, ',', ';' and '&' separate
+//   speed: 15.1 km/h, direction: 270 deg    the same, with units: one that the line says counts before the configured
+//   one
+//   {"wind": {"speed": 4.2}}             JSON; a key is a name, or a JSON pointer (RFC 6901) such as /wind/speed
 //
 // There is no standard: the options define the columns or keys. "nan", as Arduino's Serial.print writes it, an empty
-// field and "null" mean that the value is not known.
+// field and "null" mean that the value is not known. Units of speed: m/s, mps, km/h, kmh, kph, kn, kt, kts, knots, mph,
+// mi/h, ft/s; of direction: deg, degrees and the degree sign.
 
 enum class LineFormat : std::uint8_t {
-  kAuto,  ///< keys if the line has '=' or ':', otherwise columns
+  kAuto,  ///< JSON if the line begins with '{', keys if it has '=' or ':', otherwise columns
   kColumns,
   kKeys,
+  kJson,
 };
 
-/// The column or key of a quantity, and its scale: value * scale + offset is in m/s, or in degrees.
+/// The column or key of a quantity, and its scale: value * scale + offset is in its unit, of which one is `unit` m/s or
+/// degrees.
 struct LineQuantity {
   std::optional<std::size_t> column;  ///< from 0; none: the line never has it as a column
   std::string key;                    ///< exact; empty: the line never has it as a key
   double scale = 1.0;
   double offset = 0.0;
+  double unit = 1.0;
 };
 
 struct LineOptions {
@@ -44,8 +51,10 @@ struct LineOptions {
 };
 
 /// The wind in one line, or why there is none: kTooShort (an empty line), kNotMine (a comment: it begins with '#'; or
-/// it has none of the keys), kMalformed (what should be a number is none, or a key comes twice), kInvalid (no value is
-/// there), kImplausible. Lines that end before a column leave it empty. Thread-safe and realtime-safe: yes.
+/// it has none of the keys), kMalformed (what should be a number is none, or a key comes twice, or JSON that is none),
+/// kInvalid (no value is
+/// there), kImplausible. A unit that is not known is kMalformed where it stands at the number itself. Lines that end
+/// before a column leave it empty. Thread-safe: yes. Realtime-safe: yes, but for JSON, which allocates.
 Result<DecodedWind, Refusal> decode_line(const LineOptions& options, std::string_view line) noexcept;
 
 }  // namespace yuragi::drivers::decode::text

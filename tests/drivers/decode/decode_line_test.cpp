@@ -76,6 +76,40 @@ TEST(NumberLine, IsReadAsTheOptionsSay) {
   EXPECT_TRUE(reads(text::decode_line(options, "w=18 direction=7"), 5.0, {}));
 }
 
+TEST(NumberLine, TakesTheUnitThatItSays) {
+  text::LineOptions options;
+  options.speed.unit = 1852.0 / 3600.0;  // configured: knots
+  EXPECT_TRUE(reads(text::decode_line(options, "speed: 18 km/h, direction: 270 deg"), 5.0, 270.0));
+  EXPECT_TRUE(reads(text::decode_line(options, "direction: 270 speed: 18 km/h"), 5.0, 270.0));
+  EXPECT_TRUE(reads(text::decode_line(options, "speed=5m/s;direction=270\xC2\xB0"), 5.0, 270.0));
+  EXPECT_TRUE(reads(text::decode_line(options, "5 m/s,270 degrees"), 5.0, 270.0));
+  EXPECT_TRUE(reads(text::decode_line(options, "speed=10 mph"), 4.4704, {}));
+  EXPECT_TRUE(reads(text::decode_line(options, "speed=10"), 5.1444, {}));
+  EXPECT_TRUE(reads(text::decode_line(options, "speed=10 direction=20 ok"), 5.1444, 20.0));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "speed=10parsecs"), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "speed: 10 deg"), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused(text::decode_line(options, "speed: 10, direction: 20 km/h"), Refusal::kMalformed));
+}
+
+TEST(NumberLine, IsAnObjectInJson) {
+  text::LineOptions options;
+  EXPECT_TRUE(reads(text::decode_line(options, R"({"speed": 4.2, "direction": "270", "other": [1]})"), 4.2, 270.0));
+  EXPECT_TRUE(reads(text::decode_line(options, R"({"speed": "15.12 km/h", "direction": null})"), 4.2, {}));
+  options.speed.key = "/wind/0/speed";
+  options.speed.scale = 0.1;
+  EXPECT_TRUE(reads(text::decode_line(options, R"({"wind": [{"speed": 42}]})"), 4.2, {}));
+  options.speed.key = "/~";  // no pointer
+  EXPECT_TRUE(is_refused(text::decode_line(options, R"({"speed": 4.2})"), Refusal::kNotMine));
+  options = {};
+  EXPECT_TRUE(is_refused(text::decode_line(options, R"({"volts": 4.2})"), Refusal::kNotMine));
+  EXPECT_TRUE(is_refused(text::decode_line(options, R"({"speed": null})"), Refusal::kInvalid));
+  EXPECT_TRUE(is_refused(text::decode_line(options, R"({"speed": [4.2]})"), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused(text::decode_line(options, R"({"speed": 1e300})"), Refusal::kImplausible));
+  EXPECT_TRUE(is_refused(text::decode_line(options, R"({"speed": 4.2)"), Refusal::kMalformed));
+  options.format = text::LineFormat::kJson;
+  EXPECT_TRUE(is_refused(text::decode_line(options, "4.2,270"), Refusal::kMalformed));
+}
+
 TEST(NumberLine, WithoutAValueIsNeverZero) {
   const text::LineOptions options;
   EXPECT_TRUE(reads(text::decode_line(options, "nan,270"), {}, 270.0));

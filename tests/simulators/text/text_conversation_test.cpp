@@ -133,7 +133,7 @@ TEST(TextConversation, AgreesWithASignalKServerAndADevice) {
 }
 
 TEST(TextConversation, AgreesOnLinesOfNumbers) {
-  for (const std::string format : {"csv", "key-value"}) {
+  for (const std::string format : {"csv", "key-value", "units", "json"}) {
     TextSimulatorProcess simulator("line", {"--tcp", "127.0.0.1:0", "--format", format, "--rate", "20"});
     TextSensorRun live("line", tcp_to(simulator.port()));
     ASSERT_TRUE(live.receives(5)) << live.sink.last_detail();

@@ -101,6 +101,10 @@ TEST(SignalKDevice, SaysItsWindToWhomAsksForItAfterWhatItRemembers) {
 TEST(LineDevice, SaysColumnsAndKeys) {
   EXPECT_THAT(make_line_device("csv")->send_messages(kMoment, {}), ElementsAre("3.42,230.6\r\n"));
   EXPECT_THAT(make_line_device("key-value")->send_messages(kMoment, {}), ElementsAre("speed=3.42 direction=230.6\r\n"));
+  EXPECT_THAT(make_line_device("units")->send_messages(kMoment, {}),
+              ElementsAre("speed: 12.31 km/h, direction: 230.6 deg\r\n"));
+  EXPECT_THAT(make_line_device("json")->send_messages(kMoment, {}),
+              ElementsAre("{\"speed\":3.42,\"direction\":230.6}\r\n"));
   EXPECT_THROW(make_line_device("xml"), std::runtime_error);
 }
 
