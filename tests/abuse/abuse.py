@@ -26,7 +26,7 @@ def main():
     parser.add_argument("--schema", required=True, help="folder of the modules that flatc --python made")
     parser.add_argument("--long", action="store_true")
     parser.add_argument("--seed", type=int, default=None, help="of all random choices; default: another each time")
-    parser.add_argument("--minutes", type=float, default=30.0, help="how long the row half-hour takes in its long form (30)")
+    parser.add_argument("--minutes", type=float, help="how long the rows half-hour (30) and stations (120) take in their long form")
     parser.add_argument("--beside", type=int, default=1, help="rows that are tried at the same time")
     parser.add_argument("--markdown", help="write the table into this file, too")
     options = parser.parse_args()

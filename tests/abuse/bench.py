@@ -57,7 +57,7 @@ class NotHere(Exception):
 class Settings:
     """What the rows run, and how long."""
 
-    def __init__(self, programs, helpers, schema_modules, is_long, seed, minutes=30.0):
+    def __init__(self, programs, helpers, schema_modules, is_long, seed, minutes=None):
         self.yuragi = os.path.abspath(os.path.join(programs, "yuragi"))
         self.simulator = os.path.abspath(os.path.join(programs, "yuragi-sim"))
         self.faults_library = os.path.abspath(os.path.join(helpers, "libyuragi_abuse_faults.so"))
@@ -65,7 +65,7 @@ class Settings:
         self.schema_modules = os.path.abspath(schema_modules)
         self.is_long = is_long
         self.seed = seed
-        self.minutes = minutes  # of the row half-hour
+        self.minutes = minutes  # of the rows that take long; None: as long as each is meant to
 
 
 class Bench:

@@ -90,7 +90,8 @@ class DiskFaults(threading.Thread):
 
 @row("half an hour at its own pace: sensors, disk and clients at random", short_s=20)
 def half_hour(bench):
-    quiet_s, fault_s = bench.choose((4.0 * bench.settings.minutes, 60.0 * bench.settings.minutes), (3.0, 14.0))
+    minutes = bench.settings.minutes or 30.0
+    quiet_s, fault_s = bench.choose((4.0 * minutes, 60.0 * minutes), (3.0, 14.0))
     ports = {"modbus": free_port(), "nmea": free_port()}
     seed = str(bench.random.randrange(1 << 31))
     period_s = bench.choose("20", "4")

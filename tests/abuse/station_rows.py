@@ -10,6 +10,7 @@ from bench import HANG_S, NotHere, free_port, row, wait_until
 
 BELIEVED = ("live", "simulated")
 MOST_UNBELIEVED_S = 2.0  # of a whole run, for each station: two looks
+MOST_UNBELIEVED_SHORT = 0.2  # of the short form, in which a machine that others use stands still for longer than a station is silent
 
 STATIONS = """\
 [[sensor]]
@@ -136,8 +137,8 @@ def sensors_of(bench, address):
 def stations(bench):
     if not os.path.exists("/usr/sbin/mosquitto"):
         raise NotHere("mosquitto is not installed")
-    seconds = bench.choose(7200.0, 20.0)
-    pace = bench.choose(1.0, 10.0)  # by which the short form is faster
+    seconds = bench.choose(60.0 * (bench.settings.minutes or 120.0), 25.0)
+    pace = bench.choose(1.0, 5.0)  # by which the short form is faster
     broker_port = free_port()
     settings = f"listener {broker_port} 127.0.0.1\nallow_anonymous true\nuser root\npersistence false\n"
     bench.start("/usr/sbin/mosquitto", "-c", bench.file("broker.conf", settings)).wait_for("running")
@@ -171,7 +172,7 @@ def stations(bench):
         all_s = sum(times[name].values())
         bench.expect(all_s > 0.0, f"{name}: no reading came")
         unbelieved_s = sum(in_state_s for state, in_state_s in times[name].items() if state not in BELIEVED)
-        bench.expect(unbelieved_s <= MOST_UNBELIEVED_S, f"{name}: for {unbelieved_s:.1f} s of {all_s:.0f} it was {times[name]}")
+        bench.expect(unbelieved_s <= bench.choose(MOST_UNBELIEVED_S, MOST_UNBELIEVED_SHORT * all_s), f"{name}: for {unbelieved_s:.1f} s of {all_s:.0f} it was {times[name]}")
         bench.figure(name + ": " + ", ".join(f"{state} {in_state_s:,.0f} s" for state, in_state_s in sorted(times[name].items())))
     bench.expect(calmest_m_s < 0.7, f"a calm of 0.0 and 0.1 m/s blew with {calmest_m_s:.2f} m/s")
     bench.figure(f"a calm of 0.0 and 0.1 m/s, published on change, blew with {calmest_m_s:.2f} m/s at the most")
