@@ -464,12 +464,16 @@ port = {port}
         config = self.file("fast.toml", '[[sensor]]\ndriver = "synthetic"\nrate = 50\n')
         daemon = self.start_daemon("--config", config, "--record", log)
         with Stream(daemon.address(), poses=False) as stream:
-            sensor = stream.wait_for_sensor(lambda seen: seen.Readings() > 150)
+            told = stream.next("Sensors")
+            while told.Sensors(0).Readings() <= 150:
+                told = stream.next("Sensors")
         daemon.end(signal.SIGKILL)
         csv = run("export", log, "-o", "-")
         self.assertEqual(csv.returncode, 0, csv.stderr)
         rows = len(csv.stdout.splitlines()) - 1
-        self.assertGreaterEqual(rows, sensor.Readings() - 50)
+        self.assertGreaterEqual(rows, told.Recorder().Written(), "what it said is written is there")
+        # A commit begins once a second, and takes a while by itself where others use the disk: tests/abuse measures it.
+        self.assertGreaterEqual(rows, told.Sensors(0).Readings() - 100)
 
     def test_a_clean_end_leaves_one_file_with_every_reading_and_the_configuration(self):
         log = self.file("storm.windlog")

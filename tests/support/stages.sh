@@ -5,6 +5,7 @@ passed=0
 failed=0
 skipped=0
 without_record=0 # of those that were skipped: for want of the real recordings in ../shared/data
+again=0          # of those that passed: only by themselves, after they had failed among all (tests/support/run_again.py)
 stage_times=()
 complaints=()
 
@@ -20,12 +21,13 @@ stage() {
   stage_times+=("$(printf '%-16s %5d s' "$name" $((SECONDS - started)))")
 }
 
-# add PASSED FAILED [SKIPPED [OF THESE WITHOUT THE RECORD]]
+# add PASSED FAILED [SKIPPED [OF THESE WITHOUT THE RECORD [OF THE PASSED BY THEMSELVES ONLY]]]
 add() {
   passed=$((passed + $1))
   failed=$((failed + $2))
   skipped=$((skipped + ${3:-0}))
   without_record=$((without_record + ${4:-0}))
+  again=$((again + ${5:-0}))
 }
 
 # check WHAT COMMAND...: a stage's step that counts as one failed test if it fails, and is otherwise not counted.
@@ -39,21 +41,22 @@ check() {
   return 1
 }
 
-# count_results FILE: "PASSED FAILED SKIPPED WITHOUT_RECORD" of CTest's JUnit file, then the last words of the first five tests
-# that failed, and the names of all. CTest also calls skipped what could not be started (a missing program, a failed fixture):
+# count_results FILE: "PASSED FAILED SKIPPED WITHOUT_RECORD AGAIN" of CTest's JUnit file, then the last words of the first five
+# tests that failed, the names of all, and of those that passed only by themselves. CTest also calls skipped what could not be started (a missing program, a failed fixture):
 # that is a failure here. A test that is skipped for want of a real recording names it.
 count_results() {
   /usr/bin/python3 - "$1" <<'PYTHON'
 import sys
 import xml.etree.ElementTree
 
-counts = [0, 0, 0, 0]
+counts = [0, 0, 0, 0, 0]
 failures = []
 for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
     reason = case.find("skipped")
     asked_to_skip = reason is not None and reason.get("message", "").startswith("SKIP_")
     if case.get("status") == "run":
         counts[0] += 1
+        counts[4] += case.get("again") == "true"
     elif case.get("status") == "disabled" or asked_to_skip:
         counts[2] += 1
         counts[3] += "shared/data" in case.findtext("system-out", "")
@@ -66,6 +69,9 @@ for case in failures[:5]:
     print(*("    " + line for line in case.findtext("system-out", "").splitlines()[-30:]), sep="\n")
 for case in failures:
     print("FAILED: " + case.get("name"))
+for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
+    if case.get("again") == "true":
+        print("passed only by itself, failed among all: " + case.get("name"))
 PYTHON
 }
 
@@ -79,7 +85,7 @@ collect() {
   while IFS= read -r line; do
     [ -z "$line" ] || complaints+=("$line")
   done < <(tail -n +2 <<<"$counts")
-  # shellcheck disable=SC2046  # four words
+  # shellcheck disable=SC2046  # five words
   add $(head -n 1 <<<"$counts")
   # A complaint that stands in no test's result: no test matched, say.
   if [ "$status" -ne 0 ] && [ "$failed" -eq "$failed_before" ]; then
@@ -96,6 +102,11 @@ test_preset() {
   check "building $preset" cmake --build --preset "$preset" || return
   # Three times as many at once as there are cores: those that talk to devices, simulated ones, mostly wait.
   ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" "$@" || status=$?
+  # Not where a sanitizer looks: what it finds once is there.
+  if [ "$status" -ne 0 ] && [ "$preset" = test ] && [ -e "$results" ]; then
+    /usr/bin/python3 tests/support/run_again.py "$preset" "$results" || true
+    if [ "$(count_results "$results" | head -n 1 | cut -d ' ' -f 2)" = 0 ]; then status=0; fi
+  fi
   collect "ctest of $preset" "$results" "$status"
 }
 
@@ -103,6 +114,7 @@ test_preset() {
 # nothing ran.
 finish() {
   local line="$passed passed, $failed failed"
+  [ "$again" -eq 0 ] || line+=", $again of the passed only by themselves"
   [ "$without_record" -eq 0 ] || line+=", $without_record skipped: ../shared/data is not there"
   [ "$skipped" -eq "$without_record" ] || line+=", $((skipped - without_record)) skipped for other reasons"
   if [ ${#stage_times[@]} -gt 1 ]; then
