@@ -27,7 +27,7 @@ std::uint16_t crc_ccitt(std::string_view bytes) {
   std::uint16_t crc = 0;
   const auto add = [&crc](unsigned half) {
     const unsigned top = (crc >> 12U) ^ half;
-    crc = static_cast<std::uint16_t>((crc << 4U) ^ (top * 0x1021U));
+    crc = static_cast<std::uint16_t>((static_cast<unsigned>(crc) << 4U) ^ (top * 0x1021U));
   };
   for (const char c : bytes) {
     const auto byte = static_cast<unsigned char>(c);
