@@ -49,6 +49,7 @@ class LineDevice final : public TextDevice {
 
 std::vector<std::string> line_format_names() {
   std::vector<std::string> names;
+  names.reserve(kLineFormats.size());
   for (const LineFormat& format : kLineFormats) names.emplace_back(format.name);
   return names;
 }

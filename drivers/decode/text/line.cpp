@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 
 #include <nlohmann/json.hpp>
 
@@ -178,12 +179,8 @@ Result<LineValues, Refusal> values_of_texts(const LineOptions& options, const Li
 /// What a JSON object has at a key, or at a JSON pointer; nullptr: no such place.
 const nlohmann::json* find_in(const nlohmann::json& object, const std::string& key) {
   if (!key.starts_with('/')) return object.contains(key) ? &object[key] : nullptr;
-  try {
-    const nlohmann::json::json_pointer pointer(key);
-    return object.contains(pointer) ? &object[pointer] : nullptr;
-  } catch (const nlohmann::json::exception&) {
-    return nullptr;
-  }
+  const nlohmann::json::json_pointer pointer(key);
+  return object.contains(pointer) ? &object[pointer] : nullptr;
 }
 
 Result<LineValues, Refusal> values_of_json(const LineOptions& options, std::string_view line) {
@@ -211,7 +208,13 @@ Result<LineValues, Refusal> values_of_json(const LineOptions& options, std::stri
 
 Result<LineValues, Refusal> values_of_line(const LineOptions& options, std::string_view line) {
   const bool is_auto = options.format == LineFormat::kAuto;
-  if (options.format == LineFormat::kJson || (is_auto && line.front() == '{')) return values_of_json(options, line);
+  if (options.format == LineFormat::kJson || (is_auto && line.front() == '{')) {
+    try {
+      return values_of_json(options, line);
+    } catch (const std::exception&) {  // a key that is no JSON pointer, or no memory
+      return Refusal::kMalformed;
+    }
+  }
   const bool has_keys =
       options.format == LineFormat::kKeys || (is_auto && line.find_first_of("=:") != std::string_view::npos);
   const auto texts = has_keys ? texts_of_keys(options, line) : texts_of_columns(options, line);

@@ -99,7 +99,7 @@ TEST(NumberLine, IsAnObjectInJson) {
   options.speed.scale = 0.1;
   EXPECT_TRUE(reads(text::decode_line(options, R"({"wind": [{"speed": 42}]})"), 4.2, {}));
   options.speed.key = "/~";  // no pointer
-  EXPECT_TRUE(is_refused(text::decode_line(options, R"({"speed": 4.2})"), Refusal::kNotMine));
+  EXPECT_TRUE(is_refused(text::decode_line(options, R"({"speed": 4.2})"), Refusal::kMalformed));
   options = {};
   EXPECT_TRUE(is_refused(text::decode_line(options, R"({"volts": 4.2})"), Refusal::kNotMine));
   EXPECT_TRUE(is_refused(text::decode_line(options, R"({"speed": null})"), Refusal::kInvalid));
