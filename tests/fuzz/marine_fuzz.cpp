@@ -1,10 +1,11 @@
-// Any bytes as lines of an NMEA 2000 gateway, of canboat and of a Signal K server: what is decoded has a speed and is
-// physical.
+// Any bytes as lines of an NMEA 2000 gateway, of candump, of canboat and of a Signal K server: what is decoded has a
+// speed and is physical.
 #include <cstdint>
 #include <cstdlib>
 #include <string>
 
 #include "drivers/decode/marine/canboat.hpp"
+#include "drivers/decode/marine/candump.hpp"
 #include "drivers/decode/marine/signalk.hpp"
 #include "drivers/decode/marine/yacht_devices.hpp"
 
@@ -26,6 +27,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {  // NOLINT(readability-identifier-naming)
   const std::string line(reinterpret_cast<const char*>(data), size);
   require_wind(marine::decode_yacht_devices(line));
+  for (const std::string& frame : {line, "can0 09FD0205#" + line, "can0  09FD0205   [8]  " + line}) {
+    require_wind(marine::decode_candump(frame));
+    const auto told = marine::candump_controller_state(frame);
+    if (told) require_marine(marine::decode_candump(frame).error() == Refusal::kException);
+  }
   require_wind(marine::decode_wind_data(1, ByteSpan(data, size)));
   for (const std::string& record : {line, R"({"src":1,"pgn":130306,"fields":{)" + line + "}}"}) {
     require_wind(marine::decode_canboat({.angle_unit = {}}, record));

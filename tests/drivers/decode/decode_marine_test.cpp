@@ -1,12 +1,14 @@
-// Frames and lines as the makers and projects print them: Yacht Devices YDNU-02 manual, appendix E; canboat and
-// canboatjs tests; the Signal K specification.
+// Frames and lines as the makers and projects print them: Yacht Devices YDNU-02 manual, appendix E; can-utils lib.h;
+// canboat and canboatjs tests; the Signal K specification.
 #include <array>
 #include <random>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "drivers/decode/marine/bus_frame.hpp"
 #include "drivers/decode/marine/canboat.hpp"
+#include "drivers/decode/marine/candump.hpp"
 #include "drivers/decode/marine/signalk.hpp"
 #include "drivers/decode/marine/yacht_devices.hpp"
 #include "engine/base/units.hpp"
@@ -113,6 +115,68 @@ TEST(YachtDevices, ThatIsHurtIsRefused) {
         "$WIMWV, 230.6 R 3.42 M A*12"}) {
     EXPECT_TRUE(refuses(decode_yacht_devices(line), Refusal::kMalformed)) << line;
   }
+}
+
+TEST(BusIdentifier, IsTakenApart) {
+  const BusIdentifier wind = bus_identifier_of(0x09FD0205);
+  EXPECT_EQ(wind.priority, 2);
+  EXPECT_EQ(wind.pgn, 130306U);
+  EXPECT_EQ(wind.address, 5);
+  const BusIdentifier to_all = bus_identifier_of(0x1DEFFF00);
+  EXPECT_EQ(to_all.priority, 7);
+  EXPECT_EQ(to_all.pgn, 126720U) << "its destination is no part of it";
+  EXPECT_EQ(to_all.address, 0);
+}
+
+TEST(Candump, GivesTheWindInEachForm) {
+  for (const char* line :
+       {"can0 09FD0205#641E01C8F1FAFFFF", "(1436509052.249713) vcan0 09FD0205#641e01c8f1faffff\n",
+        "(1436509052.249713) can0 09FD0205#641E01C8F1FAFFFF R", "  can0  09FD0205   [8]  64 1E 01 C8 F1 FA FF FF",
+        " (000.000000)  can0  09FD0205   [8]  64 1E 01 C8 F1 FA FF FF   'd.......'"}) {
+    EXPECT_TRUE(looks_like_candump(line)) << line;
+    const auto said = decode_candump(line);
+    ASSERT_TRUE(said) << line;
+    EXPECT_EQ(said->address, 5);
+    EXPECT_EQ(said->reference, WindDataReference::kApparent);
+    EXPECT_NEAR(*said->wind.speed_m_s, 2.86, 1e-9);
+    EXPECT_NEAR(*said->wind.direction_deg, 6.1896 / kRadPerDeg, 1e-9);
+  }
+}
+
+TEST(Candump, PassesOverWhatIsNoFrameOfTheWind) {
+  for (const char* line :
+       {"can0 123#00", "can0 7A1#R", "can0 09FD0205#R", "can0 09FD0205##1641E01C8F1FAFFFF", "can0 09F80115#A07DE618",
+        "can0  123   [3]  11 22 33", "can0  12345678  [03]  11 22 33", "can0  12345678   [0]  remote request"}) {
+    EXPECT_TRUE(refuses(decode_candump(line), Refusal::kNotMine)) << line;
+    EXPECT_TRUE(looks_like_candump(line)) << line;
+  }
+}
+
+TEST(Candump, SaysHowTheControllerDoes) {
+  EXPECT_EQ(candump_controller_state("can0 20000040#0000000000000000"), ControllerState::kBusOff);
+  EXPECT_EQ(candump_controller_state("can0  20000004   [8]  00 10 00 00 00 00 80 00   ERRORFRAME"),
+            ControllerState::kPassive);
+  EXPECT_EQ(candump_controller_state("can0 20000004#0020000000000000"), ControllerState::kPassive);
+  EXPECT_EQ(candump_controller_state("can0 20000004#0008000000000000"), ControllerState::kGood) << "warned only";
+  EXPECT_EQ(candump_controller_state("can0 20000004#0040000000000000"), ControllerState::kGood);
+  EXPECT_EQ(candump_controller_state("can0 20000100#0000000000000000"), ControllerState::kGood) << "started again";
+  EXPECT_EQ(candump_controller_state("can0 20000004#0001000000000000"), std::nullopt) << "a frame was lost";
+  EXPECT_EQ(candump_controller_state("can0 00000040#00"), std::nullopt) << "of the bus";
+  EXPECT_TRUE(refuses(decode_candump("can0 20000040#0000000000000000"), Refusal::kException));
+}
+
+TEST(Candump, RefusesWhatIsNoLine) {
+  for (const char* line : {"", "can0", "can0 09FD0205", "(1.0) can0 09FD0205", "can0 09FD0205 [8] 64 1E"}) {
+    EXPECT_TRUE(refuses(decode_candump(line), Refusal::kTooShort)) << line;
+  }
+  for (const char* line :
+       {"can0 09FD020#641E01C8F1FAFFFF", "can0 09FD0205#641E01C8F1FAFF0", "can0 09FD0205#641E01C8F1FAFFFF00",
+        "can0 09FD0205#641E01C8F1FAFFxx", "can0 49FD0205#641E01C8F1FAFFFF",
+        "can0 09FD0205 [9] 64 1E 01 C8 F1 FA FF FF 0", "can0 09FD0205 [8] 64 1E 01 C8 F1 FA FF FF FF",
+        "can0 09FD0205 8 64 1E", "$WIMWV, 230.6 R 3.42 M A*12"}) {
+    EXPECT_TRUE(refuses(decode_candump(line), Refusal::kMalformed)) << line;
+  }
+  EXPECT_TRUE(refuses(decode_candump("can0 09FD0205#641E01"), Refusal::kTooShort)) << "as decode_wind_data()";
 }
 
 TEST(Canboat, GivesTheWindInEachFormOfItsJson) {
@@ -261,10 +325,11 @@ TEST(SignalK, RefusesWhatIsNoWind) {
 
 /// Bytes of good lines are changed, left out and doubled: what is still decoded is a wind that blows.
 TEST(Marine, DecodesNothingImpossibleFromHurtLines) {
-  const std::array<std::string, 3> lines = {
+  const std::array<std::string, 4> lines = {
       "17:33:21.179 R 09FD0205 64 1E 01 C8 F1 FA FF FF",
       R"({"prio":2,"src":105,"pgn":130306,"fields":{"Wind Speed":4.01,"Wind Angle":347.4,"Reference":"Apparent"}})",
-      delta(value("speedApparent", "4.01") + "," + value("angleApparent", "-0.5"))};
+      delta(value("speedApparent", "4.01") + "," + value("angleApparent", "-0.5")),
+      "(1436509052.249713) can0 09FD0205#641E01C8F1FAFFFF"};
   std::mt19937 random(1);
   for (int i = 0; i < 200'000; ++i) {
     std::string line = lines[static_cast<std::size_t>(i) % lines.size()];
@@ -275,9 +340,9 @@ TEST(Marine, DecodesNothingImpossibleFromHurtLines) {
       if (how == 1) line.erase(at, 1);
       if (how == 2) line.insert(at, 1, line[at]);
     }
-    const auto bus =
-        i % 3 == 0 ? decode_yacht_devices(line) : decode_canboat({.angle_unit = AngleUnit::kDegrees}, line);
-    if (bus) {
+    for (const auto& bus : {decode_yacht_devices(line), decode_candump(line),
+                            decode_canboat({.angle_unit = AngleUnit::kDegrees}, line)}) {
+      if (!bus) continue;
       ASSERT_TRUE(checked(bus->wind)) << line;
       ASSERT_TRUE(bus->wind.speed_m_s) << line;
     }
