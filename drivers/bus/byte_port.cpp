@@ -27,6 +27,8 @@ std::string describe(const BytePortAddress& address) {
                                   : "UDP " + host_and_port(address.host, address.port);
     case BytePortKind::kFile:
       return address.path;
+    case BytePortKind::kCan:
+      return "CAN interface " + address.path;
   }
   return "?";
 }

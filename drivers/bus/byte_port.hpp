@@ -17,6 +17,13 @@ enum class BytePortKind : std::uint8_t {
   kTcpClient,  ///< a client of a server in the network
   kUdp,        ///< datagrams to a local port
   kFile,       ///< a file or named pipe
+  kCan,        ///< a CAN interface: a line for each frame, as candump -L writes it
+};
+
+/// Which frames of a CAN bus are received: those of 29 bits whose identifier is the same in the bits of the mask.
+struct CanFilter {
+  std::uint32_t identifier = 0;
+  std::uint32_t mask = 0;
 };
 
 /// The rates that a serial port can have.
@@ -26,7 +33,8 @@ inline constexpr std::array<int, 12> kBytePortBauds = {300,   600,   1200,  2400
 struct BytePortAddress {
   BytePortKind kind = BytePortKind::kSerial;
 
-  std::string path = {};  ///< serial: best by its stable name under /dev/serial/by-id; file: its path
+  std::string path = {};  ///< serial: best by its stable name under /dev/serial/by-id; file: its path;
+                          ///< CAN: the interface's name
   int baud = 9600;        ///< one of kBytePortBauds
   int data_bits = 8;
   char parity = 'N';  ///< N, E or O
@@ -44,10 +52,12 @@ struct BytePortAddress {
   /// also when it is truncated or replaced. A named pipe is always read without end, by any number of writers.
   bool is_played = false;
 
+  CanFilter can = {};
+
   Nanoseconds connect_timeout = std::chrono::seconds(3);
 };
 
-/// "/dev/ttyUSB0 at 9600 8N1", "host:port", "UDP port 10110", a path: for people.
+/// "/dev/ttyUSB0 at 9600 8N1", "host:port", "UDP port 10110", "CAN interface can0", a path: for people.
 std::string describe(const BytePortAddress& address);
 
 /// The identity of a port that cannot be open twice: a serial port's device file behind its links, a UDP port that is
@@ -66,7 +76,7 @@ enum class ByteStatus : std::uint8_t {
 struct ByteArrival {
   ByteStatus status = ByteStatus::kSilence;
   std::size_t size = 0;            ///< for kBytes
-  bool is_whole_datagram = false;  ///< UDP: these bytes end a datagram
+  bool is_whole_datagram = false;  ///< UDP, CAN: these bytes end a datagram, or a frame
   std::string sender = {};         ///< UDP, for kForeign: its address
   std::uint32_t overrun = 0;       ///< UDP: how many datagrams before this one the kernel dropped for want of room
 };

@@ -1,5 +1,6 @@
 #include "drivers/bus/byte_port_kinds.hpp"
 
+#include "drivers/bus/can_socket.hpp"
 #include "drivers/bus/descriptor_port.hpp"
 
 namespace yuragi::drivers::bus {
@@ -12,6 +13,8 @@ std::unique_ptr<BytePort> make_byte_port(const BytePortAddress& address) {
       return make_tcp_port(address);
     case BytePortKind::kUdp:
       return make_udp_port(address);
+    case BytePortKind::kCan:
+      return make_can_port(address);
     case BytePortKind::kFile:
       break;
   }

@@ -143,6 +143,10 @@ bus::BytePortAddress byte_port_address_of(const ParameterValues& values) {
     if (address.host.empty()) throw std::runtime_error("host: is missing; transport tcp needs a server to connect to");
   } else if (transport == "udp") {
     address.kind = bus::BytePortKind::kUdp;
+  } else if (transport == "can") {
+    address.kind = bus::BytePortKind::kCan;
+    address.path = values.text("interface");
+    if (address.path.empty()) throw std::runtime_error("interface: is missing; transport can needs one, such as can0");
   } else {
     address.kind = bus::BytePortKind::kFile;
     address.path = values.text("file");

@@ -13,7 +13,8 @@ namespace yuragi::drivers::text {
 /// silent device is opened again. `own` are the driver's, which come first; `delay_after_open_s` is a default.
 std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, double delay_after_open_s);
 
-/// The address in such values. Throws std::runtime_error, saying what to do, where they cannot work together.
+/// The address in such values, and in "interface" where a driver's transport may be "can". Throws std::runtime_error,
+/// saying what to do, where they cannot work together.
 bus::BytePortAddress byte_port_address_of(const ParameterValues& values);
 
 /// What a sensor of such values has to itself: its serial port, or its UDP port.

@@ -1,10 +1,14 @@
-// Wind of an NMEA 2000 bus (PGN 130306), as gateways and programs write it in lines: the RAW mode of Yacht Devices'
-// gateways, and JSON of canboat's analyzer. The formats are described with their decoders: drivers/decode/marine.
+// Wind of an NMEA 2000 bus (PGN 130306): from a CAN interface of the kernel's, or as gateways and programs write it in
+// lines: the RAW mode of Yacht Devices' gateways, JSON of canboat's analyzer, candump of can-utils. The formats are
+// described with their decoders: drivers/decode/marine.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
 #include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/bus/can_interfaces.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/nmea2000_sensor.hpp"
@@ -12,10 +16,13 @@
 namespace yuragi::drivers::text {
 namespace {
 
-constexpr std::array<std::string_view, 3> kNmea2000Formats = {"auto", "yacht-devices", "canboat"};
+constexpr std::array<std::string_view, 5> kNmea2000Transports = {"serial", "tcp", "udp", "file", "can"};
+constexpr std::array<std::string_view, 4> kNmea2000Formats = {"auto", "yacht-devices", "canboat", "candump"};
 constexpr std::array<std::string_view, 3> kAngleUnits = {"auto", "deg", "rad"};
 /// canboat's longest records have some thousand bytes.
 constexpr std::size_t kLongestRecord = 8192;
+/// Of an identifier, the PGN of the wind; its priority and the sender's address do not matter.
+constexpr bus::CanFilter kWindFrames = {.identifier = decode::marine::kWindDataPgn << 8U, .mask = 0x3FFFFU << 8U};
 
 std::vector<Parameter> nmea2000_parameters() {
   std::vector<Parameter> own = {
@@ -23,7 +30,7 @@ std::vector<Parameter> nmea2000_parameters() {
        .unit = "",
        .default_value = std::string("auto"),
        .help = "yacht-devices: RAW mode of YDWG-02, YDEN-02, YDNU-02; canboat: JSON of canboat's analyzer (n2kd) or "
-               "canboatjs; auto: detected for each line",
+               "canboatjs; candump: can-utils' lines; auto: detected for each line",
        .choices = kNmea2000Formats},
       {.name = "address",
        .unit = "",
@@ -40,9 +47,31 @@ std::vector<Parameter> nmea2000_parameters() {
        .choices = kAngleUnits},
   };
   std::ranges::move(chosen_wind_parameters(), std::back_inserter(own));
-  return with_byte_port_parameters(std::move(own), 0.0);
+  own.push_back({.name = "interface",
+                 .unit = "",
+                 .default_value = std::string("can0"),
+                 .help = "can: the CAN interface, as ip link names it; it must be up, with the bus's bit rate (ip link "
+                         "set can0 up type can bitrate 250000)"});
+  std::vector<Parameter> all = with_byte_port_parameters(std::move(own), 0.0);
+  const auto transport = std::ranges::find(all, "transport", &Parameter::name);
+  transport->choices = kNmea2000Transports;
+  transport->help =
+      "can: a CAN interface of this machine; of a gateway, serial: a serial port; tcp: a server to connect "
+      "to; udp: datagrams sent to this machine; file: a file or named pipe";
+  return all;
 }
 const std::vector<Parameter> kNmea2000Parameters = nmea2000_parameters();
+
+std::vector<sensor::FoundDevice> find_behind_can_interfaces() {
+  std::vector<sensor::FoundDevice> found;
+  for (const bus::CanInterfaceInfo& info : bus::find_can_interfaces()) {
+    found.push_back({.what = "CAN interface " + info.name,
+                     .settings = fmt::format("transport = \"can\"\ninterface = \"{}\"", info.name),
+                     .trouble = info.trouble,
+                     .remedy = info.remedy});
+  }
+  return found;
+}
 
 }  // namespace
 
@@ -58,6 +87,10 @@ Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values
   if (unit == "deg") settings.angle_unit = decode::marine::AngleUnit::kDegrees;
   if (unit == "rad") settings.angle_unit = decode::marine::AngleUnit::kRadians;
   settings.wind = chosen_wind_settings_of(values);
+  if (settings.text.address.kind == bus::BytePortKind::kCan) {
+    settings.format = Nmea2000Format::kCandump;
+    settings.text.address.can = kWindFrames;
+  }
   if (settings.text.poll_interval > Nanoseconds::zero())
     throw std::runtime_error("poll_interval: a gateway sends without requests; leave it out");
   return settings;
@@ -66,13 +99,13 @@ Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values
 extern const sensor::DriverDescription kNmea2000Driver;
 const sensor::DriverDescription kNmea2000Driver{
     .name = "nmea2000",
-    .summary = "wind of an NMEA 2000 bus: Yacht Devices' gateways in RAW mode, canboat",
+    .summary = "wind of an NMEA 2000 bus: a CAN interface, Yacht Devices' gateways in RAW mode, canboat, candump",
     .parameters = kNmea2000Parameters,
     .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
       const Nmea2000SensorSettings settings = nmea2000_sensor_settings_of(values);
       return std::make_unique<Nmea2000Sensor>(settings, bus::make_byte_port(settings.text.address));
     },
-    .find = nullptr,
+    .find = find_behind_can_interfaces,
     .claims = byte_port_claims};
 
 }  // namespace yuragi::drivers::text

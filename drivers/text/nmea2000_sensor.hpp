@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "drivers/decode/marine/canboat.hpp"
+#include "drivers/decode/marine/candump.hpp"
 #include "drivers/text/chosen_wind.hpp"
 #include "drivers/text/text_sensor.hpp"
 #include "engine/base/parameter.hpp"
@@ -17,6 +18,7 @@ enum class Nmea2000Format : std::uint8_t {
   kAuto,  ///< detected, line by line
   kYachtDevices,
   kCanboat,
+  kCandump,  ///< also a CAN interface's
 };
 
 struct Nmea2000SensorSettings {
@@ -30,7 +32,7 @@ struct Nmea2000SensorSettings {
 /// The values of kNmea2000Driver's parameters. Throws std::runtime_error where they cannot work together.
 Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values);
 
-/// Wind of an NMEA 2000 bus, as a gateway or program writes it in lines.
+/// Wind of an NMEA 2000 bus, as a gateway or program writes it in lines, or from a CAN interface.
 class Nmea2000Sensor final : public TextSensor {
  public:
   Nmea2000Sensor(Nmea2000SensorSettings settings, std::unique_ptr<bus::BytePort> port);
@@ -40,6 +42,7 @@ class Nmea2000Sensor final : public TextSensor {
   std::optional<wind::WindReading> take_held() override { return wind_.take_held(); }
   void begin() override;
   std::string name() const override;
+  std::string told_trouble() const override;
   std::string advice(decode::Refusal why, std::string_view line) const override;
 
   Result<decode::marine::BusWind, decode::Refusal> decode(std::string_view line);
@@ -48,6 +51,7 @@ class Nmea2000Sensor final : public TextSensor {
   ChosenWind wind_;
   std::optional<decode::marine::AngleUnit> angle_unit_;  // nothing: not known yet
   bool lacks_angle_unit_ = false;
+  decode::marine::ControllerState controller_ = decode::marine::ControllerState::kGood;
 };
 
 }  // namespace yuragi::drivers::text

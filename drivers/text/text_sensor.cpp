@@ -271,7 +271,8 @@ void TextSensor::drop_cut_line(sensor::SensorSink& sink) {
 }
 
 void TextSensor::publish(const wind::WindReading& reading, sensor::SensorSink& sink) {
-  const bool can_flood = settings_.address.kind == bus::BytePortKind::kUdp;
+  const bool can_flood =
+      settings_.address.kind == bus::BytePortKind::kUdp || settings_.address.kind == bus::BytePortKind::kCan;
   if (can_flood && !limit_.admits(reading.time.mono)) return sink.refused(decode::Refusal::kTooFrequent);
   readings_.arrive(reading.time.mono);
   vain_openings_ = 0;
@@ -300,6 +301,7 @@ Nanoseconds TextSensor::silence_limit() const {
 void TextSensor::judge_device(MonoTime now, sensor::SensorSink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
+  if (const std::string told = told_trouble(); !told.empty()) return report_unusable(sink, told);
   if (now - last_bytes_ >= kPatience) return report_unusable(sink, silence_trouble());
   const decode::Refusal why = main_refusal();
   const bool has_lines = readable_lines_ + cut_lines() > 0 && readable_lines_ + cut_lines() >= garbled_lines_;
@@ -329,10 +331,12 @@ decode::Refusal TextSensor::main_refusal() const {
 }
 
 std::string TextSensor::silence_trouble() const {
-  const bool is_serial = settings_.address.kind == bus::BytePortKind::kSerial;
-  return fmt::format("{} {}: check {}", where_, is_polled() ? "does not reply" : "is open, but silent",
-                     is_serial ? "the device's power, its wires (TX and RX crossed?) and baud"
-                               : "the device's power and network settings");
+  std::string_view suspects = "the device's power and network settings";
+  if (settings_.address.kind == bus::BytePortKind::kSerial)
+    suspects = "the device's power, its wires (TX and RX crossed?) and baud";
+  if (settings_.address.kind == bus::BytePortKind::kCan)
+    suspects = "the power, terminators and bit rate of the bus, and whether its device sends at all (candump)";
+  return fmt::format("{} {}: check {}", where_, is_polled() ? "does not reply" : "is open, but silent", suspects);
 }
 
 /// Bytes arrive, but no lines.

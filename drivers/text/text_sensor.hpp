@@ -59,6 +59,9 @@ class TextSensor : public sensor::ReopeningSensor {
   virtual void begin() {}
   /// What the device is, for people.
   virtual std::string name() const = 0;
+  /// What the device itself says is wrong, and what to do; empty: nothing. Told before what its silence or its lines
+  /// suggest.
+  virtual std::string told_trouble() const { return {}; }
   /// Lines come, but all are refused like this one: what is wrong, and what to do.
   virtual std::string advice(decode::Refusal why, std::string_view line) const;
 
@@ -113,7 +116,7 @@ class TextSensor : public sensor::ReopeningSensor {
 
   MonoTime last_bytes_{};
   ArrivalWatch readings_;
-  sensor::ReadingLimit limit_;  ///< UDP: others can send whatever they like
+  sensor::ReadingLimit limit_;  ///< UDP and CAN: others can send whatever they like
   int vain_openings_ = 0;
 
   // Received since the last reading: to report the cause where none follows.

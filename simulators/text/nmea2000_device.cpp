@@ -7,6 +7,9 @@
 //                   "fields":{"SID":100,"Wind Speed":3.42,"Wind Angle":230.6,"Reference":"Apparent"}}
 //   canboat-si     the same of analyzer -si -nv -camel: in radians, the reference as number and name
 //
+//   candump        (1436509052.249713) can0 09FD0223#645601379DFAFFFF   can-utils, candump -L
+//   on a bus       struct can_frame of linux/can.h: the identifier with its flags, the size, 3 bytes, 8 of data
+//
 // Sources: Yacht Devices YDNU-02 manual, appendix E; canboat analyzer/analyzer.c; the bytes: canboat docs, PGN 130306.
 #include "simulators/text/nmea2000_device.hpp"
 
@@ -16,6 +19,8 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <linux/can.h>
+#include <linux/can/error.h>
 
 #include "engine/base/units.hpp"
 
@@ -25,7 +30,16 @@ namespace {
 constexpr unsigned kAddress = 35;
 constexpr unsigned kOtherAddress = 36;
 constexpr unsigned kPriorityAndPgn = 0x09FD02;  // 2, 130306
-constexpr unsigned kApparentReference = 2;
+/// What the analyzer calls the references, by their numbers on the bus.
+struct BusReference {
+  std::string_view name;
+  std::string_view text;
+};
+constexpr std::array<BusReference, 5> kBusReferences = {{{"north", "True (ground referenced to North)"},
+                                                         {"magnetic", "Magnetic (ground referenced to Magnetic North)"},
+                                                         {"apparent", "Apparent"},
+                                                         {"boat", "True (boat referenced)"},
+                                                         {"water", "True (water referenced)"}}};
 constexpr unsigned kReservedBits = 0xF8;
 constexpr unsigned kSequenceIds = 253;
 
@@ -35,36 +49,61 @@ struct BusMessage {
   unsigned address = kAddress;
   double speed_m_s = 0.0;
   double angle_rad = 0.0;
+  unsigned reference = 0;  // its place in kBusReferences
 
   unsigned sequence_id() const { return number % kSequenceIds; }
 };
 
-std::string yacht_devices_line(const BusMessage& message) {
+using BusData = std::array<unsigned char, CAN_MAX_DLEN>;
+
+BusData data_of(const BusMessage& message) {
   const auto speed = static_cast<unsigned>(std::lround(message.speed_m_s * 100.0));
   const auto angle = static_cast<unsigned>(std::lround(message.angle_rad * 10000.0));
-  return fmt::format("{:02}:{:02}:{:02}.179 R {:06X}{:02X} {:02X} {:02X} {:02X} {:02X} {:02X} {:02X} FF FF\r\n",
-                     message.number / 3600 % 24, message.number / 60 % 60, message.number % 60, kPriorityAndPgn,
-                     message.address, message.sequence_id(), speed & 0xFFU, speed >> 8U, angle & 0xFFU, angle >> 8U,
-                     kReservedBits | kApparentReference);
+  BusData data;
+  data.fill(0xFF);
+  const std::array<unsigned, 6> said = {message.sequence_id(), speed & 0xFFU, speed >> 8U,
+                                        angle & 0xFFU,         angle >> 8U,   kReservedBits | message.reference};
+  std::ranges::transform(said, data.begin(), [](unsigned byte) { return static_cast<unsigned char>(byte); });
+  return data;
+}
+
+std::string yacht_devices_line(const BusMessage& message) {
+  return fmt::format("{:02}:{:02}:{:02}.179 R {:06X}{:02X} {:02X}\r\n", message.number / 3600 % 24,
+                     message.number / 60 % 60, message.number % 60, kPriorityAndPgn, message.address,
+                     fmt::join(data_of(message), " "));
+}
+
+std::string candump_line(const BusMessage& message) {
+  return fmt::format("({}.249713) can0 {:06X}{:02X}#{:02X}\n", 1436509052 + message.number, kPriorityAndPgn,
+                     message.address, fmt::join(data_of(message), ""));
+}
+
+/// The bytes of a frame as the kernel takes them.
+std::string bytes_of_frame(canid_t identifier, const BusData& data) {
+  can_frame frame{};
+  frame.can_id = identifier;
+  frame.can_dlc = CAN_MAX_DLEN;
+  std::ranges::copy(data, std::begin(frame.data));
+  return {reinterpret_cast<const char*>(&frame), sizeof frame};
 }
 
 std::string canboat_line(const BusMessage& message) {
   return fmt::format(R"({{"timestamp":"2026-06-21-15:{:02}:{:02}.626","prio":2,"src":{},"dst":255,"pgn":130306,)"
                      R"("description":"Wind Data","fields":{{"SID":{},"Wind Speed":{:.2f},"Wind Angle":{:.1f},)"
-                     R"("Reference":"Apparent"}}}})"
+                     R"("Reference":"{}"}}}})"
                      "\n",
                      message.number / 60 % 60, message.number % 60, message.address, message.sequence_id(),
-                     message.speed_m_s, message.angle_rad / kRadPerDeg);
+                     message.speed_m_s, message.angle_rad / kRadPerDeg, kBusReferences.at(message.reference).text);
 }
 
 std::string canboat_si_line(const BusMessage& message) {
   return fmt::format(
       R"({{"windData":{{"timestamp":"2026-06-21T15:{:02}:{:02}.626Z","prio":2,"src":{},"dst":255,"pgn":130306,)"
       R"("description":"windData","fields":{{"sid":{},"windSpeed":{:.2f},"windAngle":{:.4f},)"
-      R"("reference":{{"value":2,"name":"Apparent"}}}}}}}})"
+      R"("reference":{{"value":{},"name":"{}"}}}}}}}})"
       "\n",
       message.number / 60 % 60, message.number % 60, message.address, message.sequence_id(), message.speed_m_s,
-      message.angle_rad);
+      message.angle_rad, message.reference, kBusReferences.at(message.reference).text);
 }
 
 struct BusFormat {
@@ -72,14 +111,15 @@ struct BusFormat {
   std::string_view greeting;
   std::string (*line)(const BusMessage& message);
 };
-constexpr std::array<BusFormat, 3> kBusFormats = {
+constexpr std::array<BusFormat, 4> kBusFormats = {
     {{"yacht-devices", "", yacht_devices_line},
      {"canboat", "{\"version\":\"4.12.0\",\"units\":\"std\"}\n", canboat_line},
-     {"canboat-si", "{\"version\":\"4.12.0\",\"units\":\"si\"}\n", canboat_si_line}}};
+     {"canboat-si", "{\"version\":\"4.12.0\",\"units\":\"si\"}\n", canboat_si_line},
+     {"candump", "", candump_line}}};
 
 class Nmea2000Device final : public TextDevice {
  public:
-  explicit Nmea2000Device(const BusFormat& format) : format_(format) {}
+  Nmea2000Device(const BusFormat& format, unsigned reference) : format_(format), reference_(reference) {}
 
   std::span<const FaultKind> known_faults() const override {
     static constexpr std::array kKnown = {FaultKind::kWrongId};
@@ -90,14 +130,50 @@ class Nmea2000Device final : public TextDevice {
     return {format_.line({.number = number_++,
                           .address = fault == FaultKind::kWrongId ? kOtherAddress : kAddress,
                           .speed_m_s = moment.speed_m_s,
-                          .angle_rad = moment.direction_deg * kRadPerDeg})};
+                          .angle_rad = moment.direction_deg * kRadPerDeg,
+                          .reference = reference_})};
   }
   bool is_request(std::string_view /*line*/) const override { return false; }
 
  private:
   BusFormat format_;
+  unsigned reference_;
   unsigned number_ = 0;
 };
+
+class Nmea2000CanDevice final : public TextDevice {
+ public:
+  explicit Nmea2000CanDevice(unsigned reference) : reference_(reference) {}
+
+  std::span<const FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {FaultKind::kWrongId, FaultKind::kException};
+    return kKnown;
+  }
+  std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> fault) override {
+    if (fault == FaultKind::kException) return {bytes_of_frame(CAN_ERR_FLAG | CAN_ERR_BUSOFF, {})};
+    const unsigned address = fault == FaultKind::kWrongId ? kOtherAddress : kAddress;
+    const BusMessage message = {.number = number_++,
+                                .address = address,
+                                .speed_m_s = moment.speed_m_s,
+                                .angle_rad = moment.direction_deg * kRadPerDeg,
+                                .reference = reference_};
+    return {bytes_of_frame(CAN_EFF_FLAG | (kPriorityAndPgn << 8U) | address, data_of(message))};
+  }
+  bool is_request(std::string_view /*line*/) const override { return false; }
+
+ private:
+  unsigned reference_;
+  unsigned number_ = 0;
+};
+
+unsigned reference_named(const std::string& name) {
+  const auto* const found = std::ranges::find(kBusReferences, name, &BusReference::name);
+  if (found == kBusReferences.end()) {
+    throw std::runtime_error(
+        fmt::format("no reference \"{}\"; known: {}", name, fmt::join(nmea2000_reference_names(), ", ")));
+  }
+  return static_cast<unsigned>(found - kBusReferences.begin());
+}
 
 }  // namespace
 
@@ -108,13 +184,24 @@ std::vector<std::string> nmea2000_format_names() {
   return names;
 }
 
-std::unique_ptr<TextDevice> make_nmea2000_device(const std::string& format) {
+std::vector<std::string> nmea2000_reference_names() {
+  std::vector<std::string> names;
+  names.reserve(kBusReferences.size());
+  for (const BusReference& reference : kBusReferences) names.emplace_back(reference.name);
+  return names;
+}
+
+std::unique_ptr<TextDevice> make_nmea2000_device(const std::string& format, const std::string& reference) {
   const auto* const found = std::ranges::find(kBusFormats, format, &BusFormat::name);
   if (found == kBusFormats.end()) {
     throw std::runtime_error(
         fmt::format("no simulated format \"{}\"; known: {}", format, fmt::join(nmea2000_format_names(), ", ")));
   }
-  return std::make_unique<Nmea2000Device>(*found);
+  return std::make_unique<Nmea2000Device>(*found, reference_named(reference));
+}
+
+std::unique_ptr<TextDevice> make_nmea2000_can_device(const std::string& reference) {
+  return std::make_unique<Nmea2000CanDevice>(reference_named(reference));
 }
 
 }  // namespace yuragi::simulators::text

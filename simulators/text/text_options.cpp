@@ -4,7 +4,7 @@
 
 namespace yuragi::simulators::text {
 
-void TextOptions::add_to(CLI::App& command) {
+CLI::Option_group& TextOptions::add_to(CLI::App& command) {
   CLI::Option_group* wire = command.add_option_group("wire", "how it is connected");
   CLI::Option* pty_flag = wire->add_flag("--pty", pty, "a serial port (a pseudo terminal)");
   wire->add_option("--tcp", tcp, "a server at HOST:PORT; port 0 takes a free one");
@@ -17,18 +17,20 @@ void TextOptions::add_to(CLI::App& command) {
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   common.add_to(command);
+  return *wire;
 }
 
 std::unique_ptr<TextWire> TextOptions::make_wire() const {
   if (pty) return make_pty_wire(link);
+  if (!can.empty()) return make_can_wire(can);
   const bool is_tcp = !tcp.empty();
   const Address address = address_option(is_tcp ? "--tcp" : "--udp", is_tcp ? tcp : udp);
   return is_tcp ? make_tcp_wire(address.host, address.port) : make_udp_wire(address.host, address.port);
 }
 
 void TextOptions::run(std::unique_ptr<TextDevice> device) const {
-  if (rate_hz <= 0.0 && !udp.empty())
-    throw CLI::ValidationError("--udp", "requests cannot be received there; give a --rate");
+  if (rate_hz <= 0.0 && !(udp.empty() && can.empty()))
+    throw CLI::ValidationError("--rate", "requests cannot be received there; give a rate");
   TextSimulator simulator(std::move(device), make_wire(), rate_hz, common.make_wind(), common.synthetic.seed);
   std::printf("%s\n", simulator.wire().place().c_str());
   std::fflush(stdout);

@@ -16,10 +16,12 @@ struct TextOptions {
   std::string link;
   std::string tcp;
   std::string udp;
+  std::string can;  ///< of the commands whose device has frames to say
   double rate_hz = 4.0;
   CommonOptions common;
 
-  void add_to(CLI::App& command);
+  /// Returns the group of options of which one says how the device is connected.
+  CLI::Option_group& add_to(CLI::App& command);
 
   /// Prints the device's address, for scripts that wait for that line, and runs it to its end. Throws
   /// CLI::ValidationError for options that contradict each other, std::runtime_error for an address that cannot be

@@ -45,4 +45,8 @@ std::unique_ptr<TextWire> make_tcp_wire(const std::string& host, std::uint16_t p
 /// Datagrams to one address, one for each write. Throws std::runtime_error for a text that is no address.
 std::unique_ptr<TextWire> make_udp_wire(const std::string& host, std::uint16_t port);
 
+/// A CAN interface of this machine; each write is a frame (`struct can_frame` of linux/can.h). Throws
+/// std::runtime_error where it is not there at first.
+std::unique_ptr<TextWire> make_can_wire(const std::string& interface);
+
 }  // namespace yuragi::simulators::text

@@ -31,6 +31,11 @@ has_device_of() {
   grep -qs "$1" /sys/bus/usb/devices/*/idVendor
 }
 
+# Makes a virtual CAN interface and switches it on.
+plug_in_bus() {
+  ip link add dev "$1" type vcan && ip link set "$1" up
+}
+
 # Plugs simulated devices in, PORT:VENDOR each, whenever their servers offer them and they are not there. One after the
 # other: two `usbip attach` at the same time may both choose the same place, and then one of them never ends.
 keep_plugged_in() {
@@ -44,7 +49,7 @@ keep_plugged_in() {
 
 milestone "the kernel is up"
 ip link set lo up
-for module in virtio_pci virtio_blk usbhid hid-generic vhci-hcd; do modprobe "$module" || echo "no module $module"; done
+for module in virtio_pci virtio_blk usbhid hid-generic vhci-hcd vcan can-raw; do modprobe "$module" || echo "no module $module"; done
 modprobe snd-aloop index=0 id=Loopback pcm_substreams=2 || echo "no module snd-aloop"
 /lib/systemd/systemd-udevd --daemon
 udevadm trigger --action=add

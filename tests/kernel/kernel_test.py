@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The daemon on a real kernel's devices: simulated sensors come in over USB/IP, and leave, and return.
+"""The daemon on a real kernel's devices: simulated sensors come in over USB/IP, sound and CAN, and leave, and return.
 
 usage: kernel_test.py FOLDER_OF_PROGRAMS CACHE_FOLDER
 Exits with 77, saying why, where an emulated machine cannot be had.
@@ -113,7 +113,7 @@ class KernelTest(unittest.TestCase):
         return (cls.results / name).read_text(encoding="utf-8", errors="replace")
 
     def all_logs(self):
-        names = ("console.log", "daemon.log", "hid.log", "usb.log", "usbip.log", "microphone.log", "aplay.log", "dmesg.log")
+        names = ("console.log", "daemon.log", "hid.log", "usb.log", "usbip.log", "can.log", "list.log", "microphone.log", "aplay.log", "dmesg.log")
         return "\n".join(f"---- {name}\n{self.text(name)}" for name in names if (self.results / name).exists())
 
     def readings_of(self, sensor, least):
@@ -177,6 +177,22 @@ class KernelTest(unittest.TestCase):
         self.check_wind(readings, 0.05, 0.8, 1.2)
         self.check_direction(readings)
         self.check_it_came_back(readings, gap_s=3.0, wait_s=25.0)
+
+    def test_a_bus_is_read_by_its_can_interface_whatever_becomes_of_that(self):
+        readings = self.readings_of("bus", 60)
+        self.check_wind(readings, 0.05, 0.8, 1.2)
+        self.check_direction(readings)
+        link = r"sensor bus: connecting: "
+        self.assertRegex(self.daemon_log, link + r"CAN interface vcan0 has left the bus .* \(bus off\)")
+        self.assertRegex(self.daemon_log, link + r"the CAN interface vcan0 is down: sudo ip link set vcan0 up")
+        self.assertRegex(self.daemon_log, link + r"there is no CAN interface vcan0: plug its adapter in")
+        self.assertRegex(self.daemon_log, r"sensor bus: \d+ readings .* [2-9] reconnects\b")
+        self.assertNotRegex(self.daemon_log, r"sensor bus: .*not mine")
+
+    def test_the_can_interfaces_are_listed_with_what_they_need(self):
+        listed = self.text("list.log")
+        self.assertRegex(listed, r'interface = "vcan0"')
+        self.assertRegex(listed, r"vcan1[^$]*it is down[^$]*sudo ip link set vcan1 up")
 
     def test_the_sound_of_wind_is_heard_through_a_sound_card(self):
         readings = self.readings_of("microphone", 30)

@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import tarfile
 
-MODULES = ("vhci-hcd", "usbhid", "hid-generic", "snd-aloop", "virtio_pci", "virtio_blk")
+MODULES = ("vhci-hcd", "usbhid", "hid-generic", "snd-aloop", "vcan", "can-raw", "virtio_pci", "virtio_blk")
 BUSYBOX = "/bin/busybox"
 # Of packages that are taken apart and not installed: what an installation would have.
 UDEV_PACKAGES = ("udev", "libsystemd-shared")

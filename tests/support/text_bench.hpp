@@ -70,7 +70,10 @@ class TextBench {
     return std::make_unique<ObservedWire>(std::move(wire), has_written_);
   }
   std::unique_ptr<drivers::bus::BytePort> port(const drivers::bus::BytePortAddress& address) {
-    return std::make_unique<ImpatientPort>(drivers::bus::make_byte_port(address), patience_);
+    return impatient(drivers::bus::make_byte_port(address));
+  }
+  std::unique_ptr<drivers::bus::BytePort> impatient(std::unique_ptr<drivers::bus::BytePort> port) {
+    return std::make_unique<ImpatientPort>(std::move(port), patience_);
   }
 
   void put(std::unique_ptr<simulators::Simulator> simulator, std::unique_ptr<drivers::sensor::Sensor> sensor) {

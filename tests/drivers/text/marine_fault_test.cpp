@@ -1,12 +1,17 @@
 // What can go wrong with a gateway to an NMEA 2000 bus and with a Signal K server, and what their drivers make of it:
 // with a simulator at the other end of a real wire.
+#include <array>
+#include <cerrno>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
+#include "drivers/bus/can_socket.hpp"
 #include "drivers/text/nmea2000_sensor.hpp"
 #include "drivers/text/signalk_sensor.hpp"
 #include "simulators/text/nmea2000_device.hpp"
@@ -133,13 +138,13 @@ TEST_F(Nmea2000Fault, Garbage) {
   }
 }
 TEST_F(Nmea2000Fault, Split) {
-  for (const std::string format : {"yacht-devices", "canboat", "canboat-si"}) {
+  for (const std::string format : {"yacht-devices", "canboat", "canboat-si", "candump"}) {
     put(Wire::kTcp, format);
     expect_pieces_are_joined();
   }
 }
 TEST_F(Nmea2000Fault, Partial) {
-  for (const std::string format : {"yacht-devices", "canboat", "canboat-si"}) {
+  for (const std::string format : {"yacht-devices", "canboat", "canboat-si", "candump"}) {
     put(Wire::kTcp, format);
     expect_parts_are_refused(Wire::kTcp);
   }
@@ -164,6 +169,93 @@ TEST_F(Nmea2000Fault, Unplug) {
     expect_silence(FaultKind::kUnplug, 6.0);
     expect_return();
   }
+}
+
+/// A bus of this machine's own, which a pair of sockets stands for: like a CAN socket it carries the kernel's frames
+/// one by one. Of bytes on a line nothing can be wrong: the controller checks each frame. tests/kernel has a real one.
+class CanBus final : public simulators::text::TextWire {
+ public:
+  CanBus() { CanBus::bring_back(); }
+  ~CanBus() override { CanBus::take_away(); }
+  CanBus(const CanBus&) = delete;
+  CanBus& operator=(const CanBus&) = delete;
+
+  std::span<const FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {FaultKind::kUnplug};
+    return kKnown;
+  }
+  std::vector<int> descriptors() const override { return {}; }
+  std::string read(std::span<const int> /*ready*/) override { return {}; }
+  void write(std::string_view bytes) override { static_cast<void>(::write(ends_[0], bytes.data(), bytes.size())); }
+  void take_away() override {
+    for (int& end : ends_) {
+      if (end >= 0) ::close(end);
+      end = -1;
+    }
+  }
+  void bring_back() override {
+    if (ends_[0] >= 0) return;
+    ASSERT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, ends_.data()), 0);
+  }
+  std::string place() const override { return "a pair of sockets"; }
+
+  /// The kernel's answer to who opens it.
+  int open() const {
+    errno = ENODEV;
+    return ends_[1] < 0 ? -1 : dup(ends_[1]);
+  }
+
+ private:
+  std::array<int, 2> ends_ = {-1, -1};
+};
+
+class Nmea2000CanFault : public MarineBench {
+ protected:
+  Nmea2000CanFault() : MarineBench("nmea2000") {}
+
+  void put(ParameterValues::Map given = {}) {
+    given["transport"] = std::string("can");
+    auto wire = std::make_unique<CanBus>();
+    const auto open = [bus = wire.get()](const bus::BytePortAddress& /*address*/) { return bus->open(); };
+    const Nmea2000SensorSettings settings = nmea2000_sensor_settings_of(values_for("nmea2000", given));
+    bench_.put(
+        std::make_unique<simulators::text::TextSimulator>(
+            simulators::text::make_nmea2000_can_device(), bench_.observed(std::move(wire)), 4.0,
+            simulators::MeasuredWind(std::make_unique<StillWind>(kWind)), 1),
+        std::make_unique<Nmea2000Sensor>(settings, bench_.impatient(bus::make_can_port(settings.text.address, open))));
+    ASSERT_TRUE(is_live()) << bench_.sink.last_detail();
+    expect_only_the_wind();
+  }
+};
+
+TEST_F(Nmea2000CanFault, Silence) {
+  put();
+  expect_silence_is_told();
+}
+TEST_F(Nmea2000CanFault, Freeze) {
+  put();
+  expect_freeze_is_published();
+}
+TEST_F(Nmea2000CanFault, Spike) {
+  put();
+  expect_spike_is_not_believed();
+}
+TEST_F(Nmea2000CanFault, WrongId) {
+  put({{"address", std::int64_t{35}}});
+  expect_another_is_not_taken("address");
+}
+TEST_F(Nmea2000CanFault, Exception) {
+  put();
+  expect_silence(FaultKind::kException, 5.0);
+  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("bus off"));
+  EXPECT_GE(bench_.sink.count(decode::Refusal::kException), 15);
+  expect_return();
+}
+TEST_F(Nmea2000CanFault, Unplug) {
+  put();
+  expect_silence(FaultKind::kUnplug, 6.0);
+  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("there is no CAN interface can0: plug its adapter in"));
+  expect_return();
 }
 
 /// Its simulator sends nothing to a client that has not subscribed, and then first a storm that it remembers: that is

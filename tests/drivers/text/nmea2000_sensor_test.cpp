@@ -20,6 +20,13 @@ std::string canboat_angle(const std::string& angle) {
          "\n";
 }
 
+/// The same of a CAN interface.
+std::string can_line(const std::string& address, const std::string& reference) {
+  return "can0 09FD02" + address + "#641E01C8F1" + reference + "FFFF\n";
+}
+constexpr std::string_view kBusOffLine = "can0 20000040#0000000000000000\n";
+constexpr std::string_view kPassiveLine = "can0 20000004#0010000000000000\n";
+
 class Nmea2000SensorTest : public testing::Test, protected ScriptedText {
  protected:
   void make(ParameterValues::Map given = {}) {
@@ -98,6 +105,68 @@ TEST_F(Nmea2000SensorTest, ReadsOnAmongLongRecordsOfOtherMessages) {
   EXPECT_EQ(sink.readings.size(), 10U);
   EXPECT_EQ(sink.count(decode::Refusal::kNotMine), 10);
   EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
+}
+
+TEST_F(Nmea2000SensorTest, ReceivesTheWindAloneFromACanInterface) {
+  const auto settings = [](ParameterValues::Map given) {
+    given["transport"] = std::string("can");
+    return nmea2000_sensor_settings_of(values_for("nmea2000", given));
+  };
+  const bus::BytePortAddress address = settings({}).text.address;
+  EXPECT_EQ(address.kind, bus::BytePortKind::kCan);
+  EXPECT_EQ(address.path, "can0");
+  const auto passes = [&](std::uint32_t identifier) {
+    return (identifier & address.can.mask) == (address.can.identifier & address.can.mask);
+  };
+  EXPECT_TRUE(passes(0x09FD0205));
+  EXPECT_TRUE(passes(0x1DFD02FE)) << "another priority, another device";
+  EXPECT_FALSE(passes(0x09FD0305)) << "PGN 130307";
+  EXPECT_FALSE(passes(0x08FD0205)) << "another data page";
+  EXPECT_EQ(settings({{"interface", std::string("vcan1")}}).text.address.path, "vcan1");
+  EXPECT_EQ(settings({{"format", std::string("canboat")}}).format, Nmea2000Format::kCandump) << "it has but one";
+  EXPECT_THROW(settings({{"interface", std::string()}}), std::runtime_error);
+  EXPECT_THROW(settings({{"poll_interval", 1.0}}), std::runtime_error);
+}
+
+TEST_F(Nmea2000SensorTest, TellsWhatTheControllerOfACanInterfaceSays) {
+  make({{"transport", std::string("can")}});
+  const auto say_for_5_s = [this](const std::string& line) {
+    sink.readings.clear();
+    for (int i = 0; i < 10; ++i) {
+      receive(line);
+      run(250ms);
+    }
+  };
+  say_for_5_s(can_line("23", "FA"));
+  EXPECT_EQ(sink.readings.size(), 10U);
+  EXPECT_THAT(sink.last_detail(), HasSubstr("wind apparent of device 35 at CAN interface can0"));
+
+  receive(kPassiveLine);
+  say_for_5_s(can_line("23", "FA"));
+  EXPECT_EQ(sink.readings.size(), 10U) << "it still receives";
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
+  EXPECT_THAT(sink.last_detail(), HasSubstr("over a bus with many errors"));
+  run(5s);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnecting);
+  EXPECT_THAT(sink.last_detail(), HasSubstr("error passive"));
+
+  receive(kBusOffLine);
+  run(4s);
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnecting);
+  EXPECT_THAT(sink.last_detail(), HasSubstr("CAN interface can0 has left the bus after too many errors (bus off)"));
+  EXPECT_EQ(sink.count(decode::Refusal::kException), 2);
+  say_for_5_s(can_line("23", "FA"));
+  EXPECT_EQ(sink.last_state(), wind::LinkState::kConnected);
+  run(5s);
+  EXPECT_THAT(sink.last_detail(), HasSubstr("terminators and bit rate of the bus")) << "the bus was there again";
+}
+
+TEST_F(Nmea2000SensorTest, ReadsCandumpsLinesWithoutBeingTold) {
+  make({{"transport", std::string("tcp")}, {"host", std::string("gateway")}});
+  receive("(1436509052.249713) " + can_line("23", "FA"));
+  receive("  can0  09FD0223   [8]  64 1E 01 C8 F1 FA FF FF\n");
+  EXPECT_EQ(sink.readings.size(), 2U);
+  EXPECT_TRUE(sink.refusals.empty());
 }
 
 }  // namespace

@@ -79,8 +79,24 @@ TEST(Nmea2000Device, SaysEachFormatByteForByte) {
       "\n");
   EXPECT_THAT(line_in("canboat-si"),
               testing::HasSubstr(R"("windAngle":4.0247,"reference":{"value":2,"name":"Apparent"})"));
+  EXPECT_EQ(line_in("candump"), "(1436509052.249713) can0 09FD0223#005601379DFAFFFF\n");
+  EXPECT_THAT(make_nmea2000_device("yacht-devices", "north")->send_messages(kMoment, {}).at(0),
+              testing::HasSubstr(" F8 "));
+  EXPECT_THAT(make_nmea2000_device("canboat", "boat")->send_messages(kMoment, {}).at(0),
+              testing::HasSubstr(R"x("Reference":"True (boat referenced)")x"));
   EXPECT_THAT(make_nmea2000_device("canboat")->greeting(), testing::HasSubstr("std"));
   EXPECT_THROW(make_nmea2000_device("mwv"), std::runtime_error);
+  EXPECT_THROW(make_nmea2000_device("canboat", "sideways"), std::runtime_error);
+}
+
+TEST(Nmea2000Device, SaysAFrameByteForByte) {
+  const auto frame_in = [](std::optional<FaultKind> fault) {
+    return make_nmea2000_can_device("magnetic")->send_messages(kMoment, fault).at(0);
+  };
+  using namespace std::string_literals;
+  EXPECT_EQ(frame_in({}), "\x23\x02\xFD\x89\x08\0\0\0\0\x56\x01\x37\x9D\xF9\xFF\xFF"s) << "29 bits: 0x80000000";
+  EXPECT_EQ(frame_in(FaultKind::kWrongId).front(), '\x24');
+  EXPECT_EQ(frame_in(FaultKind::kException), "\x40\0\0\x20\x08\0\0\0\0\0\0\0\0\0\0\0"s) << "bus off";
 }
 
 TEST(SignalKDevice, SaysItsWindToWhomAsksForItAfterWhatItRemembers) {
