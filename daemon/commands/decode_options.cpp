@@ -12,6 +12,7 @@
 #include "daemon/commands/exit.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/text/line_sensor.hpp"
+#include "drivers/text/nmea2000_sensor.hpp"
 #include "drivers/text/nmea_sensor.hpp"
 
 namespace yuragi::daemon::commands {
@@ -64,6 +65,7 @@ void DecodeCommandOptions::add_to(CLI::App& command) {
   command.add_flag("--refused", shows_refused, "also print what is refused, and why");
   add_text_options(command);
   add_line_options(command);
+  add_marine_options(command);
   add_station_options(command);
   add_modbus_options(command);
   add_counter_options(command);
@@ -83,6 +85,7 @@ void DecodeCommandOptions::check() {
   }
   set_text();
   set_line();
+  set_marine();
 }
 
 CLI::Option* DecodeCommandOptions::limit(CLI::Option* option, const std::string& formats) {
@@ -126,6 +129,18 @@ void DecodeCommandOptions::set_line() {
   }
 }
 
+/// The driver's own parameters, as of a sensor that reads a file.
+void DecodeCommandOptions::set_marine() {
+  ParameterValues::Map given = given_for_marine_;
+  given["transport"] = std::string("file");
+  given["file"] = std::string("-");
+  const auto values = ParameterValues::resolve(driver_named("nmea2000").parameters, given);
+  if (!values) {
+    throw ExitError(kExitUsage, fmt::format("{}: {}", option_of(values.error().name), values.error().message));
+  }
+  decoder.bus_lines = drivers::text::nmea2000_sensor_settings_of(*values).lines;
+}
+
 /// A driver's parameter as an option.
 void DecodeCommandOptions::add_parameter(CLI::App& command, const Parameter& parameter, const std::string& option,
                                          ParameterValues::Map& given, const std::string& formats) {
@@ -156,6 +171,11 @@ void DecodeCommandOptions::add_line_options(CLI::App& command) {
   for (const Parameter& parameter : drivers::text::line_reading_parameters()) {
     add_parameter(command, parameter, option_of(std::string(parameter.name)), given_for_line_, "line");
   }
+}
+
+void DecodeCommandOptions::add_marine_options(CLI::App& command) {
+  add_parameter(command, parameter_named(driver_named("nmea2000"), "angle_unit"), "--angle-unit", given_for_marine_,
+                "nmea2000");
 }
 
 void DecodeCommandOptions::add_station_options(CLI::App& command) {

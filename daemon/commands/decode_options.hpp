@@ -38,14 +38,17 @@ class DecodeCommandOptions {
                      ParameterValues::Map& given, const std::string& formats);
   void add_text_options(CLI::App& command);
   void add_line_options(CLI::App& command);
+  void add_marine_options(CLI::App& command);
   void add_station_options(CLI::App& command);
   void add_modbus_options(CLI::App& command);
   void add_counter_options(CLI::App& command);
   void set_text();
   void set_line();
+  void set_marine();
 
   ParameterValues::Map given_for_text_;
   ParameterValues::Map given_for_line_;
+  ParameterValues::Map given_for_marine_;
   std::vector<Limited> limited_;
 };
 

@@ -19,8 +19,6 @@ namespace {
 constexpr std::array<std::string_view, 5> kNmea2000Transports = {"serial", "tcp", "udp", "file", "can"};
 constexpr std::array<std::string_view, 4> kNmea2000Formats = {"auto", "yacht-devices", "canboat", "candump"};
 constexpr std::array<std::string_view, 3> kAngleUnits = {"auto", "deg", "rad"};
-/// canboat's longest records have some thousand bytes.
-constexpr std::size_t kLongestRecord = 8192;
 /// Of an identifier, the PGN of the wind; its priority and the sender's address do not matter.
 constexpr bus::CanFilter kWindFrames = {.identifier = decode::marine::kWindDataPgn << 8U, .mask = 0x3FFFFU << 8U};
 
@@ -78,17 +76,17 @@ std::vector<sensor::FoundDevice> find_behind_can_interfaces() {
 Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values) {
   Nmea2000SensorSettings settings;
   settings.text = text_sensor_settings_of(values);
-  settings.text.longest_line = kLongestRecord;
-  settings.format = static_cast<Nmea2000Format>(std::ranges::find(kNmea2000Formats, values.text("format")) -
-                                                kNmea2000Formats.begin());
+  settings.text.longest_line = decode::marine::kLongestBusLine;
+  settings.lines.format = static_cast<decode::marine::BusLineFormat>(
+      std::ranges::find(kNmea2000Formats, values.text("format")) - kNmea2000Formats.begin());
   if (const std::int64_t address = values.integer("address"); address >= 0)
     settings.address = static_cast<std::uint8_t>(address);
   const std::string& unit = values.text("angle_unit");
-  if (unit == "deg") settings.angle_unit = decode::marine::AngleUnit::kDegrees;
-  if (unit == "rad") settings.angle_unit = decode::marine::AngleUnit::kRadians;
+  if (unit == "deg") settings.lines.angle_unit = decode::marine::AngleUnit::kDegrees;
+  if (unit == "rad") settings.lines.angle_unit = decode::marine::AngleUnit::kRadians;
   settings.wind = chosen_wind_settings_of(values);
   if (settings.text.address.kind == bus::BytePortKind::kCan) {
-    settings.format = Nmea2000Format::kCandump;
+    settings.lines.format = decode::marine::BusLineFormat::kCandump;
     settings.text.address.can = kWindFrames;
   }
   if (settings.text.poll_interval > Nanoseconds::zero())

@@ -4,55 +4,24 @@
 
 #include <fmt/format.h>
 
-#include "drivers/decode/marine/yacht_devices.hpp"
-#include "drivers/decode/text_fields.hpp"
+#include "drivers/bus/can_interfaces.hpp"
 
 namespace yuragi::drivers::text {
-namespace {
-
-using decode::marine::ControllerState;
-
-/// Of gateways and programs.
-Nmea2000Format bus_format_by_look(std::string_view line) {
-  if (decode::trimmed(line).starts_with('{')) return Nmea2000Format::kCanboat;
-  return decode::marine::looks_like_candump(line) ? Nmea2000Format::kCandump : Nmea2000Format::kYachtDevices;
-}
-
-}  // namespace
 
 Nmea2000Sensor::Nmea2000Sensor(Nmea2000SensorSettings settings, std::unique_ptr<bus::BytePort> port)
     : TextSensor(settings.text, std::move(port)),
       settings_(std::move(settings)),
-      wind_(settings_.wind),
-      angle_unit_(settings_.angle_unit) {}
+      lines_(settings_.lines),
+      wind_(settings_.wind) {}
 
 void Nmea2000Sensor::begin() {
   wind_.restart();
-  angle_unit_ = settings_.angle_unit;
-  lacks_angle_unit_ = false;
-  controller_ = ControllerState::kGood;
-}
-
-Result<decode::marine::BusWind, decode::Refusal> Nmea2000Sensor::decode(std::string_view line) {
-  const Nmea2000Format format = settings_.format == Nmea2000Format::kAuto ? bus_format_by_look(line) : settings_.format;
-  if (format == Nmea2000Format::kYachtDevices) return decode::marine::decode_yacht_devices(line);
-  if (format == Nmea2000Format::kCandump) {
-    if (const auto told = decode::marine::candump_controller_state(line)) controller_ = *told;
-    return decode::marine::decode_candump(line);
-  }
-
-  if (const auto told = decode::marine::canboat_angle_unit(line); told && !settings_.angle_unit) angle_unit_ = told;
-  const auto said = decode::marine::decode_canboat({.angle_unit = angle_unit_}, line);
-  // Without a known unit only what can be nothing but degrees is decoded.
-  if (said && said->wind.direction_deg && !angle_unit_) angle_unit_ = decode::marine::AngleUnit::kDegrees;
-  lacks_angle_unit_ = said && !angle_unit_;
-  return said;
+  lines_.restart();
 }
 
 TextSensor::Judgement Nmea2000Sensor::judge(std::string_view line, const Instant& now) {
-  const auto said = decode(line);
+  const auto said = lines_.decode(line);
   if (!said) return said.error();
-  if (controller_ == ControllerState::kBusOff) controller_ = ControllerState::kGood;  // it takes part again
   if (settings_.address && said->address != *settings_.address) return decode::Refusal::kNotMine;
   const auto reference = decode::marine::kWindDataReferenceNames[static_cast<std::size_t>(said->reference)];
   return wind_.offer(fmt::format("wind {} of device {}", reference, said->address), said->wind, now);
@@ -60,21 +29,28 @@ TextSensor::Judgement Nmea2000Sensor::judge(std::string_view line, const Instant
 
 std::string Nmea2000Sensor::name() const {
   std::string taken = wind_.taken().empty() ? "NMEA 2000" : wind_.taken();
-  if (lacks_angle_unit_) taken += " without a direction (set angle_unit: nothing says it)";
-  if (controller_ == ControllerState::kPassive) taken += " over a bus with many errors";
+  if (lines_.lacks_angle_unit()) taken += " without a direction (set angle_unit: nothing says it)";
+  if (lines_.controller() == decode::marine::ControllerState::kPassive) taken += " over a bus with many errors";
   return taken;
 }
 
 std::string Nmea2000Sensor::told_trouble() const {
+  using State = decode::marine::ControllerState;
   constexpr std::string_view kSuspects = "check the bit rate (250000), the wires and both terminators of the bus";
-  switch (controller_) {
-    case ControllerState::kGood:
+  const bus::BytePortAddress& address = settings().address;
+  switch (lines_.controller()) {
+    case State::kGood:
       break;
-    case ControllerState::kPassive:
-      return fmt::format("{} receives errors alone (error passive): {}", describe(settings().address), kSuspects);
-    case ControllerState::kBusOff:
-      return fmt::format("{} has left the bus after too many errors (bus off): {}, and switch it off and on again",
-                         describe(settings().address), kSuspects);
+    case State::kPassive:
+      return fmt::format("{} receives errors alone (error passive): {}", describe(address), kSuspects);
+    case State::kBusOff: {
+      const std::string command =
+          address.kind == bus::BytePortKind::kCan
+              ? fmt::format("; then sudo ip link set {} down, and {}", address.path, bus::can_up_command(address.path))
+              : "";
+      return fmt::format("{} has left the bus after too many errors (bus off): {}{}", describe(address), kSuspects,
+                         command);
+    }
   }
   return {};
 }

@@ -5,27 +5,17 @@
 #include <string>
 #include <string_view>
 
-#include "drivers/decode/marine/canboat.hpp"
-#include "drivers/decode/marine/candump.hpp"
+#include "drivers/decode/marine/bus_line.hpp"
 #include "drivers/text/chosen_wind.hpp"
 #include "drivers/text/text_sensor.hpp"
 #include "engine/base/parameter.hpp"
 
 namespace yuragi::drivers::text {
 
-/// How a gateway or program writes what is said on an NMEA 2000 bus.
-enum class Nmea2000Format : std::uint8_t {
-  kAuto,  ///< detected, line by line
-  kYachtDevices,
-  kCanboat,
-  kCandump,  ///< also a CAN interface's
-};
-
 struct Nmea2000SensorSettings {
   TextSensorSettings text;
-  Nmea2000Format format = Nmea2000Format::kAuto;
-  std::optional<std::uint8_t> address;                       ///< take this device's wind only; nothing: any
-  std::optional<decode::marine::AngleUnit> angle_unit = {};  ///< of canboat; nothing: as it says
+  decode::marine::BusLineOptions lines;
+  std::optional<std::uint8_t> address;  ///< take this device's wind only; nothing: any
   ChosenWindSettings wind = {};
 };
 
@@ -45,13 +35,9 @@ class Nmea2000Sensor final : public TextSensor {
   std::string told_trouble() const override;
   std::string advice(decode::Refusal why, std::string_view line) const override;
 
-  Result<decode::marine::BusWind, decode::Refusal> decode(std::string_view line);
-
   Nmea2000SensorSettings settings_;
+  decode::marine::BusLineDecoder lines_;
   ChosenWind wind_;
-  std::optional<decode::marine::AngleUnit> angle_unit_;  // nothing: not known yet
-  bool lacks_angle_unit_ = false;
-  decode::marine::ControllerState controller_ = decode::marine::ControllerState::kGood;
 };
 
 }  // namespace yuragi::drivers::text

@@ -19,8 +19,6 @@ namespace {
 
 constexpr std::string_view kOwnVessel = "vessels.self";
 constexpr std::int64_t kSignalKPort = 8375;
-/// Deltas of one message have some hundred bytes, those of many values some thousand.
-constexpr std::size_t kLongestDelta = 16384;
 
 std::vector<Parameter> signalk_parameters() {
   std::vector<Parameter> own = {
@@ -56,7 +54,7 @@ bool needs_escape(char c) {
 SignalKSensorSettings signalk_sensor_settings_of(const ParameterValues& values) {
   SignalKSensorSettings settings;
   settings.text = text_sensor_settings_of(values);
-  settings.text.longest_line = kLongestDelta;
+  settings.text.longest_line = decode::marine::kLongestDelta;
   settings.source = values.text("source");
   settings.context = values.text("context");
   settings.wind = chosen_wind_settings_of(values);

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "drivers/decode/marine/bus_line.hpp"
 #include "drivers/decode/marine/canboat.hpp"
 #include "drivers/decode/marine/candump.hpp"
 #include "drivers/decode/marine/signalk.hpp"
@@ -38,6 +39,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
     require_wind(marine::decode_canboat({.angle_unit = marine::AngleUnit::kRadians}, record));
     static_cast<void>(marine::canboat_angle_unit(record));
   }
+  marine::BusLineDecoder lines({});
+  for (const std::string& each : {line, "can0 20000040#" + line, line}) require_wind(lines.decode(each));
   static_cast<void>(marine::signalk_hello(line));
   for (const std::string& delta : {line, R"({"updates":[{"values":[)" + line + "]}]}"}) {
     const auto said = marine::decode_signalk(delta);

@@ -10,6 +10,7 @@
 #include "drivers/decode/hid/te923.hpp"
 #include "drivers/decode/hid/wmr100.hpp"
 #include "drivers/decode/hid/wmr300.hpp"
+#include "drivers/decode/marine/signalk.hpp"
 #include "drivers/decode/text/ft.hpp"
 #include "drivers/decode/text/gill.hpp"
 #include "drivers/decode/text/nmea.hpp"
@@ -149,6 +150,20 @@ constexpr std::array kUnitFormats = {
                .devices = "numbers that a microcontroller prints",
                .example = "line --speed-column 2 --direction-column 1 --speed-unit km/h esp32.log",
                .make = make_line},
+    UnitFormat{.name = "nmea2000",
+               .is_text = true,
+               .longest_line = drivers::decode::marine::kLongestBusLine,
+               .unit = "a line",
+               .devices = "NMEA 2000 of Yacht Devices' gateways (RAW), canboat (JSON), candump",
+               .example = "nmea2000 --angle-unit rad canboatjs.log",
+               .make = make_nmea2000_unit_decoder},
+    UnitFormat{.name = "signalk",
+               .is_text = true,
+               .longest_line = drivers::decode::marine::kLongestDelta,
+               .unit = "a line",
+               .devices = "Signal K deltas; what is said of the angle alone is a reading of its own",
+               .example = "signalk deltas.log",
+               .make = make_signalk_unit_decoder},
     UnitFormat{.name = "wmr100",
                .is_text = false,
                .unit = "any part of the stream, without each report's length byte",

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/marine/bus_line.hpp"
 #include "drivers/decode/text/line.hpp"
 #include "drivers/decode/text/line_assembler.hpp"
 #include "drivers/decode/text_fields.hpp"
@@ -65,6 +66,7 @@ struct UnitDecoderOptions {
   std::optional<std::uint16_t> umb_device;                                               ///< umb
   double umb_speed_range_m_s = 75.0;                                                     ///< umb
   drivers::decode::text::LineOptions line;                                               ///< line
+  drivers::decode::marine::BusLineOptions bus_lines;                                     ///< nmea2000
   bool are_reports = false;  ///< wmr100, te923, fineoffset: input reports of 8 bytes, as received
 
   std::string profile;      ///< modbus: a name, or the path of a .toml file
@@ -85,6 +87,7 @@ struct UnitFormat {
   std::string_view name;
   bool is_text = true;  ///< lines of text; otherwise bytes, given as hexadecimal digits
   drivers::decode::text::LineEnding ending = drivers::decode::text::LineEnding::kNewline;
+  std::size_t longest_line = drivers::decode::text::LineAssembler::kMaxLine;  ///< longer ones are refused
   std::string_view unit;
   std::string_view devices;
   std::string_view example;  ///< a command line, without `yuragi decode`
@@ -105,6 +108,8 @@ UnitDecoder::Outcome outcome_of(const Result<drivers::decode::DecodedWind, drive
 std::unique_ptr<UnitDecoder> make_wmr100_reports_decoder(std::unique_ptr<UnitDecoder> stream);
 std::unique_ptr<UnitDecoder> make_te923_reports_decoder();
 std::unique_ptr<UnitDecoder> make_fineoffset_reports_decoder();
+std::unique_ptr<UnitDecoder> make_nmea2000_unit_decoder(const UnitDecoderOptions& options);
+std::unique_ptr<UnitDecoder> make_signalk_unit_decoder(const UnitDecoderOptions& options);
 std::unique_ptr<UnitDecoder> make_modbus_unit_decoder(const UnitDecoderOptions& options);
 std::unique_ptr<UnitDecoder> make_mcc1208_unit_decoder(const UnitDecoderOptions& options);
 std::unique_ptr<UnitDecoder> make_labjack_unit_decoder(const UnitDecoderOptions& options);

@@ -240,11 +240,59 @@ TEST_F(DecodeCommand, TakesOnlyTheNodeOrDeviceThatIsAskedFor) {
   EXPECT_TRUE(run(umb, {"umb", "--device", "28674"}).objects.empty());
 }
 
+TEST_F(DecodeCommand, DecodesTheLinesOfABusByTheirLook) {
+  const std::string lines =
+      "17:33:21.179 R 09FD0205 64 1E 01 C8 F1 FA FF FF\r\n"
+      "(1436509052.249713) can0 09FD0205#641E01C8F1FAFFFF\n"
+      "  can0  20000040   [8]  00 00 00 00 00 00 00 00   ERRORFRAME\n"
+      "{\"version\":\"4.12.0\",\"units\":\"std\"}\n"
+      R"({"src":5,"pgn":130306,"fields":{"list":")" +
+      std::string(4000, 'x') + R"(","Wind Speed":2.86,"Wind Angle":2.0,"Reference":"Apparent"}})" + "\n";
+  auto done = run(lines, {"nmea2000", "--refused"});
+  ASSERT_EQ(done.objects.size(), 5U) << done.text;
+  for (const std::size_t wind : {0U, 1U, 4U}) {
+    EXPECT_TRUE(is_value(done.objects[wind]["speed_m_s"], 2.86, 1e-9));
+    EXPECT_EQ(done.objects[wind]["reference"], "relative");
+  }
+  EXPECT_TRUE(is_value(done.objects[1]["direction_deg"], 354.638, 1e-3));
+  EXPECT_TRUE(is_value(done.objects[4]["direction_deg"], 2.0)) << "its first line says degrees";
+  EXPECT_EQ(done.objects[2]["refused"], "exception");
+  EXPECT_EQ(done.objects[3]["refused"], "not mine");
+
+  const std::string unsaid = R"({"src":5,"pgn":130306,"fields":{"Wind Speed":2.86,"Wind Angle":2.0}})";
+  EXPECT_TRUE(one(unsaid, {"nmea2000"})["direction_deg"].is_null());
+  EXPECT_TRUE(is_value(one(unsaid, {"nmea2000", "--angle-unit", "rad"})["direction_deg"], 114.592, 1e-3));
+  EXPECT_EQ(run(unsaid, {"nmea2000", "--angle-unit", "grad"}).code, kExitUsage);
+}
+
+TEST_F(DecodeCommand, DecodesWhatEachSignalKDeltaSays) {
+  const auto delta = [](const std::string& values) {
+    return R"({"context":"vessels.self","updates":[{"$source":"n2k.105","values":[)" + values + "]}]}\n";
+  };
+  const auto value = [](const std::string& name, const std::string& number) {
+    return R"({"path":"environment.wind.)" + name + R"(","value":)" + number + "}";
+  };
+  auto done = run(delta(value("speedApparent", "4.01") + "," + value("angleApparent", "-0.5")) +
+                      delta(value("angleTrueWater", "0.5")) + delta(value("speedTrue", "2.5")),
+                  {"signalk"});
+  ASSERT_EQ(done.objects.size(), 3U) << done.text;
+  EXPECT_TRUE(is_value(done.objects[0]["speed_m_s"], 4.01));
+  EXPECT_TRUE(is_value(done.objects[0]["direction_deg"], 331.352, 1e-3));
+  EXPECT_EQ(done.objects[0]["reference"], "relative");
+  EXPECT_TRUE(done.objects[1]["speed_m_s"].is_null());
+  EXPECT_TRUE(is_value(done.objects[1]["direction_deg"], 28.648, 1e-3));
+  EXPECT_EQ(done.objects[1]["reference"], "true");
+  EXPECT_TRUE(is_value(done.objects[2]["speed_m_s"], 2.5));
+  auto hello = run(R"({"name":"s","version":"2.0","roles":["master"]})", {"signalk", "--refused"});
+  EXPECT_EQ(hello.objects.at(0)["refused"], "not mine");
+}
+
 TEST_F(DecodeCommand, RefusesAnOptionThatMeansNothingToTheFormat) {
   for (const Arguments& arguments : std::vector<Arguments>{{"nmea", "--node", "Q"},
                                                            {"line", "--checksum", "accept"},
                                                            {"acurite", "--hex", "--slope", "1", "--interval", "1"},
                                                            {"mcc1208", "--hex", "--input", "high-voltage"},
+                                                           {"nmea", "--angle-unit", "rad"},
                                                            {"gill", "--speed-slave", "1"}}) {
     const auto done = run("", arguments);
     EXPECT_EQ(done.code, kExitUsage) << arguments[1];
@@ -256,9 +304,9 @@ TEST_F(DecodeCommand, SaysWhatToDoAboutEachMistake) {
   const auto bytes = run("", {"wmr300"});
   EXPECT_EQ(bytes.code, kExitUsage);
   EXPECT_THAT(bytes.error, HasSubstr("--hex"));
-  const auto unknown = run("", {"nmea2000"});
+  const auto unknown = run("", {"nmea3000"});
   EXPECT_EQ(unknown.code, kExitUsage);
-  EXPECT_THAT(unknown.error, HasSubstr("nmea, gill, umb, ft, wxt, line"));
+  EXPECT_THAT(unknown.error, HasSubstr("nmea, gill, umb, ft, wxt, line, nmea2000, signalk"));
   EXPECT_EQ(run("", {"modbus", "--hex"}).code, kExitUsage) << "a profile must be named";
   const auto profile = run("", {"modbus:no-such-device", "--hex"});
   EXPECT_EQ(profile.code, kExitConfig);

@@ -123,7 +123,8 @@ TEST_F(Nmea2000SensorTest, ReceivesTheWindAloneFromACanInterface) {
   EXPECT_FALSE(passes(0x09FD0305)) << "PGN 130307";
   EXPECT_FALSE(passes(0x08FD0205)) << "another data page";
   EXPECT_EQ(settings({{"interface", std::string("vcan1")}}).text.address.path, "vcan1");
-  EXPECT_EQ(settings({{"format", std::string("canboat")}}).format, Nmea2000Format::kCandump) << "it has but one";
+  EXPECT_EQ(settings({{"format", std::string("canboat")}}).lines.format, decode::marine::BusLineFormat::kCandump)
+      << "it has but one";
   EXPECT_THROW(settings({{"interface", std::string()}}), std::runtime_error);
   EXPECT_THROW(settings({{"poll_interval", 1.0}}), std::runtime_error);
 }
