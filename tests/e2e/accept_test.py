@@ -102,6 +102,18 @@ class Accept(unittest.TestCase):
         self.assertIsNone(made_up["verdict"])
         self.assertIn("no simulated device", made_up["remarks"][0])
 
+    def test_the_wind_on_board_is_simulated(self):
+        config = self.config('name = "bus"\ndriver = "nmea2000"\ntransport = "can"\ninterface = "can7"\nreference = "north"',
+                             'name = "program"\ndriver = "nmea2000"\ndevice = "/dev/ttyUSB77"\nformat = "canboat"\nangle_unit = "rad"',
+                             'name = "server"\ndriver = "signalk"\nhost = "boat.example"\nnorth_offset = -30')
+        done = self.accept(config, "--simulated-only", "--json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        simulated = json.loads(done.stdout)["simulated"]
+        self.assertEqual([one["verdict"] for one in simulated], ["passed"] * 3, simulated)
+        for one, direction_deg in zip(simulated, (225, 225, 195)):
+            self.assertAlmostEqual(one["mean_speed_m_s"], 8, delta=0.1)
+            self.assertAlmostEqual(one["direction_deg"], direction_deg, delta=1)
+
     def test_wrong_slave_ids_in_a_profile_are_a_verdict(self):
         source = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../drivers/modbus/profiles/renke-rs-fsjt-n01.toml")
         profile = os.path.join(self.folder, "renke-rs-fsjt-n01.toml")

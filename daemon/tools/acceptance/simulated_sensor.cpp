@@ -119,6 +119,38 @@ Result<SimulationPlan, Failure> plan_line(const SensorConfig& sensor) {
   return plan;
 }
 
+/// What yuragi-sim sends for the lines that a sensor takes; a CAN interface's are those of candump.
+std::string bus_format(const ParameterValues& values) {
+  const std::string& format = values.text("format");
+  if (values.text("transport") == "can") return "candump";
+  if (format == "canboat" && values.text("angle_unit") == "rad") return "canboat-si";
+  return format == "auto" ? "yacht-devices" : format;
+}
+
+SimulationPlan plan_nmea2000(const SensorConfig& sensor) {
+  const std::string format = bus_format(sensor.values);
+  const std::string& wanted = sensor.values.text("reference");
+  const bool is_from_north = wanted == "north";
+  const std::string reference = is_from_north ? "north" : wanted == "true" ? "boat" : "apparent";
+  SimulationPlan plan = plan_of(sensor, "nmea2000", {"--format", format, "--reference", reference});
+  if (sensor.values.text("transport") == "can") plan.sensor.values.set("format", format);
+  plan.sensor.values.set("address", std::int64_t{-1});  // the simulator's own, which is no fault of the configuration
+  plan.expected = expected_wind(sensor, is_from_north ? 0.0 : sensor.values.number("north_offset"));
+  return plan;
+}
+
+Result<SimulationPlan, Failure> plan_signalk(const SensorConfig& sensor) {
+  const std::string& reference = sensor.values.text("reference");
+  if (reference != "auto" && reference != "relative")
+    return Failure{"yuragi-sim plays a Signal K server that says the apparent wind alone"};
+  SimulationPlan plan = plan_of(sensor, "signalk", {});
+  // The simulator's own names, which are no fault of the configuration.
+  plan.sensor.values.set("source", std::string());
+  plan.sensor.values.set("context", std::string());
+  plan.expected = expected_wind(sensor, sensor.values.number("north_offset"));
+  return plan;
+}
+
 SimulationPlan plan_davis(const SensorConfig& sensor) {
   SimulationPlan plan = plan_of(sensor, "davis", {});
   plan.expected = expected_wind(sensor, 0.0, kMetresPerSecondPerMph);  // it says whole miles per hour
@@ -133,6 +165,8 @@ Result<SimulationPlan, Failure> plan_simulation(const SensorConfig& sensor) {
   if (driver == "nmea") return plan_nmea(sensor);
   if (driver == "line") return plan_line(sensor);
   if (driver == "davis") return plan_davis(sensor);
+  if (driver == "nmea2000") return plan_nmea2000(sensor);
+  if (driver == "signalk") return plan_signalk(sensor);
   constexpr std::array<std::string_view, 3> kNeedDevices = {"hid", "usb", "microphone"};
   if (std::ranges::find(kNeedDevices, driver) != kNeedDevices.end())
     return Failure{fmt::format("a simulated {} needs USB or sound of its own, and rights for it", driver)};

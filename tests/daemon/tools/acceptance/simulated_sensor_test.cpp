@@ -74,6 +74,40 @@ TEST(SimulationPlan, PlaysADavisConsoleOverTcp) {
   EXPECT_NEAR(plan.expected.speed_tolerance_m_s, 0.447, 0.001) << "it says whole miles per hour";
 }
 
+TEST(SimulationPlan, PlaysABusInTheLinesThatASensorTakes) {
+  const auto arguments_of = [](const std::string& keys) {
+    const auto all = plan_of_entry("driver = \"nmea2000\"\n" + keys).arguments;
+    return all.at(4) + " " + all.at(6);
+  };
+  const std::string serial = "device = \"/dev/ttyACM0\"\n";
+  EXPECT_EQ(arguments_of(serial), "yacht-devices apparent");
+  EXPECT_EQ(arguments_of(serial + "format = \"canboat\""), "canboat apparent");
+  EXPECT_EQ(arguments_of(serial + "format = \"canboat\"\nangle_unit = \"rad\""), "canboat-si apparent");
+  EXPECT_EQ(arguments_of(serial + "reference = \"true\""), "yacht-devices boat");
+  EXPECT_EQ(arguments_of("transport = \"can\"\nreference = \"north\""), "candump north");
+
+  const SimulationPlan plan =
+      plan_of_entry("driver = \"nmea2000\"\ntransport = \"can\"\naddress = 7\nnorth_offset = 10");
+  EXPECT_EQ(plan.sensor.values.text("transport"), "tcp");
+  EXPECT_EQ(plan.sensor.values.integer("address"), -1) << "the simulator's own is another";
+  EXPECT_DOUBLE_EQ(plan.expected.direction_deg, 235.0);
+  EXPECT_DOUBLE_EQ(plan_of_entry("driver = \"nmea2000\"\ntransport = \"can\"\nreference = \"north\"\nnorth_offset = 10")
+                       .expected.direction_deg,
+                   225.0);
+}
+
+TEST(SimulationPlan, PlaysASignalKServer) {
+  const SimulationPlan plan = plan_of_entry(
+      "driver = \"signalk\"\nhost = \"boat\"\nsource = \"n2k.105\"\ncontext = \"vessels.x\"\nnorth_offset = 10");
+  EXPECT_THAT(plan.arguments, ElementsAre("signalk", "--tcp", "127.0.0.1:0", "--speed", "8", "--direction", "225",
+                                          "--turbulence", "0"));
+  EXPECT_EQ(plan.sensor.values.text("source"), "");
+  EXPECT_EQ(plan.sensor.values.text("context"), "");
+  EXPECT_DOUBLE_EQ(plan.expected.direction_deg, 235.0);
+  EXPECT_THAT(why_not("driver = \"signalk\"\nhost = \"boat\"\nreference = \"north\""),
+              HasSubstr("apparent wind alone"));
+}
+
 TEST(SimulationPlan, ExpectsTheCalibratedWind) {
   const SimulationPlan plain = plan_of_entry("driver = \"modbus\"");
   EXPECT_DOUBLE_EQ(plain.expected.speed_m_s, 8.0);
