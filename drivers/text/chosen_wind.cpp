@@ -5,15 +5,22 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace yuragi::drivers::text {
 namespace {
 
 constexpr std::array<std::string_view, 4> kChosenFrames = {"auto", "north", "relative", "true"};
 
-/// In a slower wind no vane turns.
+/// Below this no vane turns, and anemometers leave out the direction.
 constexpr double kCalm_m_s = 0.5;
-/// A direction of another source holds for so long, or for one and a half of its own pauses.
-constexpr Nanoseconds kDirectionHolds = std::chrono::seconds(2);
+/// A direction and a speed that come in two messages belong together if they come so close, or within one pause and a
+/// half of the directions.
+constexpr Nanoseconds kJoinTime = std::chrono::seconds(2);
+
+bool is_calm(std::optional<double> speed_m_s) {
+  return speed_m_s && *speed_m_s < kCalm_m_s;
+}
 
 }  // namespace
 
@@ -66,25 +73,25 @@ ChosenWindSettings chosen_wind_settings_of(const ParameterValues& values) {
   return settings;
 }
 
-Result<std::optional<wind::WindReading>, decode::Refusal> ChosenWind::offer(const std::string& source,
+Result<std::optional<wind::WindReading>, decode::Refusal> ChosenWind::offer(const WindChoice::Source& source,
                                                                             const decode::DecodedWind& wind,
                                                                             const Instant& now) {
   using Offered = std::optional<wind::WindReading>;
   const WindChoice::Said said = {.has_speed = wind.speed_m_s.has_value(),
                                  .has_direction = wind.direction_deg.has_value(),
-                                 .is_calm = wind.speed_m_s && *wind.speed_m_s < kCalm_m_s};
-  const auto verdict = choice_.offer({.name = source, .frame = frame_of_reference(wind.reference)}, said, now.mono);
+                                 .is_calm = is_calm(wind.speed_m_s)};
+  const auto verdict = choice_.offer(source, said, now.mono);
   if (verdict == WindChoice::Verdict::kForeign) return decode::Refusal::kNotMine;
 
-  // The speed may be another source's than the direction.
+  // The speed may come in another message than the direction.
   std::optional<double> direction_deg =
       choice_.takes_direction() ? direction_from_north_deg(settings_, wind) : std::nullopt;
   if (direction_deg) {
-    kept_direction_ = KeptDirection{source, *direction_deg, now.mono};
+    kept_direction_ = KeptDirection{source.name, *direction_deg, now.mono, !said.has_speed};
     if (held_ && !held_->direction_deg) held_->direction_deg = direction_deg;
   }
   if (verdict == WindChoice::Verdict::kPass) return Offered();
-  if (!direction_deg) direction_deg = direction_for(source, now.mono);
+  if (!direction_deg) direction_deg = direction_for(source.name, now.mono);
 
   const bool is_uncertain = wind.status == decode::DecodedStatus::kUncertain;
   const wind::WindReading reading = {
@@ -93,8 +100,8 @@ Result<std::optional<wind::WindReading>, decode::Refusal> ChosenWind::offer(cons
       .direction_deg = direction_deg,
       .gust_m_s = wind.gust_m_s,
       .quality = is_uncertain ? wind::ReadingQuality::kUncertain : wind::ReadingQuality::kGood};
-  taken_ = source;
-  if (verdict == WindChoice::Verdict::kHold) {
+  name_sources(source.name, reading);
+  if (verdict == WindChoice::Verdict::kHold && settings_.comes_in_bursts) {
     held_ = reading;
     return Offered();
   }
@@ -113,10 +120,26 @@ void ChosenWind::restart() {
   kept_direction_.reset();
 }
 
-std::optional<double> ChosenWind::direction_for(const std::string& source, MonoTime now) const {
-  const Nanoseconds longest = std::max<Nanoseconds>(kDirectionHolds, choice_.direction_pause() * 3 / 2);
-  const bool holds = kept_direction_ && kept_direction_->source != source && now - kept_direction_->time <= longest;
-  return holds ? std::optional(kept_direction_->direction_deg) : std::nullopt;
+/// The direction that belongs to a speed whose own message has none. In a calm a message leaves it out on purpose: then
+/// the one before does not hold.
+std::optional<double> ChosenWind::direction_for(const std::string& source, MonoTime now) {
+  if (!kept_direction_) return std::nullopt;
+  const KeptDirection kept = *kept_direction_;
+  if (kept.came_alone) kept_direction_.reset();
+  const Nanoseconds longest = std::max<Nanoseconds>(kJoinTime, choice_.direction_pause() * 3 / 2);
+  if (now - kept.time > longest || (kept.source == source && !kept.came_alone)) return std::nullopt;
+  return kept.direction_deg;
+}
+
+void ChosenWind::name_sources(const std::string& source, const wind::WindReading& reading) {
+  const std::string& direction_source = choice_.direction_source();
+  if (direction_source.empty() || direction_source == source) {
+    taken_ = source;
+  } else if (reading.direction_deg) {
+    taken_ = fmt::format("{} with the direction of {}", source, direction_source);
+  } else if (!is_calm(reading.speed_m_s)) {
+    taken_ = fmt::format("{} without a direction, since {} gives none", source, direction_source);
+  }
 }
 
 std::optional<double> direction_from_north_deg(const ChosenWindSettings& settings,

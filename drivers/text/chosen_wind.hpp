@@ -16,6 +16,7 @@ struct ChosenWindSettings {
   std::optional<WindFrame> frame;  ///< accept this frame only; nothing: the best received
   double north_offset_deg = 0.0;   ///< what to add to a direction from the device's own mark
   double variation_deg = 0.0;      ///< what to add to a direction from magnetic north
+  bool comes_in_bursts = true;     ///< the first of several winds waits for a better one of the same burst
 };
 
 /// The parameters of these: reference, north_offset, variation.
@@ -30,33 +31,40 @@ WindFrame frame_of_reference(decode::WindReference reference) noexcept;
 std::optional<double> direction_from_north_deg(const ChosenWindSettings& settings,
                                                const decode::DecodedWind& wind) noexcept;
 
-/// Makes one wind of what several sources say, each in its own frame (WindChoice), with directions from north.
-/// Thread-safe: no.
+/// Makes one wind of what several sources say, each in its own frame (WindChoice), with directions from north. Speed
+/// and direction may come from different sources, in messages of their own. Thread-safe: no.
 class ChosenWind {
  public:
   explicit ChosenWind(const ChosenWindSettings& settings) : settings_(settings), choice_(settings.frame) {}
 
-  /// A source has said this, with a speed. Returns what to publish now: nothing where it is another source's wind, or
+  /// A source has said this. Returns what to publish now: nothing where it has no speed, is another source's wind, or
   /// is held until the first burst is over. kNotMine: not in the configured frame.
-  Result<std::optional<wind::WindReading>, decode::Refusal> offer(const std::string& source,
+  Result<std::optional<wind::WindReading>, decode::Refusal> offer(const WindChoice::Source& source,
                                                                   const decode::DecodedWind& wind, const Instant& now);
+  /// The same of a source whose frame is that of its direction.
+  Result<std::optional<wind::WindReading>, decode::Refusal> offer(const std::string& source,
+                                                                  const decode::DecodedWind& wind, const Instant& now) {
+    return offer({.name = source, .frame = frame_of_reference(wind.reference)}, wind, now);
+  }
   /// The burst is over: what was held until then.
   std::optional<wind::WindReading> take_held();
   /// The device was opened again.
   void restart();
 
-  /// The source that was taken last; empty: none yet.
+  /// The sources of speed and direction that were taken last, for people: a change of it is logged. Empty: none yet.
   const std::string& taken() const noexcept { return taken_; }
 
  private:
+  /// The last direction that was taken, kept for the speeds that follow.
   struct KeptDirection {
     std::string source;
     double direction_deg = 0.0;
     MonoTime time{};
+    bool came_alone = false;  ///< in a message without a speed
   };
 
-  /// What another source said last, as long as it holds.
-  std::optional<double> direction_for(const std::string& source, MonoTime now) const;
+  std::optional<double> direction_for(const std::string& source, MonoTime now);
+  void name_sources(const std::string& source, const wind::WindReading& reading);
 
   ChosenWindSettings settings_;
   WindChoice choice_;

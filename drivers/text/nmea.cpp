@@ -7,6 +7,7 @@
 //   ft      "$01,WV?*hh" CR LF        FT Technologies FT702LT manual, 5.3
 //   wxt     "0r1Goe" CR LF            Vaisala WXT530 user's guide M211840EN, 7.2, polling with CRC
 //   others  as configured (a WindSonic in polled mode M3 needs its node letter)
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -22,79 +23,68 @@ namespace yuragi::drivers::text {
 namespace {
 
 constexpr std::array<std::string_view, 6> kNmeaFormats = {"auto", "nmea", "gill", "ft", "umb", "wxt"};
-constexpr std::array<std::string_view, 4> kNmeaReferences = {"auto", "north", "relative", "true"};
 constexpr std::array<std::string_view, 3> kMissingChecksum = {"auto", "accept", "refuse"};
 constexpr std::array<std::string_view, 2> kMissingStatus = {"accept", "refuse"};
 constexpr std::array<std::string_view, 6> kSentences = {"MWV", "MWD", "VWR", "VWT", "MDA", "XDR"};
 constexpr Nanoseconds kUmbInterval = std::chrono::seconds(1);
 
-const std::vector<Parameter> kNmeaParameters = with_byte_port_parameters(
-    {
-        {.name = "format",
-         .unit = "",
-         .default_value = std::string("auto"),
-         .help = "auto: detected for each line; ft, umb and wxt also send the requests of these devices",
-         .choices = kNmeaFormats},
-        {.name = "sentences",
-         .unit = "",
-         .default_value = std::string(""),
-         .help = "nmea: accept only these, separated by commas: MWV, MWD, VWR, VWT, MDA, XDR; empty: all"},
-        {.name = "talker",
-         .unit = "",
-         .default_value = std::string(""),
-         .help = "accept only this talker: two characters before the sentence (WI), Gill's node letter (Q), a WXT's "
-                 "address "
-                 "(0); empty: any"},
-        {.name = "reference",
-         .unit = "",
-         .default_value = std::string("auto"),
-         .help = "which direction to use where a device sends several: from north (MWD, MDA), relative to its own mark "
-                 "(MWV R, VWR, XDR, Gill, FT, UMB, WXT), true (MWV T, VWT); auto: the first of these that it sends",
-         .choices = kNmeaReferences},
-        {.name = "north_offset",
-         .unit = "deg",
-         .default_value = 0.0,
-         .min = -360.0,
-         .max = 360.0,
-         .help = "bearing of the device's north mark, clockwise from north: added to relative and true directions"},
-        {.name = "variation",
-         .unit = "deg",
-         .default_value = 0.0,
-         .min = -180.0,
-         .max = 180.0,
-         .help = "magnetic variation of the place, east positive: added to magnetic directions"},
-        {.name = "missing_checksum",
-         .unit = "",
-         .default_value = std::string("auto"),
-         .help = "lines without a checksum; auto: NMEA sentences and those of a WXT are accepted over a network and "
-                 "from a file, and "
-                 "refused on a serial line, where nothing else detects a wrong bit; the other makers' own formats "
-                 "always have "
-                 "one. A wrong checksum is always refused",
-         .choices = kMissingChecksum},
-        {.name = "missing_status",
-         .unit = "",
-         .default_value = std::string("accept"),
-         .help = "lines without their status field; accepted ones are marked uncertain",
-         .choices = kMissingStatus},
-        {.name = "address",
-         .unit = "",
-         .default_value = std::string(""),
-         .help = "ft, umb: address of the device, two characters (01 by default); wxt: one (0 by default)"},
-        {.name = "xdr_id",
-         .unit = "",
-         .default_value = std::int64_t{0},
-         .min = 0,
-         .max = 99,
-         .help = "nmea: number of the device in XDR sentences (Vaisala's address)"},
-        {.name = "speed_range",
-         .unit = "m/s",
-         .default_value = 75.0,
-         .min = 1.0,
-         .max = 120.0,
-         .help = "umb: full scale in Lufft's ASCII mode; a VENTUS has 90"},
-    },
-    0.0);
+std::vector<Parameter> nmea_parameters() {
+  std::vector<Parameter> own = {
+      {.name = "format",
+       .unit = "",
+       .default_value = std::string("auto"),
+       .help = "auto: detected for each line; ft, umb and wxt also send the requests of these devices",
+       .choices = kNmeaFormats},
+      {.name = "sentences",
+       .unit = "",
+       .default_value = std::string(""),
+       .help = "nmea: accept only these, separated by commas: MWV, MWD, VWR, VWT, MDA, XDR; empty: all"},
+      {.name = "talker",
+       .unit = "",
+       .default_value = std::string(""),
+       .help = "accept only this talker: two characters before the sentence (WI), Gill's node letter (Q), a WXT's "
+               "address "
+               "(0); empty: any"},
+      {.name = "missing_checksum",
+       .unit = "",
+       .default_value = std::string("auto"),
+       .help = "lines without a checksum; auto: NMEA sentences and those of a WXT are accepted over a network and "
+               "from a file, and "
+               "refused on a serial line, where nothing else detects a wrong bit; the other makers' own formats "
+               "always have "
+               "one. A wrong checksum is always refused",
+       .choices = kMissingChecksum},
+      {.name = "missing_status",
+       .unit = "",
+       .default_value = std::string("accept"),
+       .help = "lines without their status field; accepted ones are marked uncertain",
+       .choices = kMissingStatus},
+      {.name = "address",
+       .unit = "",
+       .default_value = std::string(""),
+       .help = "ft, umb: address of the device, two characters (01 by default); wxt: one (0 by default)"},
+      {.name = "xdr_id",
+       .unit = "",
+       .default_value = std::int64_t{0},
+       .min = 0,
+       .max = 99,
+       .help = "nmea: number of the device in XDR sentences (Vaisala's address)"},
+      {.name = "speed_range",
+       .unit = "m/s",
+       .default_value = 75.0,
+       .min = 1.0,
+       .max = 120.0,
+       .help = "umb: full scale in Lufft's ASCII mode; a VENTUS has 90"},
+  };
+  std::vector<Parameter> chosen = chosen_wind_parameters();
+  std::ranges::find(chosen, "reference", &Parameter::name)->help =
+      "which direction to use where a device sends several: from north (MWD, MDA), relative to its own mark (MWV R, "
+      "VWR, "
+      "XDR, Gill, FT, UMB, WXT), true (MWV T, VWT); auto: the first of these that it sends";
+  std::ranges::move(chosen, std::back_inserter(own));
+  return with_byte_port_parameters(std::move(own), 0.0);
+}
+const std::vector<Parameter> kNmeaParameters = nmea_parameters();
 
 NmeaFormat nmea_format_of(std::string_view name) {
   return static_cast<NmeaFormat>(std::ranges::find(kNmeaFormats, name) - kNmeaFormats.begin());
@@ -171,6 +161,7 @@ NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values) {
   settings.xdr_first_id = static_cast<int>(values.integer("xdr_id"));
   settings.speed_range_m_s = values.number("speed_range");
   set_request(settings, values);
+  settings.wind.comes_in_bursts = settings.text.poll_interval == Nanoseconds::zero();
   return settings;
 }
 

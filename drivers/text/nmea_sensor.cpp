@@ -1,7 +1,6 @@
 #include "drivers/text/nmea_sensor.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,12 +13,6 @@
 
 namespace yuragi::drivers::text {
 namespace {
-
-/// A direction and a speed that come in two messages belong together if they come so close, or within one pause and a
-/// half of the directions.
-constexpr Nanoseconds kJoinTime = std::chrono::seconds(2);
-/// Below this anemometers leave out the direction.
-constexpr double kVaneCalm_m_s = 0.5;
 
 /// The format of a line. Gill's begin with one letter, and have an ETX before the checksum.
 NmeaFormat format_by_look(std::string_view line) {
@@ -71,13 +64,7 @@ WindFrame frame_of(std::string_view sentence, decode::WindReference reference) {
 }  // namespace
 
 NmeaSensor::NmeaSensor(NmeaSensorSettings settings, std::unique_ptr<bus::BytePort> port)
-    : TextSensor(settings.text, std::move(port)), settings_(std::move(settings)), choice_(settings_.wind.frame) {}
-
-void NmeaSensor::begin() {
-  choice_.restart();
-  held_.reset();
-  kept_direction_.reset();
-}
+    : TextSensor(settings.text, std::move(port)), settings_(std::move(settings)), wind_(settings_.wind) {}
 
 Result<decode::DecodedWind, decode::Refusal> NmeaSensor::decode(NmeaFormat format, std::string_view line) const {
   switch (format) {
@@ -117,63 +104,9 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
                          std::ranges::find(settings_.sentences, message.sentence) != settings_.sentences.end();
   if (!is_wanted || (!settings_.talker.empty() && message.talker != settings_.talker)) return decode::Refusal::kNotMine;
 
-  // Publish it, or has another source sent the same?
-  const WindChoice::Source source = {.name = fmt::format("{} of {}", message.sentence, message.talker),
-                                     .frame = frame_of(message.sentence, wind->reference)};
-  const bool is_calm = wind->speed_m_s && *wind->speed_m_s < kVaneCalm_m_s;
-  const WindChoice::Said said = {
-      .has_speed = wind->speed_m_s.has_value(), .has_direction = wind->direction_deg.has_value(), .is_calm = is_calm};
-  const auto verdict = choice_.offer(source, said, now.mono);
-  if (verdict == WindChoice::Verdict::kForeign) return decode::Refusal::kNotMine;
-
-  // The speed may come in another message than the direction.
-  std::optional<double> direction_deg =
-      choice_.takes_direction() ? direction_from_north_deg(settings_.wind, *wind) : std::nullopt;
-  if (direction_deg) {
-    kept_direction_ = KeptDirection{source.name, *direction_deg, now.mono, !said.has_speed};
-    if (held_ && !held_->direction_deg) held_->direction_deg = direction_deg;
-  }
-  if (verdict == WindChoice::Verdict::kPass) return std::optional<wind::WindReading>();
-  if (!direction_deg) direction_deg = direction_for(source.name, now.mono);
-
-  const bool is_uncertain = wind->status == decode::DecodedStatus::kUncertain;
-  const wind::WindReading reading = {
-      .time = now,
-      .speed_m_s = *wind->speed_m_s,
-      .direction_deg = direction_deg,
-      .gust_m_s = wind->gust_m_s,
-      .quality = is_uncertain ? wind::ReadingQuality::kUncertain : wind::ReadingQuality::kGood};
-  name_sources(source.name, reading, is_calm);
-  const bool comes_in_bursts = settings().poll_interval == Nanoseconds::zero();
-  if (verdict == WindChoice::Verdict::kHold && comes_in_bursts) {
-    held_ = reading;
-    return std::optional<wind::WindReading>();
-  }
-  held_.reset();
-  return std::optional(reading);
-}
-
-/// The direction that belongs to a speed whose own message has none. In a calm a message leaves it out on purpose: then
-/// the one before does not hold.
-std::optional<double> NmeaSensor::direction_for(const std::string& source, MonoTime now) {
-  if (!kept_direction_) return std::nullopt;
-  const KeptDirection kept = *kept_direction_;
-  if (kept.came_alone) kept_direction_.reset();
-  const Nanoseconds longest = std::max<Nanoseconds>(kJoinTime, choice_.direction_pause() * 3 / 2);
-  if (now - kept.time > longest || (kept.source == source && !kept.came_alone)) return std::nullopt;
-  return kept.direction_deg;
-}
-
-/// What speed and direction are taken from: a change of it is logged.
-void NmeaSensor::name_sources(const std::string& source, const wind::WindReading& reading, bool is_calm) {
-  const std::string& direction_source = choice_.direction_source();
-  if (direction_source.empty() || direction_source == source) {
-    taken_ = source;
-  } else if (reading.direction_deg) {
-    taken_ = fmt::format("{} with the direction of {}", source, direction_source);
-  } else if (!is_calm) {
-    taken_ = fmt::format("{} without a direction, since {} gives none", source, direction_source);
-  }
+  return wind_.offer({.name = fmt::format("{} of {}", message.sentence, message.talker),
+                      .frame = frame_of(message.sentence, wind->reference)},
+                     *wind, now);
 }
 
 /// Of any sentence of the talker: `sentences` says where the wind is taken from.
@@ -200,13 +133,8 @@ std::optional<wind::StationQuantities> NmeaSensor::quantities_of(std::string_vie
   return {};
 }
 
-std::optional<wind::WindReading> NmeaSensor::take_held() {
-  if (held_) choice_.settle();
-  return std::exchange(held_, std::nullopt);
-}
-
 std::string NmeaSensor::name() const {
-  return taken_.empty() ? "anemometer" : taken_;
+  return wind_.taken().empty() ? "anemometer" : wind_.taken();
 }
 
 std::string NmeaSensor::advice(decode::Refusal why, std::string_view line) const {

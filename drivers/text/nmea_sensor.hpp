@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,7 +10,6 @@
 #include "drivers/decode/text_fields.hpp"
 #include "drivers/text/chosen_wind.hpp"
 #include "drivers/text/text_sensor.hpp"
-#include "drivers/text/wind_choice.hpp"
 #include "engine/base/parameter.hpp"
 
 namespace yuragi::drivers::text {
@@ -51,28 +49,15 @@ class NmeaSensor final : public TextSensor {
  private:
   Judgement judge(std::string_view line, const Instant& now) override;
   std::optional<wind::StationQuantities> quantities_of(std::string_view line) const override;
-  std::optional<wind::WindReading> take_held() override;
-  void begin() override;
+  std::optional<wind::WindReading> take_held() override { return wind_.take_held(); }
+  void begin() override { wind_.restart(); }
   std::string name() const override;
   std::string advice(decode::Refusal why, std::string_view line) const override;
 
   Result<decode::DecodedWind, decode::Refusal> decode(NmeaFormat format, std::string_view line) const;
 
-  /// The last direction that was taken, kept for the speeds that follow.
-  struct KeptDirection {
-    std::string source;
-    double direction_deg = 0.0;
-    MonoTime time{};
-    bool came_alone = false;  ///< in a message without a speed
-  };
-  std::optional<double> direction_for(const std::string& source, MonoTime now);
-  void name_sources(const std::string& source, const wind::WindReading& reading, bool is_calm);
-
   NmeaSensorSettings settings_;
-  WindChoice choice_;
-  std::optional<wind::WindReading> held_;
-  std::optional<KeptDirection> kept_direction_;
-  std::string taken_;  // the sources that were taken last, for people
+  ChosenWind wind_;
 };
 
 }  // namespace yuragi::drivers::text
