@@ -331,7 +331,7 @@ TEST(Marine, DecodesNothingImpossibleFromHurtLines) {
       delta(value("speedApparent", "4.01") + "," + value("angleApparent", "-0.5")),
       "(1436509052.249713) can0 09FD0205#641E01C8F1FAFFFF"};
   std::mt19937 random(1);
-  for (int i = 0; i < 200'000; ++i) {
+  for (int i = 0; i < 1'000'000; ++i) {
     std::string line = lines[static_cast<std::size_t>(i) % lines.size()];
     for (auto hurts = 1 + random() % 3; hurts > 0; --hurts) {
       const std::size_t at = random() % line.size();

@@ -115,6 +115,7 @@ TEST_F(Nmea2000SensorTest, ReceivesTheWindAloneFromACanInterface) {
   const bus::BytePortAddress address = settings({}).text.address;
   EXPECT_EQ(address.kind, bus::BytePortKind::kCan);
   EXPECT_EQ(address.path, "can0");
+  EXPECT_EQ(bus::sole_device_of(address), "") << "any number of sensors may listen to a bus";
   const auto passes = [&](std::uint32_t identifier) {
     return (identifier & address.can.mask) == (address.can.identifier & address.can.mask);
   };
