@@ -179,7 +179,7 @@ void decode_input(DecodeCommandOptions& options) {
 
   using Form = tools::decode::UnitReader::Form;
   const Form form = !options.is_hex ? Form::kLines : format.is_text ? Form::kHexLines : Form::kHexFrames;
-  tools::decode::UnitReader reader(form, format.ending);
+  tools::decode::UnitReader reader(form, format.ending, format.longest_line);
   for (drivers::decode::ByteSpan bytes = input.read_some(); !bytes.empty(); bytes = input.read_some())
     reader.feed(bytes, message);
   reader.finish(message);

@@ -122,29 +122,14 @@ class TempestSensor final : public sensor::ReopeningSensor {
       other_ = message->serial_number;
       return sink.refused(decode::Refusal::kNotMine);
     }
-    if (!is_new(*message)) return;
+    if (!winds_.is_new(*message)) return;
     if (message->kind == TempestKind::kObservation) {
       wind::StationQuantities said = message->quantities;
       said.time = now;
       sink.quantities(said);
     }
     if (!message->wind) return sink.refused(message->wind.error());
-    if (is_wind(message->kind)) publish(*message, now, sink);
-  }
-
-  /// A machine with two interfaces in the hub's network hears everything twice.
-  bool is_new(const TempestMessage& message) {
-    std::int64_t& last_s = message.kind == TempestKind::kRapidWind ? last_rapid_wind_s_ : last_observation_s_;
-    return std::exchange(last_s, message.time_s) != message.time_s;
-  }
-
-  /// Is it to be published as the wind? An observation is where no rapid wind has come since the one before.
-  bool is_wind(TempestKind kind) {
-    if (kind == TempestKind::kRapidWind) {
-      rapid_winds_are_missing_ = false;
-      return true;
-    }
-    return std::exchange(rapid_winds_are_missing_, true);
+    if (winds_.is_wind(*message)) publish(*message, now, sink);
   }
 
   void publish(const TempestMessage& message, const Instant& now, sensor::SensorSink& sink) {
@@ -205,9 +190,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
   bool is_silent_ = true;
   bool has_read_ = false;                     // since it has the port
   std::array<Nanoseconds, 2> last_pauses_{};  // between readings
-  std::int64_t last_rapid_wind_s_ = 0;        // by the hub's clock
-  std::int64_t last_observation_s_ = 0;
-  bool rapid_winds_are_missing_ = false;  // since the last observation
+  decode::network::TempestWinds winds_;
 };
 
 TempestSettings tempest_settings_of(const ParameterValues& values) {

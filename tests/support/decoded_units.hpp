@@ -24,7 +24,7 @@ void decode_units(const daemon::tools::decode::UnitFormat& format,
   daemon::tools::decode::UnitReader reader(!is_hex          ? Form::kLines
                                            : format.is_text ? Form::kHexLines
                                                             : Form::kHexFrames,
-                                           format.ending);
+                                           format.ending, format.longest_line);
   const auto decoder = format.make(options);
   const auto message = [&](const daemon::tools::decode::ReadUnit& unit) {
     if (unit.why)

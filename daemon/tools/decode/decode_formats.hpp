@@ -85,6 +85,7 @@ struct UnitFormat {
   std::string_view name;
   bool is_text = true;  ///< lines of text; otherwise bytes, given as hexadecimal digits
   drivers::decode::text::LineEnding ending = drivers::decode::text::LineEnding::kNewline;
+  std::size_t longest_line = drivers::decode::text::LineAssembler::kMaxLine;  ///< longer ones are refused
   std::string_view unit;
   std::string_view devices;
   std::string_view example;  ///< a command line, without `yuragi decode`
@@ -105,6 +106,10 @@ UnitDecoder::Outcome outcome_of(const Result<drivers::decode::DecodedWind, drive
 std::unique_ptr<UnitDecoder> make_wmr100_reports_decoder(std::unique_ptr<UnitDecoder> stream);
 std::unique_ptr<UnitDecoder> make_te923_reports_decoder();
 std::unique_ptr<UnitDecoder> make_fineoffset_reports_decoder();
+std::unique_ptr<UnitDecoder> make_tempest_unit_decoder(const UnitDecoderOptions& options);
+std::unique_ptr<UnitDecoder> make_ecowitt_unit_decoder(const UnitDecoderOptions& options);
+std::unique_ptr<UnitDecoder> make_station_push_unit_decoder(const UnitDecoderOptions& options);
+std::unique_ptr<UnitDecoder> make_weatherlink_unit_decoder(const UnitDecoderOptions& options);
 std::unique_ptr<UnitDecoder> make_modbus_unit_decoder(const UnitDecoderOptions& options);
 std::unique_ptr<UnitDecoder> make_mcc1208_unit_decoder(const UnitDecoderOptions& options);
 std::unique_ptr<UnitDecoder> make_labjack_unit_decoder(const UnitDecoderOptions& options);

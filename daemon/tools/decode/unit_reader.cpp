@@ -63,7 +63,7 @@ void UnitReader::take_hex_line(const Sink& sink) {
       sink({.bytes = *bytes, .request = *request, .text = text, .why = {}});
     } else {
       // Lines of text end at their line ends, or with the message.
-      UnitReader lines(Form::kLines, ending_);
+      UnitReader lines(Form::kLines, ending_, longest_line_);
       const auto with_digits = [&](ReadUnit unit) {
         unit.text = text;
         sink(unit);

@@ -32,7 +32,10 @@ class UnitReader {
   };
   using Sink = std::function<void(const ReadUnit&)>;
 
-  UnitReader(Form form, drivers::decode::text::LineEnding ending) : form_(form), ending_(ending), lines_(ending) {}
+  /// Lines that are longer than `longest_line` are refused.
+  UnitReader(Form form, drivers::decode::text::LineEnding ending,
+             std::size_t longest_line = drivers::decode::text::LineAssembler::kMaxLine)
+      : form_(form), ending_(ending), longest_line_(longest_line), lines_(ending, longest_line) {}
 
   /// Takes the next bytes of the input, and calls `sink` with each message that they complete.
   void feed(drivers::decode::ByteSpan bytes, const Sink& sink);
@@ -40,13 +43,14 @@ class UnitReader {
   void finish(const Sink& sink);
 
  private:
-  static constexpr std::size_t kMaxHexLine = 8192;
+  static constexpr std::size_t kMaxHexLine = 3UL * 64 * 1024;  ///< a reply of HTTP, with blanks between
 
   void take_line(const drivers::decode::text::LineAssembler::Line& line, const Sink& sink);
   void take_hex_line(const Sink& sink);
 
   Form form_;
   drivers::decode::text::LineEnding ending_;
+  std::size_t longest_line_;
   drivers::decode::text::LineAssembler lines_;
   std::string hex_line_;
   bool is_overlong_ = false;
