@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
   yuragi::simulators::davis::add_davis_command(app);
   yuragi::simulators::davis::add_weatherlink_live_command(app);
   yuragi::simulators::network::add_ecowitt_command(app);
+  yuragi::simulators::network::add_ecowitt_push_command(app);
   yuragi::simulators::network::add_tempest_command(app);
   yuragi::simulators::usb::add_hid_command(app);
   yuragi::simulators::usb::add_usb_command(app);

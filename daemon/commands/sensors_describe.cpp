@@ -53,10 +53,11 @@ void add_sensors_describe(CLI::App& sensors) {
   command->add_flag("--all", options->all, "every driver, as a page of Markdown")->excludes(driver);
   add_json(*command, options->as_json);
   command->footer(
-      "--json: a list with name, summary, parameters, known_devices for each driver; of a parameter name, type, unit, "
-      "default,\n"
-      "left_out (what it means where it is left out), min, max, choices, help; of a device name, device, confirmed_by, "
-      "unconfirmed.");
+      "--json: a list with name, summary, parameters, known_devices, device_setup (what to set at the device) for each "
+      "driver;\n"
+      "of a parameter name, type, unit, default, left_out (what it means where it is left out), min, max, choices, "
+      "help;\n"
+      "of a device name, device, confirmed_by, unconfirmed.");
   command->callback([options] { describe(*options); });
 }
 

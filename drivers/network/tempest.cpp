@@ -15,7 +15,7 @@
 
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/bus/sender_filter.hpp"
-#include "drivers/network/tempest_stations.hpp"
+#include "drivers/network/followed_station.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
@@ -74,7 +74,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
         settings_(std::move(settings)),
         where_(describe(settings_.port)),
         port_(bus::make_byte_port(settings_.port)),
-        stations_(settings_.serial_number) {}
+        station_(settings_.serial_number) {}
 
   void interrupt() noexcept override { port_->interrupt(); }
 
@@ -101,7 +101,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
 
     if (now.mono - since_ >= silence_limit()) {
       is_silent_ = true;
-      stations_.lose();
+      station_.lose();
     }
     if (is_silent_) report_unusable(sink, trouble(now.mono));
     return now.mono;
@@ -118,33 +118,18 @@ class TempestSensor final : public sensor::ReopeningSensor {
     hub_ = message->hub_serial_number;
     hub_heard_at_ = now.mono;
     if (message->kind == TempestKind::kOther) return sink.refused(decode::Refusal::kNotMine);
-    if (!stations_.hears(message->serial_number, now.mono)) {
+    if (!station_.hears(message->serial_number, message->serial_number, now.mono)) {
       other_ = message->serial_number;
       return sink.refused(decode::Refusal::kNotMine);
     }
-    if (!is_new(*message)) return;
+    if (!winds_.is_new(*message)) return;
     if (message->kind == TempestKind::kObservation) {
       wind::StationQuantities said = message->quantities;
       said.time = now;
       sink.quantities(said);
     }
     if (!message->wind) return sink.refused(message->wind.error());
-    if (is_wind(message->kind)) publish(*message, now, sink);
-  }
-
-  /// A machine with two interfaces in the hub's network hears everything twice.
-  bool is_new(const TempestMessage& message) {
-    std::int64_t& last_s = message.kind == TempestKind::kRapidWind ? last_rapid_wind_s_ : last_observation_s_;
-    return std::exchange(last_s, message.time_s) != message.time_s;
-  }
-
-  /// Is it to be published as the wind? An observation is where no rapid wind has come since the one before.
-  bool is_wind(TempestKind kind) {
-    if (kind == TempestKind::kRapidWind) {
-      rapid_winds_are_missing_ = false;
-      return true;
-    }
-    return std::exchange(rapid_winds_are_missing_, true);
+    if (winds_.is_wind(*message)) publish(*message, now, sink);
   }
 
   void publish(const TempestMessage& message, const Instant& now, sensor::SensorSink& sink) {
@@ -153,8 +138,10 @@ class TempestSensor final : public sensor::ReopeningSensor {
     has_read_ = true;
     is_silent_ = false;
     since_ = now.mono;
-    report_connected(sink, fmt::format("station {} of hub {} at {}{}", message.serial_number, hub_, where_,
-                                       stations_.warning(now.mono)));
+    const std::string rival = station_.rival(now.mono);
+    const std::string warning =
+        rival.empty() ? "" : fmt::format("; {} is heard, too, and not used: choose one by serial_number", rival);
+    report_connected(sink, fmt::format("station {} of hub {} at {}{}", message.serial_number, hub_, where_, warning));
     sink.reading({.time = now,
                   .speed_m_s = *message.wind->speed_m_s,
                   .direction_deg = message.wind->direction_deg,
@@ -195,7 +182,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
   std::unique_ptr<bus::BytePort> port_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kLargestDatagram);
   sensor::ReadingLimit limit_;
-  TempestStations stations_;
+  FollowedStation station_;
   std::string hub_;    // that was heard last; empty: none
   std::string other_;  // a station that is not followed; empty: none
   MonoTime hub_heard_at_{};
@@ -203,9 +190,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
   bool is_silent_ = true;
   bool has_read_ = false;                     // since it has the port
   std::array<Nanoseconds, 2> last_pauses_{};  // between readings
-  std::int64_t last_rapid_wind_s_ = 0;        // by the hub's clock
-  std::int64_t last_observation_s_ = 0;
-  bool rapid_winds_are_missing_ = false;  // since the last observation
+  decode::network::TempestWinds winds_;
 };
 
 TempestSettings tempest_settings_of(const ParameterValues& values) {

@@ -47,6 +47,8 @@ struct DriverDescription {
   /// A sensor of these values speaks on change only: for how long, s, its silence says that nothing has changed; 0, or
   /// nullptr: it does not. A longer silence is one.
   double (*unchanged_for_s)(const ParameterValues& values) = nullptr;
+  /// What a person sets at the device itself: lines of text; empty: nothing.
+  std::string_view device_setup = {};
   /// It plays a recording: never to be taken for the live wind.
   bool plays_recordings = false;
   /// A relative sensor: only the fluctuations of its readings are valid, not their scale, which depends on where it

@@ -1,11 +1,13 @@
-// Any bytes as a message of a hub of weather stations, and as the reply of a gateway; its size and sum are mended, too,
-// so that values are reached.
+// Any bytes as a message of a hub of weather stations, as the reply of a gateway (its size and sum are mended, too, so
+// that values are reached), and as a push.
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "drivers/decode/network/ecowitt.hpp"
+#include "drivers/decode/network/station_push.hpp"
 #include "drivers/decode/network/tempest.hpp"
 
 namespace {
@@ -34,6 +36,21 @@ void read_mended_reply(decode::ByteSpan items) {
   read_reply(reply);
 }
 
+void read_push(std::string_view target) {
+  const auto parts = decode::network::split_push_target(target);
+  require(parts.path.size() + parts.form.size() <= target.size());
+  for (const std::string_view form : {target, parts.form}) {
+    const auto push = decode::network::decode_station_push(form);
+    if (!push) continue;
+    require(!push->wind || decode::checked(*push->wind).has_value());
+    require(!push->wind || push->wind->speed_m_s.has_value());
+    require(decode::network::push_text(push->kind).size() <= 40);
+    const std::string shown = decode::network::without_push_secrets(form);
+    require(shown.find("PASSKEY=") == shown.npos || shown.find("PASSKEY=(secret)") != shown.npos);
+    require(shown.find("PASSWORD=") == shown.npos || shown.find("PASSWORD=(secret)") != shown.npos);
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -42,6 +59,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(!message->wind || decode::checked(*message->wind).has_value());
     require(!message->wind || message->wind->speed_m_s.has_value());
   }
+  read_push({reinterpret_cast<const char*>(data), size});
   read_reply({data, size});
   read_mended_reply({data, size});
   return 0;

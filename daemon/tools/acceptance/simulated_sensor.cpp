@@ -41,15 +41,25 @@ ExpectedWind expected_wind(const SensorConfig& sensor, double north_offset_deg, 
           .direction_tolerance_deg = kDirectionStep_deg};
 }
 
-/// The plan for a subcommand of yuragi-sim that listens at TCP.
-SimulationPlan plan_of(const SensorConfig& sensor, std::string subcommand, std::vector<std::string> device_options) {
-  SimulationPlan plan{.arguments = {std::move(subcommand), "--tcp", fmt::format("{}:0", kHost)},
+/// The plan for a subcommand of yuragi-sim with an option that says where it listens, or sends to.
+SimulationPlan plan_of_place(const SensorConfig& sensor, std::string subcommand, std::string option, std::string place,
+                             const std::vector<std::string>& device_options = {}) {
+  SimulationPlan plan{.arguments = {std::move(subcommand), std::move(option), std::move(place)},
                       .sensor = sensor,
                       .expected = expected_wind(sensor, 0.0)};
   plan.arguments.insert(plan.arguments.end(), device_options.begin(), device_options.end());
-  for (std::string option : {std::string("--speed"), fmt::format("{}", kSimulatedSpeed_m_s), std::string("--direction"),
-                             fmt::format("{}", kSimulatedDirection_deg), std::string("--turbulence"), std::string("0")})
-    plan.arguments.push_back(std::move(option));
+  for (std::string wind_option :
+       {std::string("--speed"), fmt::format("{}", kSimulatedSpeed_m_s), std::string("--direction"),
+        fmt::format("{}", kSimulatedDirection_deg), std::string("--turbulence"), std::string("0")})
+    plan.arguments.push_back(std::move(wind_option));
+  return plan;
+}
+
+/// The plan for a subcommand that listens at TCP, of a driver that has several transports.
+SimulationPlan plan_of(const SensorConfig& sensor, std::string subcommand,
+                       const std::vector<std::string>& device_options) {
+  SimulationPlan plan =
+      plan_of_place(sensor, std::move(subcommand), "--tcp", fmt::format("{}:0", kHost), device_options);
   plan.sensor.values.set("transport", std::string("tcp"));
   plan.sensor.values.set("host", std::string(kHost));
   plan.sensor.values.set("device", std::string());
@@ -157,6 +167,46 @@ SimulationPlan plan_davis(const SensorConfig& sensor) {
   return plan;
 }
 
+/// The plan for a subcommand that sends to where the sensor listens, at the port that is configured.
+SimulationPlan plan_of_sender(const SensorConfig& sensor, std::string subcommand, std::string option) {
+  const std::string to = fmt::format("{}:{}", kHost, sensor.values.integer("port"));
+  SimulationPlan plan = plan_of_place(sensor, std::move(subcommand), std::move(option), to);
+  plan.sensor.values.set("host", std::string(kHost));
+  plan.sensor.values.set("from", std::string(kHost));
+  return plan;
+}
+
+SimulationPlan plan_tempest(const SensorConfig& sensor) {
+  SimulationPlan plan = plan_of_sender(sensor, "tempest", "--udp");
+  const std::string& station = sensor.values.text("serial_number");
+  if (!station.empty()) plan.arguments.insert(plan.arguments.end(), {"--station", station});
+  return plan;
+}
+
+SimulationPlan plan_ecowitt(const SensorConfig& sensor) {
+  SimulationPlan plan = plan_of_place(sensor, "ecowitt", "--tcp", fmt::format("{}:0", kHost));
+  plan.sensor.values.set("host", std::string(kHost));
+  return plan;
+}
+
+SimulationPlan plan_ecowitt_push(const SensorConfig& sensor) {
+  SimulationPlan plan = plan_of_sender(sensor, "ecowitt-push", "--to");
+  plan.arguments.insert(plan.arguments.end(), {"--interval", "1"});
+  const std::string& path = sensor.values.text("path");
+  if (!path.empty()) plan.arguments.insert(plan.arguments.end(), {"--path", path});
+  // No key on a command line, which others can see.
+  plan.sensor.values.set("station_key", Secret());
+  return plan;
+}
+
+SimulationPlan plan_weatherlink(const SensorConfig& sensor) {
+  SimulationPlan plan = plan_of_place(sensor, "weatherlink-live", "--tcp", fmt::format("{}:0", kHost));
+  plan.arguments.insert(plan.arguments.end(), {"--udp", fmt::format("{}:{}", kHost, sensor.values.integer("port"))});
+  plan.sensor.values.set("host", std::string(kHost));
+  plan.sensor.values.set("transmitter", std::int64_t{0});
+  return plan;
+}
+
 }  // namespace
 
 Result<SimulationPlan, Failure> plan_simulation(const SensorConfig& sensor) {
@@ -167,6 +217,10 @@ Result<SimulationPlan, Failure> plan_simulation(const SensorConfig& sensor) {
   if (driver == "davis") return plan_davis(sensor);
   if (driver == "nmea2000") return plan_nmea2000(sensor);
   if (driver == "signalk") return plan_signalk(sensor);
+  if (driver == "weatherlink") return plan_weatherlink(sensor);
+  if (driver == "tempest") return plan_tempest(sensor);
+  if (driver == "ecowitt") return plan_ecowitt(sensor);
+  if (driver == "ecowitt-push") return plan_ecowitt_push(sensor);
   constexpr std::array<std::string_view, 3> kNeedDevices = {"hid", "usb", "microphone"};
   if (std::ranges::find(kNeedDevices, driver) != kNeedDevices.end())
     return Failure{fmt::format("a simulated {} needs USB or sound of its own, and rights for it", driver)};
@@ -174,7 +228,8 @@ Result<SimulationPlan, Failure> plan_simulation(const SensorConfig& sensor) {
 }
 
 SensorConfig at_port(SensorConfig sensor, std::uint16_t port) {
-  sensor.values.set("port", std::int64_t{port});
+  // A WeatherLink Live's `port` is where its broadcasts come.
+  sensor.values.set(sensor.driver->name == "weatherlink" ? "http_port" : "port", std::int64_t{port});
   return sensor;
 }
 

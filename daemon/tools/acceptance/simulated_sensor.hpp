@@ -19,7 +19,7 @@ inline constexpr double kSimulatedDirection_deg = 225.0;
 
 /// How a configured sensor is simulated.
 struct SimulationPlan {
-  std::vector<std::string> arguments;  ///< of yuragi-sim, which listens at a free port of 127.0.0.1
+  std::vector<std::string> arguments;  ///< of yuragi-sim, which listens at a free port of 127.0.0.1, or sends there
   settings::SensorConfig sensor;       ///< the configured one, but for the way to its device; without its port
   ExpectedWind expected;               ///< of its calibrated readings
 };

@@ -11,6 +11,9 @@
 #include "drivers/decode/hid/wmr100.hpp"
 #include "drivers/decode/hid/wmr300.hpp"
 #include "drivers/decode/marine/signalk.hpp"
+#include "drivers/decode/network/ecowitt.hpp"
+#include "drivers/decode/network/station_push.hpp"
+#include "drivers/decode/network/tempest.hpp"
 #include "drivers/decode/text/ft.hpp"
 #include "drivers/decode/text/gill.hpp"
 #include "drivers/decode/text/nmea.hpp"
@@ -201,6 +204,33 @@ constexpr std::array kUnitFormats = {
         .devices = "consoles of Davis Vantage Pro, Vantage Pro2, Vantage Vue",
         .example = "davis --hex packets.hex",
         .make = [](const UnitDecoderOptions&) { return stateless(drivers::decode::davis::decode_vantage_packet); }},
+    UnitFormat{.name = "weatherlink",
+               .is_text = true,
+               .longest_line = 64UL * 1024,
+               .unit = "a line: a broadcast, or the reply to current_conditions",
+               .devices = "Davis WeatherLink Live",
+               .example = "weatherlink broadcasts.json",
+               .make = make_weatherlink_unit_decoder},
+    UnitFormat{.name = "tempest",
+               .is_text = true,
+               .longest_line = drivers::decode::network::kLongestTempestMessage,
+               .unit = "a line: a message of the hub",
+               .devices = "WeatherFlow Tempest, Sky; an observation where no rapid wind came before it",
+               .example = "tempest hub.json",
+               .make = make_tempest_unit_decoder},
+    UnitFormat{.name = "ecowitt",
+               .is_text = false,
+               .unit = "a reply to the request for the current values",
+               .devices = "gateways of Ecowitt and Fine Offset by TCP",
+               .example = "ecowitt --hex replies.hex",
+               .make = make_ecowitt_unit_decoder},
+    UnitFormat{.name = "ecowitt-push",
+               .is_text = true,
+               .longest_line = drivers::decode::network::kLongestStationPush,
+               .unit = "a line: a form, or a request with one",
+               .devices = "what stations push by the protocols of Ecowitt, Ambient Weather, Weather Underground",
+               .example = "ecowitt-push pushes.log",
+               .make = make_station_push_unit_decoder},
     UnitFormat{.name = "mcc1208",
                .is_text = false,
                .unit = "a reply: 4 bytes of the counter, 2 of an analogue input",

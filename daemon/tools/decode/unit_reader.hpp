@@ -43,7 +43,7 @@ class UnitReader {
   void finish(const Sink& sink);
 
  private:
-  static constexpr std::size_t kMaxHexLine = 8192;
+  static constexpr std::size_t kMaxHexLine = 3UL * 64 * 1024;  ///< a reply of HTTP, with blanks between
 
   void take_line(const drivers::decode::text::LineAssembler::Line& line, const Sink& sink);
   void take_hex_line(const Sink& sink);

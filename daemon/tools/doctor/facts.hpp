@@ -12,7 +12,17 @@ namespace yuragi::daemon::tools::doctor {
 // What the probes (machine_probe.hpp, sensor_probe.hpp) find, and the judgements (judgements.hpp) judge.
 
 /// What a sensor reads.
-enum class DeviceKind : std::uint8_t { kNone, kSerialPort, kUsb, kSoundCard, kNetwork, kBroker, kUdpPort, kFile };
+enum class DeviceKind : std::uint8_t {
+  kNone,
+  kSerialPort,
+  kUsb,
+  kSoundCard,
+  kNetwork,
+  kBroker,
+  kUdpPort,
+  kTcpPort,
+  kFile
+};
 
 /// One device that a sensor of the configuration names.
 struct DeviceFacts {

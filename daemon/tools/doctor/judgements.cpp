@@ -36,6 +36,8 @@ std::string_view title_of(DeviceKind kind) {
       return "MQTT broker ";
     case DeviceKind::kUdpPort:
       return "UDP port ";
+    case DeviceKind::kTcpPort:
+      return "TCP port ";
     case DeviceKind::kFile:
       return "file ";
     case DeviceKind::kUsb:
@@ -61,6 +63,8 @@ std::string remedy_for_absent(const DeviceFacts& device) {
       return fmt::format("ping -c 3 {}; on the broker's machine: systemctl status mosquitto", host_of(device.name));
     case DeviceKind::kUdpPort:
       return fmt::format("sudo ss -lunp 'sport = :{}'", device.name.substr(device.name.rfind(':') + 1));
+    case DeviceKind::kTcpPort:
+      return fmt::format("sudo ss -ltnp 'sport = :{}'", device.name.substr(device.name.rfind(':') + 1));
     case DeviceKind::kFile:
     case DeviceKind::kNone:
       break;

@@ -104,6 +104,12 @@ void probe_device(DeviceFacts& device, const settings::SensorConfig& sensor,
       device.trouble = udp_trouble(device.name, device.is_shared);
       device.is_there = device.trouble.empty();
       return;
+    case DeviceKind::kTcpPort: {
+      bool is_in_use = false;
+      device.trouble = listen_trouble(device.name, is_in_use);
+      device.is_there = device.trouble.empty();
+      return;
+    }
     case DeviceKind::kFile:
       device.is_there = drivers::windlog::recording_exists(device.name) || std::filesystem::exists(device.name, error);
       if (device.is_there && access(device.name.c_str(), F_OK) == 0 && access(device.name.c_str(), R_OK) != 0) {
@@ -144,6 +150,7 @@ std::vector<DeviceFacts> named_devices(const settings::SensorConfig& sensor) {
             one(DeviceKind::kUdpPort, fmt::format(":{}", values.integer("port")))};
   }
   if (driver == "ecowitt") return {one(DeviceKind::kNetwork, address_of(values))};
+  if (driver == "ecowitt-push") return {one(DeviceKind::kTcpPort, address_of(values))};
   if (sensor.driver->plays_recordings) return {one(DeviceKind::kFile, text_or_empty(values, "file"))};
   const std::string transport = text_or_empty(values, "transport");
   if (transport == "tcp") return {one(DeviceKind::kNetwork, address_of(values))};

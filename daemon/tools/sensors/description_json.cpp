@@ -69,7 +69,8 @@ ordered_json drivers_json(std::span<const drivers::sensor::DriverDescription* co
     all.push_back({{"name", driver->name},
                    {"summary", driver->summary},
                    {"parameters", parameters_json(driver->parameters)},
-                   {"known_devices", known_devices_json(*driver)}});
+                   {"known_devices", known_devices_json(*driver)},
+                   {"device_setup", text_or_null(driver->device_setup)}});
   }
   return all;
 }

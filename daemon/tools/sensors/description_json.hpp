@@ -16,7 +16,7 @@ namespace yuragi::daemon::tools::sensors {
 nlohmann::ordered_json parameters_json(std::span<const Parameter> parameters);
 
 /// Each driver: name, summary, parameters, and the devices that it knows by name: name, device, confirmed_by,
-/// unconfirmed (null where that is nothing).
+/// unconfirmed (null where that is nothing); device_setup (null where nothing is set at the device).
 nlohmann::ordered_json drivers_json(std::span<const drivers::sensor::DriverDescription* const> drivers);
 
 /// Each finding: driver, device, the lines to paste (TOML), trouble and remedy (null where it can be opened).

@@ -63,6 +63,7 @@ std::string describe_driver(const drivers::sensor::DriverDescription& driver) {
   if (!driver.parameters.empty()) text += "\nIts keys:\n" + parameter_text(driver.parameters);
   if (driver.known_devices != nullptr)
     text += "\nThe devices that it knows by name:\n" + known_device_text(driver.known_devices());
+  if (!driver.device_setup.empty()) text += fmt::format("\nAt the device:\n{}", driver.device_setup);
   return text;
 }
 
@@ -78,6 +79,7 @@ std::string driver_reference(std::span<const drivers::sensor::DriverDescription*
       fmt::format_to(out, "| `{}` | {} | {} |\n", parameter.name, cell(describe_allowed(parameter)),
                      cell(parameter.help));
     }
+    if (!driver->device_setup.empty()) fmt::format_to(out, "\nAt the device:\n\n```\n{}```\n", driver->device_setup);
     if (driver->known_devices == nullptr) continue;
     fmt::format_to(out, "\n| name | device | confirmed by | unconfirmed |\n| --- | --- | --- | --- |\n");
     for (const drivers::sensor::KnownDevice& device : driver->known_devices()) {

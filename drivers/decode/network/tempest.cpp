@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -137,6 +138,19 @@ Result<TempestMessage, Refusal> decode_tempest(std::string_view datagram) {
                            : take_observation(*values, type == kSkyLayout.type ? kSkyLayout : kTempestLayout, taken);
   if (refusal) return *refusal;
   return taken;
+}
+
+bool TempestWinds::is_new(const TempestMessage& message) noexcept {
+  std::int64_t& last_s = message.kind == TempestKind::kRapidWind ? last_rapid_wind_s_ : last_observation_s_;
+  return std::exchange(last_s, message.time_s) != message.time_s;
+}
+
+bool TempestWinds::is_wind(const TempestMessage& message) noexcept {
+  if (message.kind == TempestKind::kRapidWind) {
+    rapid_winds_are_missing_ = false;
+    return true;
+  }
+  return std::exchange(rapid_winds_are_missing_, true);
 }
 
 }  // namespace yuragi::drivers::decode::network

@@ -54,4 +54,20 @@ struct TempestMessage {
 /// memory, and nothing else for any bytes. Thread-safe: yes.
 Result<TempestMessage, Refusal> decode_tempest(std::string_view datagram);
 
+/// Which of the messages of one station are its wind, in the order in which they come. Thread-safe: no. Realtime-safe:
+/// yes.
+class TempestWinds {
+ public:
+  /// False for one that has been heard already: a machine with two interfaces in the hub's network hears everything
+  /// twice. Not for kOther.
+  bool is_new(const TempestMessage& message) noexcept;
+  /// Of one that is new: an observation is the wind where no rapid wind has come since the one before.
+  bool is_wind(const TempestMessage& message) noexcept;
+
+ private:
+  std::int64_t last_rapid_wind_s_ = 0;  // by the hub's clock
+  std::int64_t last_observation_s_ = 0;
+  bool rapid_winds_are_missing_ = false;  // since the last observation
+};
+
 }  // namespace yuragi::drivers::decode::network

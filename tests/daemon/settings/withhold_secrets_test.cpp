@@ -50,6 +50,7 @@ TEST(WithholdSecrets, FindsThemHoweverTheTableIsWritten) {
 TEST(WithholdSecrets, KnowsWhichDriversHaveThem) {
   EXPECT_EQ(withhold_in_options("password = 'hunter2'\nuser = 'garden'", "mqtt")->text,
             "password = \"(secret)\"\nuser = 'garden'");
+  EXPECT_EQ(withhold_in_options("station_key = 'hunter2'", "ecowitt-push")->text, "station_key = \"(secret)\"");
   EXPECT_EQ(withhold_in_options("password = 'hunter2'", "synthetic")->secrets, 0U) << "it has no such key";
   EXPECT_EQ(withhold_in_options("password = 'hunter2'", "of a later version")->secrets, 1U);
   EXPECT_EQ(withhold_in_options("password = ''", "mqtt")->secrets, 0U) << "there is none";

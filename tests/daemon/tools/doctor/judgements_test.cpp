@@ -52,6 +52,8 @@ TEST(JudgeDevice, SaysOfEachKindHowToFindOneThatIsNotThere) {
   EXPECT_THAT(absent(DeviceKind::kBroker, "broker.lan:1883"),
               is(Verdict::kError, "MQTT broker", "ping -c 3 broker.lan;"));
   EXPECT_THAT(absent(DeviceKind::kUdpPort, ":9000"), is(Verdict::kError, "UDP port", "sudo ss -lunp 'sport = :9000'"));
+  EXPECT_THAT(absent(DeviceKind::kTcpPort, "0.0.0.0:8090"),
+              is(Verdict::kError, "TCP port", "sudo ss -ltnp 'sport = :8090'"));
   EXPECT_THAT(absent(DeviceKind::kFile, "day.windlog"), is(Verdict::kError, "file", "ls -l day.windlog"));
 }
 

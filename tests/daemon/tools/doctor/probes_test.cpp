@@ -53,6 +53,7 @@ TEST(NamedDevices, AreWhatTheConfigurationSays) {
               ElementsAre(Named(DeviceKind::kBroker, "lan:8883")));
   EXPECT_THAT(names_in("driver = \"tempest\""), ElementsAre(Named(DeviceKind::kUdpPort, ":50222")));
   EXPECT_THAT(names_in("driver = \"ecowitt\"\nhost = \"gw\""), ElementsAre(Named(DeviceKind::kNetwork, "gw:45000")));
+  EXPECT_THAT(names_in("driver = \"ecowitt-push\""), ElementsAre(Named(DeviceKind::kTcpPort, "127.0.0.1:8090")));
   EXPECT_THAT(names_in("driver = \"davis\"\ndevice = \"/dev/ttyUSB0\""),
               ElementsAre(Named(DeviceKind::kSerialPort, "/dev/ttyUSB0")));
   EXPECT_THAT(names_in("driver = \"weatherlink\"\nhost = \"wll\""),

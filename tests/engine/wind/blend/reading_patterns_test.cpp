@@ -93,6 +93,7 @@ const std::vector<PatternCase>& pattern_cases() {
       {"EveryTenth", bursts(0.1, 1), 0.1, 20.0},
       {"EverySecond", bursts(1.0, 1), 1.0, 20.0},
       {"EverySixteenSeconds", bursts(16.0, 1), 16.0, 60.0},
+      {"EveryMinute", bursts(60.0, 1), 60.0, 200.0},
       {"Jittered", jittered(1.0, 0.4), 1.4, 20.0, 0.95},
       {"JitteredSlow", jittered(10.0, 0.4), 14.0, 60.0, 0.95},
       {"JitteredALot", jittered(10.0, 0.8), 18.0, 60.0, 0.85},

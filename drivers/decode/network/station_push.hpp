@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/refusal.hpp"
+#include "engine/base/result.hpp"
+#include "engine/wind/station_quantities.hpp"
+
+namespace yuragi::drivers::decode::network {
+
+// What weather stations and gateways push to a server over HTTP: a form (name=value&name=value, percent-encoded), as
+// the body of a POST (Ecowitt) or behind the question mark of a GET (Weather Underground, Ambient Weather).
+// Sources: drivers/SOURCES.md S9.3.
+//
+//   what                    Ecowitt                     Ambient Weather    Weather Underground
+//   which station           PASSKEY                     PASSKEY            ID (and PASSWORD)
+//   what it is              stationtype, model          stationtype        softwaretype
+//   mean wind, gust         windspeedmph, windgustmph   the same           the same               miles per hour
+//   direction               winddir                     the same           the same               degrees
+//   temperature, humidity   tempf, humidity             the same           the same               Fahrenheit, %
+//   pressure: at it         baromabsin                  baromabsin         absbaromin             inches of mercury
+//   pressure: at sea level  baromrelin                  baromrelin         baromin
+//   rain: most lasting sum  totalrainin, yearlyrainin   totalrainin        yearlyrainin           inches
+//                           (piezo: yrain_piezo)                           or dailyrainin
+//   rate of rain            rainratein (rrain_piezo)                                              inches an hour
+//   time                    dateutc                     dateutc            dateutc
+//
+// A value that is missing is -9999, empty, or left out. The time is that of the gateway's clock, which nobody sets
+// where there is no internet: it is not used.
+
+/// Longer than any push: stations with all sensors that a gateway can hear say less than 4 KiB.
+inline constexpr std::size_t kLongestStationPush = 16UL * 1024;
+
+/// What a push says. The views are parts of the form.
+struct StationPush {
+  std::string_view identity = {};  ///< PASSKEY or ID, as it stands in the form: a secret; empty: it says neither
+  std::string_view kind = {};      ///< what the station is, percent-encoded: "GW2000A_V2.1.5"; empty: it does not say
+  /// Without its time. Values are not checked for their range (wind::plausible_part).
+  wind::StationQuantities quantities = {};
+  /// kInvalid: it says no speed. kMalformed: what stands there is no number. kImplausible. A gust below the mean wind
+  /// is left out.
+  Result<DecodedWind, Refusal> wind = Refusal::kInvalid;
+};
+
+/// The path and the form of a request's target.
+struct PushTarget {
+  std::string_view path = {};  ///< without slashes at its end: "/data/report"
+  std::string_view form = {};
+};
+
+/// "/data/report/?PASSKEY=..." in its parts. Stations whose path was typed without a question mark at its end say
+/// "/data/report/PASSKEY=...", and some firmware says "PASSKEY=..." and no path at all: where there is no question
+/// mark, the form begins behind the last slash before the first '='. Thread-safe and realtime-safe: yes.
+PushTarget split_push_target(std::string_view target) noexcept;
+
+/// A form, without the line end behind it, or the first thing that is wrong with it: kTooShort (empty), kMalformed (too
+/// long, not visible ASCII, or a value of the table above that stands there twice), kNotMine (neither a station nor a
+/// wind in it). There is no checksum but TCP's. Thread-safe and realtime-safe: yes.
+Result<StationPush, Refusal> decode_station_push(std::string_view form) noexcept;
+
+/// Any bytes as they may be shown and recorded: each part between '&' that speaks of a key, a password or a token is
+/// "(secret)", but for the names PASSKEY and PASSWORD. What is left of a form can be decoded. Thread-safe: yes.
+std::string without_push_secrets(std::string_view form);
+
+/// A value of a form as text for people: decoded, visible ASCII alone, at most 40 characters. Thread-safe: yes.
+std::string push_text(std::string_view value);
+
+}  // namespace yuragi::drivers::decode::network

@@ -1,0 +1,336 @@
+// Weather stations that push their values to a server of the user's choosing: gateways and consoles by Fine Offset
+// (Ecowitt, Froggit, Ambient Weather and their other names) with a "customized" upload, and whatever else speaks the
+// protocol of Weather Underground (drivers/SOURCES.md S9.3). This is the server.
+//
+//   POST /data/report/                                      a form as the body                   Ecowitt
+//   GET  /weatherstation/updateweatherstation.php?ID=...    a form behind the question mark      Weather Underground
+//   GET  /data/report/?PASSKEY=...                          the same                             Ambient Weather
+//
+// Both kinds are taken at any path, unless one is set. What is taken is answered with 200; an answer from 400 on says
+// in one line what is wrong. Who may send is a choice, as nothing in a push proves whose it is.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "drivers/bus/sender_filter.hpp"
+#include "drivers/decode/network/station_push.hpp"
+#include "drivers/network/followed_station.hpp"
+#include "drivers/network/http_server.hpp"
+#include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/reading_limit.hpp"
+#include "drivers/sensor/reopening_sensor.hpp"
+
+namespace yuragi::drivers::network {
+namespace {
+
+/// A look at the clock at least so often.
+constexpr Nanoseconds kPushWait = std::chrono::milliseconds(250);
+/// So many of its usual pauses are silence.
+constexpr int kSilentPushPauses = 5;
+
+const std::array kEcowittPushParameters = {
+    Parameter{.name = "host",
+              .unit = "",
+              .default_value = std::string("127.0.0.1"),
+              .help = "the local address to listen at: this machine's in the gateway's network; 127.0.0.1 hears this "
+                      "machine only, 0.0.0.0 listens at all"},
+    Parameter{.name = "port",
+              .unit = "",
+              .default_value = std::int64_t{8090},
+              .min = 1,
+              .max = 65535,
+              .help = "the TCP port to listen at; each sensor of this driver has one of its own"},
+    Parameter{.name = "from",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "who may push: addresses and nets separated by commas (192.168.1.30, 10.0.0.0/8); 0.0.0.0/0: "
+                      "any; may be empty only where host hears this machine alone"},
+    Parameter{.name = "path",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "the path that is taken, as it is set in the gateway: /data/report/; empty: any"},
+    Parameter{.name = "station_key",
+              .unit = "",
+              .default_value = Secret(),
+              .help = "the station that is taken: its PASSKEY (Ecowitt, Ambient Weather) or ID (Wunderground); empty: "
+                      "the first one that pushes, until it falls silent, with a warning while there are others; no log "
+                      "and no recording shows it"},
+    Parameter{
+        .name = "silence",
+        .unit = "s",
+        .default_value = 300.0,
+        .min = 0.1,
+        .max = 86400.0,
+        .help = "without wind for this long, and for five times its usual interval, the station counts as silent"},
+};
+
+constexpr std::string_view kEcowittPushSetup =
+    "In the gateway's own web page (Weather Services, Customized), in the app (the gateway, Others, DIY Upload "
+    "Servers,\n"
+    "Customized), or in a console's menu of weather services:\n"
+    "\n"
+    "  Customized           Enable\n"
+    "  Protocol Type        Ecowitt; Wunderground is taken, too\n"
+    "  Server IP/Hostname   this machine's address in the gateway's network, the one of `host`\n"
+    "  Path                 /data/report/\n"
+    "                       Wunderground, Ambient Weather: with a question mark at its end, as in\n"
+    "                       /weatherstation/updateweatherstation.php?\n"
+    "  Station ID, Key      Wunderground: any text\n"
+    "  Port                 8090, or what `port` is set to\n"
+    "  Upload Interval      16 s, at which most anemometers speak, or the least that it takes: of the gusts in\n"
+    "                       between, nothing but the strongest is told\n"
+    "\n"
+    "`host` and `from` have to be set: 127.0.0.1 hears no gateway. A firewall has to let the port through.\n";
+
+struct EcowittPushSettings {
+  Address address;
+  bus::SenderFilter from;
+  std::string path;
+  Secret station_key;
+  Nanoseconds silence{};
+  bool is_for_this_machine = true;
+};
+
+/// A push that is refused: why, and what the station is told.
+struct PushRefusal {
+  decode::Refusal why;
+  HttpAnswer answer;
+};
+
+class EcowittPushSensor final : public sensor::ReopeningSensor {
+ public:
+  explicit EcowittPushSensor(EcowittPushSettings settings)
+      : sensor::ReopeningSensor(sensor::seed_of("ecowitt-push" + to_string(settings.address))),
+        settings_(std::move(settings)),
+        where_("http://" + to_string(settings_.address) + settings_.path),
+        server_(settings_.address),
+        station_(settings_.station_key.reveal()) {}
+
+  void interrupt() noexcept override { server_.interrupt(); }
+
+ protected:
+  Result<MonoTime, Failure> open(const sensor::Clock& clock) override {
+    if (const auto opened = server_.open(); !opened) return opened.error();
+    is_silent_ = true;
+    has_read_ = false;
+    trouble_.clear();
+    stranger_.clear();
+    last_pauses_ = {};
+    since_ = clock.now().mono;
+    return since_;
+  }
+
+  Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
+    Visits visits(*this, clock, sink);
+    if (const auto served = server_.serve(kPushWait, visits); !served) return served.error();
+    const MonoTime now = clock.now().mono;
+    if (now - since_ >= silence_limit()) {
+      is_silent_ = true;
+      station_.lose();
+    }
+    if (is_silent_) report_unusable(sink, trouble(now));
+    return now;
+  }
+
+  void close() noexcept override { server_.close(); }
+
+ private:
+  /// What comes during one work().
+  class Visits final : public HttpService {
+   public:
+    Visits(EcowittPushSensor& sensor, const sensor::Clock& clock, sensor::SensorSink& sink)
+        : sensor_(sensor), clock_(clock), sink_(sink) {}
+
+    bool admits(const boost::asio::ip::address& sender) override {
+      if (sensor_.settings_.from.takes(sender)) return true;
+      sink_.refused(decode::Refusal::kNotMine);
+      // The first one is named, so that a flood does not change the status without end.
+      if (sensor_.stranger_.empty()) sensor_.stranger_ = bus::plain_address(sender).to_string();
+      return false;
+    }
+    HttpAnswer answer(const HttpRequest& request) override {
+      const std::optional<PushRefusal> refusal = sensor_.take(request, clock_.now(), sink_);
+      if (!refusal) return {.status = 200, .text = "success"};
+      sink_.refused(refusal->why);
+      return refusal->answer;
+    }
+    void failed(HttpFailure why, const boost::asio::ip::address& sender) override {
+      const auto [refusal, what] = meaning_of(why);
+      sink_.refused(refusal);
+      sensor_.trouble_ = bus::plain_address(sender).to_string() + " " + std::string(what);
+    }
+
+   private:
+    static std::pair<decode::Refusal, std::string_view> meaning_of(HttpFailure why) {
+      switch (why) {
+        case HttpFailure::kTooSlow:
+          return {decode::Refusal::kTimeout, "connects and does not push in time"};
+        case HttpFailure::kCutOff:
+          return {decode::Refusal::kTooShort, "pushes, and ends before all of it has come: check the network"};
+        case HttpFailure::kTooMany:
+          return {decode::Refusal::kTooFrequent, "connects too often, and does not push"};
+        case HttpFailure::kTooLong:
+          return {decode::Refusal::kMalformed, "pushes more than any station says"};
+        case HttpFailure::kMalformed:
+          break;
+      }
+      return {decode::Refusal::kMalformed, "does not speak HTTP: check what it is"};
+    }
+
+    EcowittPushSensor& sensor_;
+    const sensor::Clock& clock_;
+    sensor::SensorSink& sink_;
+  };
+
+  /// Nothing: it is taken.
+  std::optional<PushRefusal> take(const HttpRequest& request, const Instant& now, sensor::SensorSink& sink) {
+    using decode::Refusal;
+    if (!limit_.admits(now.mono)) return PushRefusal{Refusal::kTooFrequent, {429, "too many pushes"}};
+    const bool is_post = request.method == "POST";
+    if (!is_post && request.method != "GET") return PushRefusal{Refusal::kNotMine, {405, "GET and POST are taken"}};
+
+    const auto target = decode::network::split_push_target(request.target);
+    const std::string_view form = is_post ? request.body : target.form;
+    const std::string shown = decode::network::without_push_secrets(form);
+    sink.raw(sensor::RawDirection::kReceived, {reinterpret_cast<const std::uint8_t*>(shown.data()), shown.size()});
+    const std::string sender = bus::plain_address(request.sender).to_string();
+    if (!settings_.path.empty() && target.path != settings_.path) {
+      trouble_ = sender + " pushes to another path: set Path in the gateway to " + settings_.path + "/, or path here";
+      return PushRefusal{Refusal::kNotMine, {404, "another path is taken"}};
+    }
+    const auto push = decode::network::decode_station_push(form);
+    if (!push) {
+      trouble_ = fmt::format(
+          "what {} pushes cannot be used ({}): choose the protocol Ecowitt or Wunderground, the latter with a question "
+          "mark at the end of its path",
+          sender, name_of(push.error()));
+      return PushRefusal{push.error(), {400, fmt::format("no values of a station ({})", name_of(push.error()))}};
+    }
+
+    const std::string kind = push->kind.empty() ? "a station" : decode::network::push_text(push->kind);
+    const std::string station = kind + " at " + sender;
+    if (!station_.hears(std::string(push->identity), station, now.mono)) {
+      if (!settings_.station_key.is_empty()) trouble_ = station + " pushes, and is not the one of `station_key`";
+      return PushRefusal{Refusal::kNotMine, {403, "another station is taken"}};
+    }
+    wind::StationQuantities said = push->quantities;
+    said.time = now;
+    sink.quantities(said);
+    if (push->wind) {
+      publish(*push->wind, station, now, sink);
+    } else {
+      is_silent_ = true;
+      trouble_ = push->wind.error() == Refusal::kInvalid
+                     ? station + " pushes no wind: check the anemometer's battery, and that the gateway knows it"
+                     : fmt::format("the wind that {} pushes cannot be used ({})", station, name_of(push->wind.error()));
+      sink.refused(push->wind.error());
+    }
+    return std::nullopt;
+  }
+
+  void publish(const decode::DecodedWind& wind, const std::string& station, const Instant& now,
+               sensor::SensorSink& sink) {
+    if (has_read_) last_pauses_ = {last_pauses_[1], now.mono - since_};
+    has_read_ = true;
+    is_silent_ = false;
+    since_ = now.mono;
+    trouble_.clear();
+    const std::string rival = station_.rival(now.mono);
+    const std::string warning =
+        rival.empty() ? "" : fmt::format("; {} pushes, too, and is not used: choose one by station_key or path", rival);
+    report_connected(sink, fmt::format("{} pushes to {}{}", station, where_, warning));
+    sink.reading({.time = now,
+                  .speed_m_s = *wind.speed_m_s,
+                  .direction_deg = wind.direction_deg,
+                  .gust_m_s = wind.gust_m_s,
+                  .quality = wind::ReadingQuality::kGood});
+  }
+
+  /// The smaller one of two pauses: one push that is lost is not the usual interval.
+  Nanoseconds silence_limit() const {
+    return std::max(settings_.silence, kSilentPushPauses * std::min(last_pauses_[0], last_pauses_[1]));
+  }
+
+  /// Why there is no wind.
+  std::string trouble(MonoTime now) const {
+    if (!trouble_.empty()) return trouble_;
+    const std::string stranger =
+        stranger_.empty() ? "" : fmt::format("; refuses {}, which is not in `from`", stranger_);
+    if (settings_.is_for_this_machine)
+      return fmt::format("waits for pushes to {}, of this machine alone: a gateway needs another host, and from",
+                         where_);
+    if (now - since_ < settings_.silence) return fmt::format("waits for pushes to {}{}", where_, stranger);
+    return fmt::format(
+        "nothing has been pushed to {} for {:g} s: check that the gateway is on, its page Customized (`yuragi sensors "
+        "describe ecowitt-push` says what to enter), and that no firewall stops TCP port {}{}",
+        where_, seconds(settings_.silence), settings_.address.port, stranger);
+  }
+
+  EcowittPushSettings settings_;
+  std::string where_;
+  HttpServer server_;
+  FollowedStation station_;
+  sensor::ReadingLimit limit_;
+  std::string trouble_;   // of the last push that had no wind, since the last wind; empty: none
+  std::string stranger_;  // who was refused first; empty: nobody
+  MonoTime since_{};      // the last reading, or since when there could have been one
+  bool is_silent_ = true;
+  bool has_read_ = false;  // since it listens
+  std::array<Nanoseconds, 2> last_pauses_{};
+};
+
+Address push_address_of(const ParameterValues& values) {
+  return {.host = values.text("host"), .port = static_cast<std::uint16_t>(values.integer("port"))};
+}
+
+/// Throws, naming the setting, where they cannot work together.
+EcowittPushSettings ecowitt_push_settings_of(const ParameterValues& values) {
+  EcowittPushSettings settings;
+  settings.address = push_address_of(values);
+  settings.station_key = values.secret("station_key");
+  settings.silence = from_seconds(values.number("silence"));
+
+  const std::string& path = values.text("path");
+  if (!path.empty() && !path.starts_with('/'))
+    throw std::runtime_error("path: must begin with a slash, as in /data/report/");
+  settings.path = decode::network::split_push_target(path).path;
+
+  const std::string& host = settings.address.host;
+  const auto is_loopback = bus::is_loopback(host);
+  if (!is_loopback) throw std::runtime_error("host: " + is_loopback.error().message);
+  settings.is_for_this_machine = *is_loopback;
+  auto from = bus::SenderFilter::parse(values.text("from"));
+  if (!from) throw std::runtime_error("from: " + from.error().message);
+  if (values.text("from").empty() && !*is_loopback) {
+    throw std::runtime_error("from: is missing; host " + host +
+                             " hears other machines: name the gateway (192.168.1.30) or its net (192.168.1.0/24), or "
+                             "0.0.0.0/0 for any");
+  }
+  settings.from = std::move(*from);
+  return settings;
+}
+
+std::unique_ptr<sensor::Sensor> open_ecowitt_push(const ParameterValues& values) {
+  return std::make_unique<EcowittPushSensor>(ecowitt_push_settings_of(values));
+}
+
+std::vector<sensor::DeviceClaim> ecowitt_push_claims(const ParameterValues& values) {
+  return sensor::claims_of(fmt::format("TCP port {}", push_address_of(values).port));
+}
+
+}  // namespace
+
+extern const sensor::DriverDescription kEcowittPushDriver;
+const sensor::DriverDescription kEcowittPushDriver{
+    .name = "ecowitt-push",
+    .summary = "stations that push their values here by HTTP: Ecowitt, Ambient Weather, Wunderground",
+    .parameters = kEcowittPushParameters,
+    .open = open_ecowitt_push,
+    .claims = ecowitt_push_claims,
+    .device_setup = kEcowittPushSetup};
+
+}  // namespace yuragi::drivers::network
