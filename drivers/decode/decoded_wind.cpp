@@ -36,7 +36,9 @@ Result<DecodedWind, Refusal> checked(const DecodedWind& wind) noexcept {
                            is_within(wind.gust_m_s, 0.0, wind::kMaxPlausibleSpeed_m_s) &&
                            is_within(wind.direction_deg, 0.0, kTurn_deg) && wind.direction_deg != kTurn_deg;
   if (!is_physical) return Refusal::kImplausible;
-  return wind;
+  DecodedWind sound = wind;
+  if (wind.gust_m_s < wind.speed_m_s) sound.gust_m_s.reset();
+  return sound;
 }
 
 }  // namespace yuragi::drivers::decode

@@ -33,7 +33,7 @@ inline constexpr std::array<std::string_view, 2> kDecodedStatusNames = {"good", 
 struct DecodedWind {
   std::optional<double> speed_m_s;      ///< [0, kMaxPlausibleSpeed_m_s]
   std::optional<double> direction_deg;  ///< where the wind comes *from*, clockwise from `reference`, [0, 360)
-  std::optional<double> gust_m_s;       ///< the strongest of the device's own recent past
+  std::optional<double> gust_m_s;       ///< the strongest of the device's own recent past, never below the speed
   WindReference reference = WindReference::kUnknown;
   DecodedStatus status = DecodedStatus::kGood;
 
@@ -48,7 +48,8 @@ std::string_view name_of(DecodedStatus status) noexcept;
 std::optional<double> wrapped_direction_deg(double direction_deg) noexcept;
 
 /// The last step of every decoder: `wind` itself if at least one value is there and all are as DecodedWind promises;
-/// kInvalid where none is there, kImplausible where one is out of its range. Thread-safe and realtime-safe: yes.
+/// kInvalid where none is there, kImplausible where one is out of its range. A gust below the speed is none, and left
+/// out. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> checked(const DecodedWind& wind) noexcept;
 
 }  // namespace yuragi::drivers::decode

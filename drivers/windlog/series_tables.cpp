@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/windlog/block_rows.hpp"
 #include "drivers/windlog/contents.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/reading_columns.hpp"
@@ -288,6 +289,7 @@ class SeriesBlocks final : public ReadingBlocks {
 
  private:
   Result<std::int64_t, Failure> read_rows(std::vector<LoggedReading>& block, std::size_t& skipped);
+  std::optional<LoggedReading> reading_of_row(std::int64_t time_ns) const;
 
   const sqlite::Database& database_;
   const SeriesTables& contents_;
@@ -304,41 +306,30 @@ Result<std::int64_t, Failure> SeriesBlocks::read_rows(std::vector<LoggedReading>
   select_.bind(3, contents_.last_begin_ns());
   select_.bind(4, kBlockRows);
   std::int64_t time_ns = after_ns_;
-  std::int64_t rows = 0;
-  std::size_t passed_over = 0;
-  std::optional<Failure> failure;
-  Statement::Step step = select_.step();
-  for (; step == Statement::Step::kRow; step = select_.step(), ++rows) {
+  const auto logged_in_row = [&]() -> Result<std::optional<LoggedReading>, Failure> {
     // An order that is not one means a damaged table, which could lead in circles.
     if (select_.integer(0) <= time_ns) {
-      failure = Failure{database_.file().string() +
-                        ": its readings are not in order; the file is damaged; "
-                        "`sqlite3 FILE .recover` may save what is left"};
-      break;
+      return Failure{database_.file().string() +
+                     ": its readings are not in order; the file is damaged; "
+                     "`sqlite3 FILE .recover` may save what is left"};
     }
     time_ns = select_.integer(0);
-    const Start* start = contents_.start_at(time_ns);
-    const auto sensor = start == nullptr ? std::nullopt : contents_.sensor_of(start->session, series_);
-    const auto clocks =
-        !sensor || select_.type(1) != SQLITE_INTEGER ? std::nullopt : clocks_at(*start, time_ns, select_.integer(1));
-    const auto reading = clocks ? reading_of_columns(select_, 2, *clocks) : std::nullopt;
-    if (!reading) {
-      ++passed_over;
-    } else if (of_sensors_[*sensor]) {
-      block.push_back({contents_.log_time(time_ns), *sensor, *reading});
-    }
-  }
-  if (step == Statement::Step::kFailed) failure = database_.failure();
-  select_.reset();
-  if (failure) {
-    block.clear();
-    return *failure;
-  }
-
-  // Only now is the block taken, so that a failure leaves the place where it was.
-  skipped += passed_over;
-  after_ns_ = time_ns;
+    return reading_of_row(time_ns);
+  };
+  const auto rows = read_block(database_, select_, of_sensors_, logged_in_row, block, skipped);
+  if (rows) after_ns_ = time_ns;
   return rows;
+}
+
+/// The row that the statement stands at, if it can be a reading of a sensor of this series.
+std::optional<LoggedReading> SeriesBlocks::reading_of_row(std::int64_t time_ns) const {
+  const Start* start = contents_.start_at(time_ns);
+  const auto sensor = start == nullptr ? std::nullopt : contents_.sensor_of(start->session, series_);
+  if (!sensor || select_.type(1) != SQLITE_INTEGER) return std::nullopt;
+  const auto clocks = clocks_at(*start, time_ns, select_.integer(1));
+  const auto reading = clocks ? reading_of_columns(select_, 2, *clocks) : std::nullopt;
+  if (!reading) return std::nullopt;
+  return LoggedReading{contents_.log_time(time_ns), *sensor, *reading};
 }
 
 Result<std::vector<std::unique_ptr<ReadingBlocks>>, Failure> SeriesTables::blocks(

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "drivers/windlog/block_rows.hpp"
 #include "drivers/windlog/contents.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/reading_columns.hpp"
@@ -173,39 +174,19 @@ Result<std::int64_t, Failure> SharedTableBlocks::read_rows(std::vector<LoggedRea
   select_.bind(4, kMaxTime_ns);
   select_.bind(5, kBlockRows);
 
-  std::int64_t mono_ns = after_mono_ns_;
-  std::int64_t row = after_row_;
-  std::int64_t rows = 0;
-  std::size_t passed_over = 0;
-  std::optional<Failure> failure;
-  Statement::Step step = select_.step();
-  for (; step == Statement::Step::kRow; step = select_.step(), ++rows) {
+  std::pair key(after_mono_ns_, after_row_);
+  const auto logged_in_row = [&]() -> Result<std::optional<LoggedReading>, Failure> {
     // An order that is not one means a damaged index, which could lead in circles.
-    const std::pair key(select_.integer(3), select_.integer(0));
-    if (key <= std::pair(mono_ns, row)) {
-      failure = Failure{database_.file().string() + ": its index is damaged; `sqlite3 FILE REINDEX` may repair it",
-                        FailureKind::kBadData};
-      break;
+    const std::pair next(select_.integer(3), select_.integer(0));
+    if (next <= key) {
+      return Failure{database_.file().string() + ": its index is damaged; `sqlite3 FILE REINDEX` may repair it",
+                     FailureKind::kBadData};
     }
-    std::tie(mono_ns, row) = key;
-    const auto logged = reading_of_row(session);
-    if (!logged) {
-      ++passed_over;
-    } else if (of_sensors_[logged->sensor]) {
-      block.push_back(*logged);
-    }
-  }
-  if (step == Statement::Step::kFailed) failure = database_.failure();
-  select_.reset();
-  if (failure) {
-    block.clear();
-    return *failure;
-  }
-
-  // Only now is the block taken, so that a failure leaves the place where it was.
-  skipped += passed_over;
-  after_mono_ns_ = mono_ns;
-  after_row_ = row;
+    key = next;
+    return reading_of_row(session);
+  };
+  const auto rows = read_block(database_, select_, of_sensors_, logged_in_row, block, skipped);
+  if (rows) std::tie(after_mono_ns_, after_row_) = key;
   return rows;
 }
 

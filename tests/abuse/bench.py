@@ -22,7 +22,7 @@ PROJECT = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, os.path.join(PROJECT, "tests", "e2e"))
 
 import pose_client  # noqa: E402
-from programs import HANG_S, Program  # noqa: E402
+from programs import HANG_S, Program, free_port  # noqa: E402
 
 TICK_RATE_HZ = 60.0
 MEADOW = '[[scene]]\nkind = "grass"\nblades_across = 20\nblades_deep = 20\n'  # small: what is tried is not the scenes
@@ -335,12 +335,6 @@ def slope(points):
 # ---- readings that say which they are ----
 
 OSC_SENSOR = '[[sensor]]\nname = "numbered"\ndriver = "osc"\nport = {port}\n'
-
-
-def free_port(kind=socket.SOCK_STREAM):
-    with socket.socket(socket.AF_INET, kind) as free:
-        free.bind(("127.0.0.1", 0))
-        return free.getsockname()[1]
 
 
 def osc_message(speed_m_s, direction_deg):

@@ -17,7 +17,7 @@ import time
 import tomllib
 import unittest
 
-from programs import HANG_S, Program
+from programs import HANG_S, Program, free_ports
 
 BIN, REHEARSALS = sys.argv.pop(1), sys.argv.pop(1)
 YURAGI = os.path.join(BIN, "yuragi")
@@ -36,17 +36,6 @@ faults = ["silence@1h+1min"]
 name = "east"
 simulate = "nmea --tcp 127.0.0.1:0 --format mwv --rate 10"
 """
-
-
-def free_ports(kinds):
-    """A free port of 127.0.0.1 for each of these socket types, all different."""
-    taken = [socket.socket(socket.AF_INET, kind) for kind in kinds]
-    for one in taken:
-        one.bind(("127.0.0.1", 0))
-    ports = [one.getsockname()[1] for one in taken]
-    for one in taken:
-        one.close()
-    return ports
 
 
 def is_running(process):

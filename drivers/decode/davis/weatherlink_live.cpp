@@ -65,7 +65,7 @@ Result<DecodedWind, Refusal> wind_of(const Json& record) {
       wind.status = DecodedStatus::kUncertain;
     }
   }
-  if (gust_mph && *gust_mph >= *speed_mph) wind.gust_m_s = *gust_mph * kMetresPerSecondPerMph;
+  if (gust_mph) wind.gust_m_s = *gust_mph * kMetresPerSecondPerMph;
   return checked(wind);
 }
 

@@ -96,7 +96,7 @@ Result<DecodedWind, Refusal> decode_wmr100_frame(ByteSpan frame) noexcept {
   DecodedWind wind;
   wind.speed_m_s = average / 10.0;
   wind.direction_deg = (frame[2] & 0x0FU) * 22.5;
-  if (gust >= average) wind.gust_m_s = gust / 10.0;
+  wind.gust_m_s = gust / 10.0;
   if ((frame[0] & 0xF0U) != 0) wind.status = DecodedStatus::kUncertain;
   return checked(wind);
 }

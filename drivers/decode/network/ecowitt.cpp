@@ -116,7 +116,6 @@ Result<DecodedWind, Refusal> wind_of_items(const Items& items) {
   DecodedWind wind = {
       .speed_m_s = items.wind_number(kSpeed, 0.1), .direction_deg = {}, .gust_m_s = items.wind_number(kGust, 0.1)};
   if (!wind.speed_m_s) return Refusal::kInvalid;
-  if (wind.gust_m_s && *wind.gust_m_s < *wind.speed_m_s) wind.gust_m_s.reset();
   if (const auto direction_deg = items.wind_number(kDirection, 1.0)) {
     wind.direction_deg = wrapped_direction_deg(*direction_deg);
     if (!wind.direction_deg) return Refusal::kImplausible;

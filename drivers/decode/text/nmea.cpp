@@ -150,16 +150,44 @@ XdrRole xdr_role(std::string_view id, int first_id) {
   }
 }
 
-/// $--XDR and quadruples of type, value, unit, id. The mean is the reading and the greatest speed the gust; a device
-/// that sends only the first id has its reading there.
+/// Are these quadruples, each of a type of one letter? Fields that have moved up by one that was lost are none. What is
+/// behind the last one must be empty.
+bool are_xdr_quadruples(const TextFields& fields) {
+  std::size_t at = 1;
+  for (; at + 3 < fields.count; at += 4) {
+    const std::string_view type = fields[at];
+    const bool is_type = type.empty() || (type.size() == 1 && type[0] >= 'A' && type[0] <= 'Z');
+    if (!is_type) return false;
+  }
+  for (; at < fields.count; ++at) {
+    if (!fields[at].empty()) return false;
+  }
+  return true;
+}
+
+/// Least, mean and greatest of one quantity, as far as a sentence has them.
+struct XdrStatistics {
+  std::optional<double> least;
+  std::optional<double> mean;
+  std::optional<double> greatest;
+
+  void take(XdrRole role, std::optional<double> value) {
+    if (role == XdrRole::kLeast) least = value;
+    if (role == XdrRole::kMean) mean = value;
+    if (role == XdrRole::kGreatest) greatest = value;
+  }
+  /// A device that sends only the first id has its reading there; beside a greatest value it is the least one.
+  std::optional<double> reading() const { return mean || greatest ? mean : least; }
+};
+
+/// $--XDR and quadruples of type, value, unit, id. The mean is the reading and the greatest speed the gust.
 NmeaResult decode_xdr(const NmeaOptions& options, const TextFields& fields) {
-  DecodedWind wind;
-  wind.reference = WindReference::kRelative;
   bool has_wind = false;
   bool has_impossible_angle = false;  // it leaves the others
-  bool direction_is_mean = false;
-  bool speed_is_mean = false;
+  XdrStatistics angles_deg;
+  XdrStatistics speeds_m_s;
 
+  if (!are_xdr_quadruples(fields)) return Refusal::kMalformed;
   for (std::size_t at = 1; at + 3 < fields.count; at += 4) {
     const bool is_angle = fields[at] == "A" && fields[at + 2] == "D";
     const bool is_speed = fields[at] == "S" && sentence_unit(fields[at + 2]);
@@ -173,18 +201,15 @@ NmeaResult decode_xdr(const NmeaOptions& options, const TextFields& fields) {
       continue;
     }
     if (!value) return value.error();
-    const bool is_mean = role == XdrRole::kMean;
-    if (role == XdrRole::kGreatest) {
-      if (is_speed) wind.gust_m_s = *value;
-    } else if (is_angle && (is_mean || !direction_is_mean)) {
-      wind.direction_deg = *value;
-      direction_is_mean = is_mean;
-    } else if (is_speed && (is_mean || !speed_is_mean)) {
-      wind.speed_m_s = *value;
-      speed_is_mean = is_mean;
-    }
+    (is_angle ? angles_deg : speeds_m_s).take(role, *value);
   }
   if (!has_wind) return Refusal::kNotMine;
+
+  DecodedWind wind;
+  wind.reference = WindReference::kRelative;
+  wind.direction_deg = angles_deg.reading();
+  wind.speed_m_s = speeds_m_s.reading();
+  wind.gust_m_s = speeds_m_s.greatest;
   const bool is_nothing_else = !wind.speed_m_s && !wind.direction_deg && !wind.gust_m_s;
   if (has_impossible_angle && is_nothing_else) return Refusal::kImplausible;
   return checked(wind);
@@ -245,6 +270,7 @@ std::optional<wind::StationQuantities> decode_nmea_quantities(const NmeaOptions&
   const bool is_xdr = fields[0].ends_with("XDR");
   constexpr std::size_t kTalkerAndSentence = 5;
   if (fields[0].size() != kTalkerAndSentence || !fields.are_all || (!is_mda && !is_xdr)) return std::nullopt;
+  if (is_xdr && !are_xdr_quadruples(fields)) return std::nullopt;
   const wind::StationQuantities said =
       is_mda ? quantities_of_mda(fields) : quantities_of_xdr(fields, options.xdr_first_id);
   for (const wind::StationQuantity& each : wind::kStationQuantities) {

@@ -16,7 +16,8 @@ namespace yuragi::drivers::decode::text {
 //   $--VWR,0..180,L|R,kn,N,m/s,M,km/h,K*hh              from the bow to port or starboard, apparent
 //   $--VWT,...                                          the same, true wind
 //   $--MDA,<12 fields of weather>,deg,T,deg,M,kn,N,m/s,M*hh
-//   $--XDR,A,deg,D,id,...,S,speed,M|N|K|S,id,...*hh     Vaisala WXT: id is address + 0 least, 1 mean, 2 greatest
+//   $--XDR,A,deg,D,id,...,S,speed,M|N|K|S,id,...*hh     Vaisala WXT: id is address + 0 least, 1 mean, 2 greatest, each
+//                                                       of which can be switched off; of other devices 0 is the reading
 //
 // hh is the exclusive or of what stands between '$' and '*'. Sources: gpsd www/NMEA.adoc; SignalK nmea0183-signalk
 // hooks; Lufft V200A-UMB manual V25 20.5.4 (S is mph); Gill 1405-PS-0019 (status 00 and 60 are good). Devices do

@@ -1,6 +1,5 @@
 // What a Davis console and its line can do wrong, and what the driver makes of it: with a simulated console at the
 // other end of a real pseudo terminal or TCP connection.
-#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -10,9 +9,9 @@
 
 #include "drivers/davis/vantage_sensor.hpp"
 #include "simulators/davis/vantage_console.hpp"
+#include "tests/drivers/davis/davis_fault.hpp"
 #include "tests/support/driver_named.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_bench.hpp"
 
 namespace yuragi::drivers::davis {
 namespace {
@@ -22,9 +21,7 @@ using simulators::davis::VantageConsole;
 using simulators::davis::VantageConsoleOptions;
 using testing::HasSubstr;
 
-constexpr double kMetresPerSecondOf16Mph = 16 * 0.44704;
-
-class VantageFault : public testing::Test {
+class VantageFault : public DavisFault {
  protected:
   enum class Wire { kPty, kTcp };
 
@@ -40,37 +37,12 @@ class VantageFault : public testing::Test {
                {"host", std::string("127.0.0.1")},
                {"port", std::int64_t{std::stoi(place.substr(place.rfind(':') + 1))}}};
     }
-    auto console =
-        std::make_unique<VantageConsole>(bench_.observed(std::move(carried)), options,
-                                         simulators::MeasuredWind(std::make_unique<StillWind>(simulators::PlayedMoment{
-                                             .speed_m_s = kMetresPerSecondOf16Mph, .direction_deg = 123.0})));
+    auto console = std::make_unique<VantageConsole>(bench_.observed(std::move(carried)), options, still_wind());
     console_ = console.get();
     const VantageSettings settings = vantage_settings_of(values_for("davis", given));
     bench_.put(std::move(console), std::make_unique<VantageSensor>(settings, bench_.port(settings.address)));
   }
 
-  bool is_live(double limit_s = 40.0) {
-    bench_.sink.readings.clear();
-    return bench_.run_until(limit_s, {}, [this] {
-      return !bench_.sink.readings.empty() && bench_.sink.last_state() == wind::LinkState::kConnected;
-    });
-  }
-  void expect_only_the_wind() {
-    for (const wind::WindReading& reading : bench_.sink.readings) {
-      EXPECT_NEAR(reading.speed_m_s, kMetresPerSecondOf16Mph, 1e-9);
-      ASSERT_TRUE(reading.direction_deg.has_value());
-      EXPECT_EQ(*reading.direction_deg, 123.0);
-    }
-  }
-  void expect_return() {
-    ASSERT_TRUE(is_live()) << bench_.sink.last_detail();
-    bench_.run(10.0);
-    EXPECT_GE(bench_.sink.readings.size(), 3U);
-    EXPECT_TRUE(bench_.sink.refusals.empty());
-    expect_only_the_wind();
-  }
-
-  TextBench bench_;
   VantageConsole* console_ = nullptr;
 
  private:
@@ -88,12 +60,7 @@ TEST_F(VantageFault, WithoutAnyNothingIsLost) {
     EXPECT_TRUE(bench_.sink.refusals.empty());
     expect_only_the_wind();
     EXPECT_EQ(bench_.sink.readings.back().gust_m_s.has_value(), knows_lps);
-    const wind::StationQuantities& said = bench_.sink.station_quantities.back();
-    EXPECT_NEAR(said.air_temperature_c.value_or(0.0), 14.5, 1e-9);
-    EXPECT_NEAR(said.pressure_hpa.value_or(0.0), 1013.24, 0.01);
-    EXPECT_EQ(said.relative_humidity_percent, 65.0);
-    EXPECT_NEAR(said.rain_rate_mm_h.value_or(0.0), 3.0, 1e-9);
-    EXPECT_NEAR(said.rain_total_mm.value_or(0.0), 7.4, 1e-9);
+    expect_weather();
   }
 }
 
@@ -110,10 +77,7 @@ TEST_F(VantageFault, Silence) {
     connect(wire);
     ASSERT_TRUE(is_live()) << bench_.sink.last_detail();
     bench_.run(1.0);
-    bench_.run(6.0, FaultKind::kSilence);
-    EXPECT_TRUE(bench_.sink.readings.empty());
-    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("is silent: check its power"));
+    expect_no_wind(FaultKind::kSilence, 6.0, "is silent: check its power");
     bench_.run(10.0, FaultKind::kSilence);
     EXPECT_GE(bench_.sink.count(decode::Refusal::kTimeout), 3);
     EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("does not wake up"));
@@ -123,36 +87,20 @@ TEST_F(VantageFault, Silence) {
 
 TEST_F(VantageFault, Freeze) {
   connect(Wire::kPty);
-  ASSERT_TRUE(is_live());
-  bench_.run(20.0, FaultKind::kFreeze);
-  EXPECT_GE(bench_.sink.readings.size(), 7U) << "the driver publishes what the console says; the hub judges it";
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnected);
-  expect_return();
+  expect_freeze_is_published();
 }
 
 TEST_F(VantageFault, Spike) {
   connect(Wire::kPty);
-  ASSERT_TRUE(is_live());
-  bench_.run(60.0);
-  ASSERT_FALSE(bench_.sink.believed.empty());
-  bench_.run(5.0, FaultKind::kSpike);
-  EXPECT_NEAR(bench_.sink.readings.back().speed_m_s, 55.0, 0.3);
-  EXPECT_EQ(bench_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
-  for (const wind::WindReading& believed : bench_.sink.believed) {
-    EXPECT_NEAR(believed.speed_m_s, kMetresPerSecondOf16Mph, 1e-9) << "the hub keeps it from the wind";
-  }
-  expect_return();
+  expect_spike_is_not_believed();
 }
 
 TEST_F(VantageFault, Garbage) {
   for (const Wire wire : {Wire::kPty, Wire::kTcp}) {
     connect(wire);
     ASSERT_TRUE(is_live());
-    bench_.run(25.0, FaultKind::kGarbage);
-    EXPECT_TRUE(bench_.sink.readings.empty());
+    expect_no_wind(FaultKind::kGarbage, 25.0, "packets arrive damaged");
     EXPECT_GE(bench_.sink.count(decode::Refusal::kMalformed), 5);
-    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("packets arrive damaged"));
     expect_return();
   }
 }
@@ -173,11 +121,8 @@ TEST_F(VantageFault, Partial) {
   for (const Wire wire : {Wire::kPty, Wire::kTcp}) {
     connect(wire);
     ASSERT_TRUE(is_live());
-    bench_.run(30.0, FaultKind::kPartial);
-    EXPECT_TRUE(bench_.sink.readings.empty());
+    expect_no_wind(FaultKind::kPartial, 30.0, "packets arrive damaged");
     EXPECT_GE(bench_.sink.count(decode::Refusal::kTooShort), 4);
-    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("packets arrive damaged"));
     ASSERT_TRUE(is_live());
     expect_return();
   }
@@ -187,11 +132,8 @@ TEST_F(VantageFault, BadChecksum) {
   for (const Wire wire : {Wire::kPty, Wire::kTcp}) {
     connect(wire);
     ASSERT_TRUE(is_live());
-    bench_.run(30.0, FaultKind::kBadChecksum);
-    EXPECT_TRUE(bench_.sink.readings.empty());
+    expect_no_wind(FaultKind::kBadChecksum, 30.0, "packets arrive damaged");
     EXPECT_GE(bench_.sink.count(decode::Refusal::kBadChecksum), 6);
-    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("packets arrive damaged"));
     expect_return();
   }
 }
@@ -218,10 +160,7 @@ TEST_F(VantageFault, Exception) {
 TEST_F(VantageFault, Disconnect) {
   connect(Wire::kTcp);
   ASSERT_TRUE(is_live());
-  bench_.run(5.0, FaultKind::kDisconnect);
-  EXPECT_TRUE(bench_.sink.readings.empty());
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("cannot connect to 127.0.0.1:"));
+  expect_no_wind(FaultKind::kDisconnect, 5.0, "cannot connect to 127.0.0.1:");
   expect_return();
 }
 

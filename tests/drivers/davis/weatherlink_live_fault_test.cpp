@@ -9,9 +9,9 @@
 
 #include "drivers/davis/weatherlink_live_sensor.hpp"
 #include "simulators/davis/weatherlink_live.hpp"
+#include "tests/drivers/davis/davis_fault.hpp"
 #include "tests/support/driver_named.hpp"
 #include "tests/support/free_port.hpp"
-#include "tests/support/text_bench.hpp"
 
 namespace yuragi::drivers::davis {
 namespace {
@@ -20,7 +20,7 @@ using simulators::FaultKind;
 using simulators::davis::WeatherLinkLive;
 using testing::HasSubstr;
 
-class WeatherLinkLiveFault : public testing::Test {
+class WeatherLinkLiveFault : public DavisFault {
  protected:
   void connect(ParameterValues::Map given = {}) {
     const std::uint16_t udp_port = free_port(SOCK_DGRAM);
@@ -31,37 +31,13 @@ class WeatherLinkLiveFault : public testing::Test {
     given.try_emplace("port", std::int64_t{udp_port});
     auto live = std::make_unique<WeatherLinkLive>(
         bench_.observed(std::move(http)), bench_.observed(simulators::text::make_udp_wire("127.0.0.1", udp_port)),
-        simulators::davis::WeatherLinkLiveOptions{.broadcast_port = udp_port},
-        simulators::MeasuredWind(
-            std::make_unique<StillWind>(simulators::PlayedMoment{.speed_m_s = 10 * 0.44704, .direction_deg = 123.0})));
+        simulators::davis::WeatherLinkLiveOptions{.broadcast_port = udp_port}, still_wind());
     live_ = live.get();
     const WeatherLinkLiveSettings settings = weatherlink_live_settings_of(values_for("weatherlink", given));
     bench_.put(std::move(live), std::make_unique<WeatherLinkLiveSensor>(settings, bench_.port(settings.http),
                                                                         bench_.port(settings.broadcasts)));
   }
 
-  bool is_live() {
-    bench_.sink.readings.clear();
-    return bench_.run_until(60.0, {}, [this] {
-      return bench_.sink.readings.size() >= 3 && bench_.sink.last_state() == wind::LinkState::kConnected;
-    });
-  }
-  void expect_only_the_wind() {
-    for (const wind::WindReading& reading : bench_.sink.readings) {
-      EXPECT_NEAR(reading.speed_m_s, 10 * 0.44704, 1e-9);
-      EXPECT_EQ(reading.direction_deg, 123.0);
-    }
-  }
-  void expect_return() {
-    ASSERT_TRUE(is_live()) << bench_.sink.last_detail();
-    bench_.run(15.0);
-    EXPECT_GE(bench_.sink.readings.size(), 5U);
-    EXPECT_TRUE(bench_.sink.refusals.empty());
-    expect_only_the_wind();
-    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnected);
-  }
-
-  TextBench bench_;
   WeatherLinkLive* live_ = nullptr;
 };
 
@@ -76,12 +52,7 @@ TEST_F(WeatherLinkLiveFault, WithoutAnyItIsAskedForBroadcastsAgainInTime) {
   EXPECT_TRUE(bench_.sink.refusals.empty());
   expect_only_the_wind();
   EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("WeatherLink Live 001D0A700002 at 127.0.0.1:"));
-  const wind::StationQuantities& said = bench_.sink.station_quantities.back();
-  EXPECT_NEAR(said.air_temperature_c.value_or(0.0), 14.5, 1e-9);
-  EXPECT_NEAR(said.pressure_hpa.value_or(0.0), 1013.24, 0.01);
-  EXPECT_EQ(said.relative_humidity_percent, 65.0);
-  EXPECT_NEAR(said.rain_rate_mm_h.value_or(0.0), 3.0, 1e-9);
-  EXPECT_NEAR(said.rain_total_mm.value_or(0.0), 7.4, 1e-9);
+  expect_weather();
 }
 
 TEST_F(WeatherLinkLiveFault, WithoutBroadcastsTheWindIsThatOfTheConditions) {
@@ -97,44 +68,26 @@ TEST_F(WeatherLinkLiveFault, Silence) {
   connect();
   ASSERT_TRUE(is_live());
   bench_.run(2.0);
-  bench_.run(45.0, FaultKind::kSilence);
-  EXPECT_TRUE(bench_.sink.readings.empty());
+  expect_no_wind(FaultKind::kSilence, 45.0, "does not reply");
   EXPECT_GE(bench_.sink.count(decode::Refusal::kTimeout), 2);
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("does not reply"));
   expect_return();
 }
 
 TEST_F(WeatherLinkLiveFault, Freeze) {
   connect();
-  ASSERT_TRUE(is_live());
-  bench_.run(20.0, FaultKind::kFreeze);
-  EXPECT_GE(bench_.sink.readings.size(), 7U) << "the driver publishes what the device says; the hub judges it";
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnected);
-  expect_return();
+  expect_freeze_is_published();
 }
 
 TEST_F(WeatherLinkLiveFault, Spike) {
   connect();
-  ASSERT_TRUE(is_live());
-  bench_.run(60.0);
-  bench_.run(5.0, FaultKind::kSpike);
-  EXPECT_NEAR(bench_.sink.readings.back().speed_m_s, 55.0, 0.01);
-  EXPECT_EQ(bench_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
-  for (const wind::WindReading& believed : bench_.sink.believed) {
-    EXPECT_NEAR(believed.speed_m_s, 10 * 0.44704, 1e-9) << "the hub keeps it from the wind";
-  }
-  expect_return();
+  expect_spike_is_not_believed();
 }
 
 TEST_F(WeatherLinkLiveFault, Garbage) {
   connect();
   ASSERT_TRUE(is_live());
-  bench_.run(40.0, FaultKind::kGarbage);
-  EXPECT_TRUE(bench_.sink.readings.empty());
+  expect_no_wind(FaultKind::kGarbage, 40.0, "check that it is a WeatherLink Live");
   EXPECT_GE(bench_.sink.count(decode::Refusal::kMalformed), 8);
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("check that it is a WeatherLink Live"));
   expect_return();
 }
 
@@ -171,20 +124,14 @@ TEST_F(WeatherLinkLiveFault, Late) {
 
 TEST_F(WeatherLinkLiveFault, Exception) {
   connect();
-  bench_.run(25.0, FaultKind::kException);
-  EXPECT_TRUE(bench_.sink.readings.empty());
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("HTTP 500"));
+  expect_no_wind(FaultKind::kException, 25.0, "HTTP 500");
   expect_return();
 }
 
 TEST_F(WeatherLinkLiveFault, Disconnect) {
   connect();
   ASSERT_TRUE(is_live());
-  bench_.run(40.0, FaultKind::kDisconnect);
-  EXPECT_TRUE(bench_.sink.readings.empty());
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("cannot connect to 127.0.0.1:"));
+  expect_no_wind(FaultKind::kDisconnect, 40.0, "cannot connect to 127.0.0.1:");
   expect_return();
 }
 

@@ -145,6 +145,13 @@ std::vector<std::string> assembled(std::string_view text, std::size_t size,
   return lines;
 }
 
+TEST(Line, LeavesOutAGustBelowTheSpeed) {
+  const auto decoded = text::decode_line({}, "4.2,270,4.1");
+  EXPECT_TRUE(reads(decoded, 4.2, 270.0));
+  EXPECT_FALSE(decoded->gust_m_s);
+  EXPECT_EQ(text::decode_line({}, "4.2,270,4.2")->gust_m_s, 4.2);
+}
+
 TEST(LineAssembler, EndsLinesAtEveryKindOfEndWhereverTheBytesAreSplit) {
   for (std::size_t size = 1; size < 20; ++size) {
     EXPECT_THAT(assembled("a\nbc\r\nd\r\r\n\ne\n\rf", size), ElementsAre("a", "bc", "d", "e", "f")) << size;

@@ -175,6 +175,23 @@ TEST(NmeaXdr, OfTheWxtHasMeanAndGust) {
       reads(decode_body("WIXDR,A,302,D,4,S,36,K,4", {.checksum = {}, .status = {}, .xdr_first_id = 4}), 10.0, 302.0));
 }
 
+TEST(NmeaXdr, TakesTheLeastOfSeveralForNoReading) {
+  const auto decoded = decode_body("WIXDR,A,302,D,0,A,330,D,2,S,0.1,M,0,S,0.4,M,2");
+  ASSERT_TRUE(decoded.has_value());
+  EXPECT_FALSE(decoded->speed_m_s) << "the mean was switched off, and 0.1 m/s is the least";
+  EXPECT_FALSE(decoded->direction_deg);
+  EXPECT_NEAR(decoded->gust_m_s.value_or(0.0), 0.4, 1e-9);
+}
+
+TEST(NmeaXdr, WhoseFieldsHaveMovedIsRefused) {
+  for (const char* body :
+       {"WIXDR,A,302,D,0,,A,320,D,1,S,0.1,M,0,S,0.2,M,1", "WIXDR,A,302,D,0,A320,D,1,S,0.1,M,0,S,0.2,M,1",
+        "WIXDR,A,302,D,0,S,0.1,M,0,S,0.2,M", "WIXDR,302,D,0,A,S,0.1,M,0"}) {
+    EXPECT_TRUE(is_refused(decode_body(body), Refusal::kMalformed)) << body;
+  }
+  EXPECT_TRUE(reads(decode_body("WIXDR,A,302,D,0,S,0.1,M,0,"), 0.1, 302.0)) << "a comma behind the last field";
+}
+
 std::optional<wind::StationQuantities> quantities_of(std::string_view body, int xdr_first_id = 0) {
   return text::decode_nmea_quantities({.checksum = {}, .status = {}, .xdr_first_id = xdr_first_id}, sentence(body));
 }

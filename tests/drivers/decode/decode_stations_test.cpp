@@ -516,6 +516,15 @@ TEST(Te923Request, CarriesAddressAndCheckByte) {
 
 // --- all
 
+TEST(StationDecoders, LeaveOutAGustBelowTheSpeed) {
+  EXPECT_EQ(*hid::decode_wmr300(wmr300_packet(255, 256, 359)),
+            (DecodedWind{.speed_m_s = 25.6, .direction_deg = 359.0, .gust_m_s = {}}));
+  const auto fineoffset = hid::decode_fineoffset_record(fineoffset_record(50, 49, 0, 4, 0));
+  EXPECT_EQ(fineoffset->speed_m_s, 5.0);
+  EXPECT_FALSE(fineoffset->gust_m_s);
+  EXPECT_EQ(hid::decode_fineoffset_record(fineoffset_record(50, 50, 0, 4, 0))->gust_m_s, 5.0);
+}
+
 TEST(StationDecoders, GiveNoWindOutOfRangeForRandomBytes) {
   std::mt19937_64 random(20240605);
   for (int round = 0; round < 100'000; ++round) {
