@@ -125,6 +125,12 @@ SimulationPlan plan_davis(const SensorConfig& sensor) {
   return plan;
 }
 
+SimulationPlan plan_umb(const SensorConfig& sensor) {
+  const ParameterValues& values = sensor.values;
+  return plan_of(sensor, "umb",
+                 {"--class", std::to_string(values.integer("class")), "--id", std::to_string(values.integer("id"))});
+}
+
 }  // namespace
 
 Result<SimulationPlan, Failure> plan_simulation(const SensorConfig& sensor) {
@@ -133,6 +139,7 @@ Result<SimulationPlan, Failure> plan_simulation(const SensorConfig& sensor) {
   if (driver == "nmea") return plan_nmea(sensor);
   if (driver == "line") return plan_line(sensor);
   if (driver == "davis") return plan_davis(sensor);
+  if (driver == "umb") return plan_umb(sensor);
   constexpr std::array<std::string_view, 3> kNeedDevices = {"hid", "usb", "microphone"};
   if (std::ranges::find(kNeedDevices, driver) != kNeedDevices.end())
     return Failure{fmt::format("a simulated {} needs USB or sound of its own, and rights for it", driver)};

@@ -307,7 +307,7 @@ TEST(DecodeProgram, HelpsWithAnExampleOfEachFormat) {
   const std::string help = program.rest();
   EXPECT_EQ(program.wait(), 0);
   for (const char* name : {"nmea", "gill", "umb", "ft", "wxt", "line", "wmr100", "wmr300", "fineoffset", "acurite",
-                           "te923", "davis", "mcc1208", "labjack", "modbus:"}) {
+                           "te923", "davis", "umb-binary", "mcc1208", "labjack", "modbus:"}) {
     EXPECT_THAT(help, HasSubstr(std::string("yuragi decode ") + name));
   }
 }
