@@ -15,6 +15,10 @@ void add_davis_command(CLI::App& app);
 void add_weatherlink_live_command(CLI::App& app);
 }  // namespace yuragi::simulators::davis
 
+namespace yuragi::simulators::lufft {
+void add_umb_command(CLI::App& app);
+}
+
 namespace yuragi::simulators::microphone {
 void add_microphone_command(CLI::App& app);
 }

@@ -25,6 +25,7 @@ int run(int argc, char** argv) {
   yuragi::simulators::text::add_line_command(app);
   yuragi::simulators::davis::add_davis_command(app);
   yuragi::simulators::davis::add_weatherlink_live_command(app);
+  yuragi::simulators::lufft::add_umb_command(app);
   yuragi::simulators::network::add_ecowitt_command(app);
   yuragi::simulators::network::add_ecowitt_push_command(app);
   yuragi::simulators::network::add_tempest_command(app);

@@ -73,12 +73,13 @@ std::vector<wind::judging::CalibrationPoint> known_pairs(tools::calibration::Cal
 void hint_at_unit(const tools::calibration::CalibrationSession& session, tools::calibration::CalibrationDialog& dialog,
                   double gain) {
   if (session.calibration().unit_m_s != 1.0) return;
-  for (const drivers::sensor::SpeedUnit& unit : drivers::sensor::kSpeedUnitTable) {
-    if (unit.metres_per_second == 1.0 || std::abs(gain / unit.metres_per_second - 1.0) > 0.05) continue;
+  for (const std::string_view unit : drivers::sensor::kSpeedUnitNames) {
+    const double metres_per_second = drivers::sensor::metres_per_second_in(unit);
+    if (metres_per_second == 1.0 || std::abs(gain / metres_per_second - 1.0) > 0.05) continue;
     dialog.print(
         fmt::format("A gain of {:.3f} is typical of numbers in {}: if the sensor reports that unit, set unit = \"{}\" "
                     "(of the driver, or in [sensor.calibration]) and start again.",
-                    gain, unit.name, unit.name));
+                    gain, unit, unit));
     return;
   }
 }

@@ -164,7 +164,7 @@ void DecodeCommandOptions::add_text_options(CLI::App& command) {
         "gill");
   limit(command.add_option("--device", decoder.umb_device, "accept only the replies of this one (28673 is WS no. 1)")
             ->option_text("N"),
-        "umb");
+        "umb, umb-binary");
 }
 
 void DecodeCommandOptions::add_line_options(CLI::App& command) {

@@ -12,6 +12,8 @@
 
 #include "drivers/bus/mqtt_client.hpp"
 #include "drivers/decode/decoded_wind.hpp"
+#include "drivers/decode/json_pointer.hpp"
+#include "drivers/decode/speed_units.hpp"
 #include "drivers/mqtt/mqtt_payload.hpp"
 #include "drivers/mqtt/mqtt_preset.hpp"
 #include "drivers/mqtt/station_identity.hpp"
@@ -277,7 +279,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     if (settings_.preset->unit_pointer.empty()) return settings_.metres_per_second;
     const auto word = payload.text_at(std::string(settings_.preset->unit_pointer));
     if (!word) return settings_.metres_per_second;
-    if (const auto known = metres_per_second_of_word(*word)) return *known;
+    if (const auto known = decode::speed_unit_of_word(*word)) return known->metres_per_second;
     if (settings_.has_own_unit) return settings_.metres_per_second;
     note_ = fmt::format("; it says its speed in \"{}\", which is not known: set speed_unit", shown(*word));
     return decode::Refusal::kInvalid;
@@ -374,7 +376,7 @@ void check_source(std::string_view name, const MqttSource& source) {
                     name, source.topic));
   }
   for (const MqttPlace& place : source.places) {
-    if (is_json_pointer(place.pointer)) continue;
+    if (decode::is_json_pointer(place.pointer)) continue;
     throw std::runtime_error(
         fmt::format("{}path: \"{}\" is not a JSON pointer, which begins with a slash, as in /TX23/Speed/Act",
                     name.empty() ? "speed_" : name, place.pointer));
@@ -405,9 +407,9 @@ std::vector<MqttPlace> places_of(const std::string& path, std::span<const Preset
   std::vector<MqttPlace> places;
   for (const PresetPlace& place : known) {
     if (!path.empty() && path != place.pointer) continue;
-    const bool says_unit = path.empty() || !has_own_unit;
+    const auto said = path.empty() || !has_own_unit ? decode::speed_unit_of_word(place.unit) : std::nullopt;
     places.push_back({.pointer = std::string(place.pointer),
-                      .factor = says_unit ? metres_per_second_of_word(place.unit) : std::nullopt});
+                      .factor = said ? std::optional(said->metres_per_second) : std::nullopt});
   }
   if (places.empty() && !path.empty()) places.push_back({.pointer = path});
   return places;

@@ -25,15 +25,6 @@ Result<std::optional<double>, decode::Refusal> number_of_text(std::string_view t
 
 }  // namespace
 
-bool is_json_pointer(const std::string& text) {
-  try {
-    static_cast<void>(Json::json_pointer(text));
-    return true;
-  } catch (const Json::exception&) {
-    return false;
-  }
-}
-
 Payload::Payload(std::string_view bytes, PayloadForm form)
     : bytes_(bytes),
       json_(form == PayloadForm::kJson ? Json::parse(bytes, nullptr, false) : Json(Json::value_t::discarded)) {}

@@ -47,7 +47,4 @@ class Payload {
   nlohmann::json json_;
 };
 
-/// Is it a JSON pointer, or empty?
-bool is_json_pointer(const std::string& text);
-
 }  // namespace yuragi::drivers::mqtt

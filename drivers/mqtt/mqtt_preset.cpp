@@ -18,6 +18,7 @@
 
 #include <algorithm>
 
+#include "drivers/decode/speed_units.hpp"
 #include "drivers/mqtt/mqtt_quantities.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 
@@ -64,20 +65,9 @@ const MqttPreset& mqtt_preset_of(std::string_view name) noexcept {
 }
 
 std::string_view speed_unit_of_word(std::string_view word) noexcept {
-  constexpr std::array<std::array<std::string_view, 2>, 6> kOtherWords = {
-      {{"mi/h", "mph"}, {"kmh", "km/h"}, {"kph", "km/h"}, {"kt", "kn"}, {"kts", "kn"}, {"knots", "kn"}}};
-  for (const auto& [other, unit] : kOtherWords) {
-    if (word == other) return unit;
-  }
-  return std::ranges::find(sensor::kSpeedUnitNames, word) != sensor::kSpeedUnitNames.end() ? word : "";
-}
-
-std::optional<double> metres_per_second_of_word(std::string_view word) noexcept {
-  constexpr double kYard_m = 0.9144;
-  if (word == "yd/s") return kYard_m;
-  const std::string_view unit = speed_unit_of_word(word);
-  if (unit.empty()) return std::nullopt;
-  return sensor::metres_per_second_in(unit);
+  const auto unit = decode::speed_unit_of_word(word);
+  if (!unit || std::ranges::find(sensor::kSpeedUnitNames, unit->name) == sensor::kSpeedUnitNames.end()) return "";
+  return unit->name;
 }
 
 }  // namespace yuragi::drivers::mqtt

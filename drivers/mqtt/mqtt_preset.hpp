@@ -40,8 +40,4 @@ const MqttPreset& mqtt_preset_of(std::string_view name) noexcept;
 /// other word. Thread-safe and realtime-safe: yes.
 std::string_view speed_unit_of_word(std::string_view word) noexcept;
 
-/// The factor to m/s of a unit as publishers write it: one of those, or yd/s; nothing for any other word. Thread-safe
-/// and realtime-safe: yes.
-std::optional<double> metres_per_second_of_word(std::string_view word) noexcept;
-
 }  // namespace yuragi::drivers::mqtt

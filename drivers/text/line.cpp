@@ -6,7 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/decode/json_pointer.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
@@ -105,6 +108,15 @@ std::optional<double> invalid_number_of(const std::string& text) {
   return *number;
 }
 
+/// A key that begins with a slash is a JSON pointer wherever lines may be JSON.
+void check_key(std::string_view name, const std::string& key, decode::text::LineFormat format) {
+  const bool may_be_json = format == decode::text::LineFormat::kJson || format == decode::text::LineFormat::kAuto;
+  if (!may_be_json || !key.starts_with('/') || decode::is_json_pointer(key)) return;
+  throw std::runtime_error(fmt::format(
+      "{}: \"{}\" is not a JSON pointer, in which ~ is written ~0 and a slash of a name ~1, as in /wind/speed", name,
+      key));
+}
+
 }  // namespace
 
 std::span<const Parameter> line_reading_parameters() {
@@ -131,6 +143,10 @@ decode::text::LineOptions line_options_of(const ParameterValues& values) {
   line.direction = {.column = column_of(values.integer("direction_column")),
                     .key = values.text("direction_key"),
                     .scale = values.number("direction_scale")};
+  for (const auto& [name, key] :
+       {std::pair("speed_key", &line.speed.key), std::pair("direction_key", &line.direction.key),
+        std::pair("gust_key", &line.gust.key)})
+    check_key(name, *key, line.format);
   if (!line.speed.column && line.speed.key.empty()) {
     throw std::runtime_error("speed_column: neither it nor speed_key is set; a sensor needs a speed");
   }

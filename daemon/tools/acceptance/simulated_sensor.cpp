@@ -207,6 +207,12 @@ SimulationPlan plan_weatherlink(const SensorConfig& sensor) {
   return plan;
 }
 
+SimulationPlan plan_umb(const SensorConfig& sensor) {
+  const ParameterValues& values = sensor.values;
+  return plan_of(sensor, "umb",
+                 {"--class", std::to_string(values.integer("class")), "--id", std::to_string(values.integer("id"))});
+}
+
 }  // namespace
 
 Result<SimulationPlan, Failure> plan_simulation(const SensorConfig& sensor) {
@@ -221,6 +227,7 @@ Result<SimulationPlan, Failure> plan_simulation(const SensorConfig& sensor) {
   if (driver == "tempest") return plan_tempest(sensor);
   if (driver == "ecowitt") return plan_ecowitt(sensor);
   if (driver == "ecowitt-push") return plan_ecowitt_push(sensor);
+  if (driver == "umb") return plan_umb(sensor);
   constexpr std::array<std::string_view, 3> kNeedDevices = {"hid", "usb", "microphone"};
   if (std::ranges::find(kNeedDevices, driver) != kNeedDevices.end())
     return Failure{fmt::format("a simulated {} needs USB or sound of its own, and rights for it", driver)};

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "daemon/tools/csv/csv_words.hpp"
+#include "drivers/decode/speed_units.hpp"
 #include "engine/base/units.hpp"
 
 namespace yuragi::daemon::tools::csv {
@@ -14,42 +16,25 @@ struct NamedUnit {
   CsvUnit unit;
 };
 
-constexpr CsvUnit kMetresPerSecond{"m/s", 1.0};
-constexpr CsvUnit kKilometresPerHour{"km/h", kMetresPerSecondPerKmh};
-constexpr CsvUnit kKnots{"kn", kMetresPerSecondPerKnot};
-constexpr CsvUnit kMilesPerHour{"mph", kMetresPerSecondPerMph};
-constexpr CsvUnit kFeetPerSecond{"ft/s", 0.3048};
-constexpr CsvUnit kCentimetresPerSecond{"cm/s", 0.01};
-constexpr CsvUnit kTenthsOfMetresPerSecond{"0.1 m/s", 0.1};
-
-constexpr std::array kSpeedUnits = {NamedUnit{"ms", kMetresPerSecond},
-                                    NamedUnit{"ms1", kMetresPerSecond},
-                                    NamedUnit{"mps", kMetresPerSecond},
-                                    NamedUnit{"msec", kMetresPerSecond},
-                                    NamedUnit{"mpers", kMetresPerSecond},
-                                    NamedUnit{"metersecond", kMetresPerSecond},
-                                    NamedUnit{"meterssecond", kMetresPerSecond},
-                                    NamedUnit{"metrespersecond", kMetresPerSecond},
-                                    NamedUnit{"meterspersecond", kMetresPerSecond},
-                                    NamedUnit{"01ms", kTenthsOfMetresPerSecond},
-                                    NamedUnit{"kmh", kKilometresPerHour},
-                                    NamedUnit{"kmh1", kKilometresPerHour},
-                                    NamedUnit{"kph", kKilometresPerHour},
-                                    NamedUnit{"kmph", kKilometresPerHour},
-                                    NamedUnit{"kmhr", kKilometresPerHour},
-                                    NamedUnit{"kn", kKnots},
-                                    NamedUnit{"kt", kKnots},
-                                    NamedUnit{"kts", kKnots},
-                                    NamedUnit{"knt", kKnots},
-                                    NamedUnit{"knot", kKnots},
-                                    NamedUnit{"knots", kKnots},
-                                    NamedUnit{"mph", kMilesPerHour},
-                                    NamedUnit{"mih", kMilesPerHour},
-                                    NamedUnit{"mileshour", kMilesPerHour},
-                                    NamedUnit{"milesperhour", kMilesPerHour},
-                                    NamedUnit{"fts", kFeetPerSecond},
-                                    NamedUnit{"fps", kFeetPerSecond},
-                                    NamedUnit{"cms", kCentimetresPerSecond}};
+/// The words of drivers/decode, in lower case and without punctuation, and what only tables say.
+std::span<const NamedUnit> speed_units() {
+  static const auto kPlainWords = [] {
+    std::array<std::string, drivers::decode::kSpeedWords.size()> plain;
+    std::ranges::transform(drivers::decode::kSpeedWords, plain.begin(),
+                           [](const drivers::decode::SpeedWord& each) { return joined(words_of(each.word)); });
+    return plain;
+  }();
+  static const auto kUnits = [] {
+    std::vector<NamedUnit> units;
+    for (std::size_t i = 0; i < kPlainWords.size(); ++i) {
+      const drivers::decode::SpeedUnit& unit = drivers::decode::kSpeedWords[i].unit;
+      units.push_back({kPlainWords[i], {unit.name, unit.metres_per_second}});
+    }
+    units.push_back({"01ms", {"0.1 m/s", 0.1}});
+    return units;
+  }();
+  return kUnits;
+}
 
 constexpr CsvUnit kDegrees{"degrees"};
 constexpr CsvUnit kRadians{"radians", 1.0 / kRadPerDeg};
@@ -114,7 +99,7 @@ std::span<const NamedUnit> units_of(CsvDimension dimension) {
     case CsvDimension::kTime:
       return kTimeUnits;
     case CsvDimension::kSpeed:
-      return kSpeedUnits;
+      return speed_units();
     case CsvDimension::kDirection:
       return kDirectionUnits;
     case CsvDimension::kTemperature:

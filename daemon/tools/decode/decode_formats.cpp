@@ -10,6 +10,7 @@
 #include "drivers/decode/hid/te923.hpp"
 #include "drivers/decode/hid/wmr100.hpp"
 #include "drivers/decode/hid/wmr300.hpp"
+#include "drivers/decode/lufft/umb.hpp"
 #include "drivers/decode/marine/signalk.hpp"
 #include "drivers/decode/network/ecowitt.hpp"
 #include "drivers/decode/network/station_push.hpp"
@@ -94,6 +95,15 @@ Made make_umb(const UnitDecoderOptions& options) {
   return of_lines(drivers::decode::text::decode_umb,
                   drivers::decode::text::UmbOptions{options.makers_checksum, options.status, options.umb_device,
                                                     options.umb_speed_range_m_s});
+}
+
+Made make_umb_binary(const UnitDecoderOptions& options) {
+  return stateless([device = options.umb_device](drivers::decode::ByteSpan frame)
+                       -> Result<drivers::decode::DecodedWind, drivers::decode::Refusal> {
+    const auto reply = drivers::decode::lufft::decode_umb_reply(device, frame);
+    if (!reply) return reply.error();
+    return drivers::decode::lufft::wind_of(*reply);
+  });
 }
 
 Made make_line(const UnitDecoderOptions& options) {
@@ -231,6 +241,12 @@ constexpr std::array kUnitFormats = {
                .devices = "what stations push by the protocols of Ecowitt, Ambient Weather, Weather Underground",
                .example = "ecowitt-push pushes.log",
                .make = make_station_push_unit_decoder},
+    UnitFormat{.name = "umb-binary",
+               .is_text = false,
+               .unit = "a frame that replies to a query of channels",
+               .devices = "Lufft VENTUS, V200A, WS200 to WS800 in their binary protocol",
+               .example = "umb-binary --hex frames.hex",
+               .make = make_umb_binary},
     UnitFormat{.name = "mcc1208",
                .is_text = false,
                .unit = "a reply: 4 bytes of the counter, 2 of an analogue input",

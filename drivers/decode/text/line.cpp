@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/base/units.hpp"
+#include "drivers/decode/speed_units.hpp"
 
 namespace yuragi::drivers::decode::text {
 namespace {
@@ -25,32 +25,14 @@ struct LineTexts {
   LineText gust;
 };
 
-/// Words for units of speed, and their size in m/s.
-struct SpeedWord {
-  std::string_view word;
-  double metres_per_second;
-};
-constexpr std::array<SpeedWord, 13> kSpeedWords = {{{"m/s", 1.0},
-                                                    {"mps", 1.0},
-                                                    {"km/h", kMetresPerSecondPerKmh},
-                                                    {"kmh", kMetresPerSecondPerKmh},
-                                                    {"kph", kMetresPerSecondPerKmh},
-                                                    {"kn", kMetresPerSecondPerKnot},
-                                                    {"kt", kMetresPerSecondPerKnot},
-                                                    {"kts", kMetresPerSecondPerKnot},
-                                                    {"knots", kMetresPerSecondPerKnot},
-                                                    {"mph", kMetresPerSecondPerMph},
-                                                    {"mi/h", kMetresPerSecondPerMph},
-                                                    {"ft/s", 0.3048},
-                                                    {"fps", 0.3048}}};
 constexpr std::array<std::string_view, 3> kDegreeWords = {"deg", "degrees", "\xC2\xB0"};
 
 /// The size of a unit of that word for that quantity; nothing where it is none.
 std::optional<double> unit_named(std::string_view word, bool is_direction) {
   if (is_direction)
     return std::ranges::find(kDegreeWords, word) != kDegreeWords.end() ? std::optional(1.0) : std::nullopt;
-  const auto* const found = std::ranges::find(kSpeedWords, word, &SpeedWord::word);
-  return found != kSpeedWords.end() ? std::optional(found->metres_per_second) : std::nullopt;
+  const auto unit = speed_unit_of_word(word);
+  return unit ? std::optional(unit->metres_per_second) : std::nullopt;
 }
 
 bool is_unit(std::string_view word) {
@@ -211,7 +193,7 @@ Result<LineValues, Refusal> values_of_line(const LineOptions& options, std::stri
   if (options.format == LineFormat::kJson || (is_auto && line.front() == '{')) {
     try {
       return values_of_json(options, line);
-    } catch (const std::exception&) {  // a key that is no JSON pointer, or no memory
+    } catch (const std::exception&) {  // an index that no array has, or no memory; keys are looked at before (is_json_pointer)
       return Refusal::kMalformed;
     }
   }

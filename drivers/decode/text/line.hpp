@@ -20,8 +20,8 @@ namespace yuragi::drivers::decode::text {
 //   {"wind": {"speed": 4.2}}             JSON; a key is a name, or a JSON pointer (RFC 6901) such as /wind/speed
 //
 // There is no standard: the options define the columns or keys. "nan", as Arduino's Serial.print writes it, an empty
-// field and "null" mean that the value is not known. Units of speed: m/s, mps, km/h, kmh, kph, kn, kt, kts, knots, mph,
-// mi/h, ft/s; of direction: deg, degrees and the degree sign.
+// field and "null" mean that the value is not known. Units of speed: those of drivers/decode/speed_units.hpp; of
+// direction: deg, degrees and the degree sign.
 
 enum class LineFormat : std::uint8_t {
   kAuto,  ///< JSON if the line begins with '{', keys if it has '=' or ':', otherwise columns

@@ -356,7 +356,7 @@ TEST(DecodeProgram, HelpsWithAnExampleOfEachFormat) {
   EXPECT_EQ(program.wait(), 0);
   for (const char* name :
        {"nmea", "gill", "umb", "ft", "wxt", "line", "wmr100", "wmr300", "fineoffset", "acurite", "te923", "davis",
-        "weatherlink", "tempest", "ecowitt", "ecowitt-push", "mcc1208", "labjack", "modbus:"}) {
+        "weatherlink", "tempest", "ecowitt", "ecowitt-push", "umb-binary", "mcc1208", "labjack", "modbus:"}) {
     EXPECT_THAT(help, HasSubstr(std::string("yuragi decode ") + name));
   }
 }

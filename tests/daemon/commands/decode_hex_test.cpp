@@ -87,6 +87,19 @@ TEST_F(DecodeCommand, ReadsEachKindOfStationByItsFormat) {
   EXPECT_TRUE(is_value(loop2["gust_m_s"], 3.12928, 1e-9));
   EXPECT_TRUE(is_value(loop2["direction_deg"], 315.0));
 
+  // 4.5 m/s and its gust, from 123.5 degrees; and a temperature alone, of the V200A's manual.
+  json umb =
+      one("01 10 01 F0 01 80 1F 02 2F 10 00 03 08 00 90 01 16 00 00 90 40 08 00 F4 01 16 00 00 F7 42 08 00 B8 01 16 00 "
+          "00 E0 "
+          "40 03 9E E1 04\n",
+          {"umb-binary", "--hex"});
+  EXPECT_TRUE(is_value(umb["speed_m_s"], 4.5));
+  EXPECT_TRUE(is_value(umb["gust_m_s"], 7.0));
+  EXPECT_TRUE(is_value(umb["direction_deg"], 123.5));
+  const auto temperature =
+      run("01 10 01 F0 01 80 0A 02 23 10 00 64 00 16 00 00 B4 41 03 1F 94 04\n", {"umb-binary", "--hex"});
+  EXPECT_TRUE(temperature.objects.empty());
+
   // Counter 1234 and half of 2.44 V, with the sums of the U3's frames.
   json labjack = one("ff f8 05 00 00 02 00 00 00 b0 7a d2 04 00 00 00\n", {"labjack", "--hex"});
   EXPECT_EQ(labjack["count"], 1234);

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "drivers/decode/speed_units.hpp"
 #include "drivers/decode/text/ft.hpp"
 #include "drivers/decode/text/line.hpp"
 #include "drivers/decode/text/line_assembler.hpp"
@@ -89,6 +90,17 @@ TEST(NumberLine, TakesTheUnitThatItSays) {
   EXPECT_TRUE(is_refused(text::decode_line(options, "speed=10parsecs"), Refusal::kMalformed));
   EXPECT_TRUE(is_refused(text::decode_line(options, "speed: 10 deg"), Refusal::kMalformed));
   EXPECT_TRUE(is_refused(text::decode_line(options, "speed: 10, direction: 20 km/h"), Refusal::kMalformed));
+}
+
+TEST(NumberLine, KnowsEveryWordOfAUnitOfSpeed) {
+  const text::LineOptions options;
+  for (const SpeedWord& each : kSpeedWords) {
+    const std::string line = R"({"speed": "10 )" + std::string(each.word) + R"("})";
+    EXPECT_TRUE(reads(text::decode_line(options, line), 10.0 * each.unit.metres_per_second, {})) << line;
+    EXPECT_EQ(speed_unit_of_word(each.unit.name)->metres_per_second, each.unit.metres_per_second);
+  }
+  EXPECT_FALSE(speed_unit_of_word("ms").has_value()) << "milliseconds";
+  EXPECT_FALSE(speed_unit_of_word("").has_value());
 }
 
 TEST(NumberLine, IsAnObjectInJson) {

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/decode/json_pointer.hpp"
+
 namespace yuragi::drivers::mqtt {
 namespace {
 
@@ -113,10 +115,11 @@ TEST(MqttPayload, StandsALotOfBrackets) {
 }
 
 TEST(JsonPointer, BeginsWithASlash) {
-  EXPECT_TRUE(is_json_pointer(""));
-  EXPECT_TRUE(is_json_pointer("/a/b~1c"));
-  EXPECT_FALSE(is_json_pointer("a/b"));
-  EXPECT_FALSE(is_json_pointer("/a~2"));
+  EXPECT_TRUE(decode::is_json_pointer(""));
+  EXPECT_TRUE(decode::is_json_pointer("/a/b~1c"));
+  EXPECT_FALSE(decode::is_json_pointer("a/b"));
+  EXPECT_FALSE(decode::is_json_pointer("/a~"));
+  EXPECT_FALSE(decode::is_json_pointer("/a~2"));
 }
 
 }  // namespace

@@ -150,6 +150,11 @@ TEST(LineSettings, RefuseWhatCannotWork) {
   EXPECT_THAT(refusal({{"speed_column", std::int64_t{0}}, {"speed_key", std::string("")}}), HasSubstr("needs a speed"));
   EXPECT_THAT(refusal({{"direction_column", std::int64_t{1}}}), HasSubstr("has the same column"));
   EXPECT_THAT(refusal({{"invalid", std::string("none")}}), HasSubstr("is not a number"));
+  EXPECT_THAT(refusal({{"speed_key", std::string("/wind~/speed")}}),
+              HasSubstr("speed_key: \"/wind~/speed\" is not a JSON pointer"));
+  EXPECT_THAT(refusal({{"gust_key", std::string("/~2")}, {"format", std::string("json")}}), HasSubstr("gust_key: "));
+  EXPECT_EQ(refusal({{"direction_key", std::string("/wind/0/d~1s")}}), "accepted");
+  EXPECT_EQ(refusal({{"speed_key", std::string("/~2")}, {"format", std::string("keys")}}), "accepted");
   EXPECT_THAT(refusal({{"poll_interval", 1.0}}), HasSubstr("request: is missing"));
 }
 

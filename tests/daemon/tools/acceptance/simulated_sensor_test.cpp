@@ -142,6 +142,13 @@ TEST(SimulationPlan, PlaysWhatIsAskedInTheNetwork) {
   EXPECT_EQ(sensor.values.text("host"), "127.0.0.1");
 }
 
+TEST(SimulationPlan, PlaysALufftOfTheConfiguredAddressOverTcp) {
+  const SimulationPlan plan = plan_of_entry("driver = \"umb\"\ndevice = \"/dev/ttyUSB7\"\nclass = 8\nid = 3");
+  EXPECT_THAT(plan.arguments, ElementsAre("umb", "--tcp", "127.0.0.1:0", "--class", "8", "--id", "3", "--speed", "8",
+                                          "--direction", "225", "--turbulence", "0"));
+  EXPECT_EQ(plan.sensor.values.text("transport"), "tcp");
+}
+
 TEST(SimulationPlan, ExpectsTheCalibratedWind) {
   const SimulationPlan plain = plan_of_entry("driver = \"modbus\"");
   EXPECT_DOUBLE_EQ(plain.expected.speed_m_s, 8.0);
