@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -41,6 +43,26 @@ inline std::size_t read_warily(const std::filesystem::path& file) {
     ++count;
   }
   return count;
+}
+
+/// Speed, direction, gust and quality of rows that cannot be readings.
+inline constexpr std::array kImpossibleValues = {
+    "'fast', NULL, NULL, 0",  // types
+    "NULL, NULL, NULL, 0",   "x'00', NULL, NULL, 0",    "1.0, 'west', NULL, 0",
+    "1.0, NULL, 'none', 0",  "1.0, NULL, NULL, 'good'", "1.0, NULL, NULL, NULL",
+    "-1.0, NULL, NULL, 0",  // values
+    "121.0, NULL, NULL, 0",  "9e999, NULL, NULL, 0",    "1.0, 360.0, NULL, 0",
+    "1.0, NULL, -0.1, 0",    "1.0, NULL, NULL, 3",      "1.0, NULL, NULL, -1",
+};
+
+/// A reading of 1 m/s and one of 2 m/s are all that is read; so many rows are passed over.
+inline void expect_speeds_1_and_2(const std::filesystem::path& file, std::size_t passed_over) {
+  auto reader = drivers::windlog::WindlogReader::open(file);
+  ASSERT_TRUE(reader) << reader.error().message;
+  EXPECT_EQ(reader->next()->value().reading.speed_m_s, 1.0);
+  EXPECT_EQ(reader->next()->value().reading.speed_m_s, 2.0);
+  EXPECT_FALSE(reader->next()->has_value());
+  EXPECT_EQ(reader->skipped(), passed_over);
 }
 
 }  // namespace yuragi::test

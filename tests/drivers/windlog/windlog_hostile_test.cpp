@@ -88,37 +88,19 @@ TEST(HostileWindlog, RowsThatCannotBeReadingsArePassedOverAndCounted) {
   const auto file = folder / "a.windlog";
   test::write_session(file, {test::reading_at(1000, 1.0), test::reading_at(9000, 2.0)});
   loosen(file);
-  const std::vector<std::string> bad_rows = {
-      "0, 'fast', NULL, NULL, 0",  // types
-      "0, NULL, NULL, NULL, 0",
-      "0, x'00', NULL, NULL, 0",
-      "0, 1.0, 'west', NULL, 0",
-      "0, 1.0, NULL, 'none', 0",
-      "0, 1.0, NULL, NULL, 'good'",
-      "0, 1.0, NULL, NULL, NULL",
-      "'today', 1.0, NULL, NULL, 0",
+  std::vector<std::string> bad_rows = {
+      "'today', 1.0, NULL, NULL, 0",  // clocks
       "NULL, 1.0, NULL, NULL, 0",
       "0.5, 1.0, NULL, NULL, 0",
-      "0, -1.0, NULL, NULL, 0",  // values
-      "0, 121.0, NULL, NULL, 0",
-      "0, 9e999, NULL, NULL, 0",
-      "0, 1.0, 360.0, NULL, 0",
-      "0, 1.0, NULL, -0.1, 0",
-      "0, 1.0, NULL, NULL, 3",
-      "0, 1.0, NULL, NULL, -1",
-      "9223372036854775807, 1.0, NULL, NULL, 0",  // clocks
+      "9223372036854775807, 1.0, NULL, NULL, 0",
       "-9223372036854775808, 1.0, NULL, NULL, 0",
   };
+  for (const char* values : test::kImpossibleValues) bad_rows.push_back(std::string("0, ") + values);
   std::int64_t time_ns = 1'000'000'000;  // between the two good ones
   for (const std::string& row : bad_rows) {
     tamper(file, "INSERT INTO reading_1 VALUES (" + std::to_string(++time_ns) + ", " + row + ")");
   }
-  auto reader = WindlogReader::open(file);
-  ASSERT_TRUE(reader) << reader.error().message;
-  EXPECT_EQ(reader->next()->value().reading.speed_m_s, 1.0);
-  EXPECT_EQ(reader->next()->value().reading.speed_m_s, 2.0);
-  EXPECT_FALSE(reader->next()->has_value());
-  EXPECT_EQ(reader->skipped(), bad_rows.size());
+  test::expect_speeds_1_and_2(file, bad_rows.size());
 }
 
 TEST(HostileWindlog, RowsAtTimesBeyondAllMeasureChangeNothing) {
