@@ -132,6 +132,7 @@ Result<RecordedInstallation, Failure> recorded_installation(const std::filesyste
     if (!speaks) return speaks.error();
     is_any_played = is_any_played || *speaks;
     if (!*speaks) installation.remarks.push_back(fmt::format("sensor {} has no reading, and is silent", sensor.name));
+    sensor.blend.unchanged_for_s /= options.rate;
     drivers::windlog::PlayerOptions of_sensor = options;
     of_sensor.playback.sensor = sensor.name;
     of_sensor.stays_with_others = true;

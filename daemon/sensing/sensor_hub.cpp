@@ -81,7 +81,10 @@ wind::blend::BlendSettings blend_settings_of(const settings::Config& config) {
                                       .site = make_site_spectrum(wind)};
   for (const settings::SensorConfig& sensor : config.sensors) settings.sources.push_back(sensor.blend);
   // After all sensors, whatever their priorities.
-  if (wind.fallback) settings.sources.push_back({.priority = std::numeric_limits<int>::max()});
+  if (wind.fallback) {
+    settings.sources.push_back(
+        {.priority = std::numeric_limits<int>::max(), .unchanged_for_s = wind.fallback->unchanged_for_s});
+  }
   return settings;
 }
 

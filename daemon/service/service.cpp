@@ -20,6 +20,7 @@
 #include "daemon/recording/recorder.hpp"
 #include "daemon/sensing/player_director.hpp"
 #include "daemon/sensing/recording_folders.hpp"
+#include "daemon/sensing/recorded_silence.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/sensing/system_clock.hpp"
 #include "daemon/service/config_check.hpp"
@@ -429,7 +430,7 @@ void Service::Io::log_summary() const {
 }
 
 Service::Service(const settings::Config& config, const ServiceOptions& options)
-    : io_(std::make_unique<Io>(config, options)) {}
+    : io_(std::make_unique<Io>(sensing::with_recorded_silences(config), options)) {}
 Service::~Service() = default;
 void Service::run() {
   io_->run();

@@ -85,6 +85,11 @@ const std::array kOscParameters = {
               .min = 0.1,
               .max = 86400.0,
               .help = "without a message for this long the sender counts as stopped"},
+    Parameter{.name = "on_change",
+              .unit = "",
+              .default_value = false,
+              .help = "the sender speaks on change only: a silence says that the wind is unchanged, for as long as "
+                      "`silence`, which has to be longer than the longest calm"},
 };
 
 struct OscSettings {
@@ -251,6 +256,10 @@ std::vector<sensor::DeviceClaim> osc_claims(const ParameterValues& values) {
   return sensor::claims_of(bus::sole_device_of(port_of(values)));
 }
 
+double osc_unchanged_for_s(const ParameterValues& values) {
+  return values.flag("on_change") ? values.number("silence") : 0.0;
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kOscDriver;
@@ -258,6 +267,7 @@ const sensor::DriverDescription kOscDriver{.name = "osc",
                                            .summary = "wind that another program sends as Open Sound Control messages",
                                            .parameters = kOscParameters,
                                            .open = open_osc,
-                                           .claims = osc_claims};
+                                           .claims = osc_claims,
+                                           .unchanged_for_s = osc_unchanged_for_s};
 
 }  // namespace yuragi::drivers::osc

@@ -4,6 +4,7 @@
 
 #include "daemon/animation/animation.hpp"
 #include "daemon/sensing/player_director.hpp"
+#include "daemon/sensing/recorded_silence.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "engine/pose/pose_hash.hpp"
@@ -89,6 +90,8 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
   settings::Config one_source = config;
   one_source.sensors.resize(1);
   one_source.wind.fallback.reset();
+  one_source.sensors[0].blend.unchanged_for_s =
+      sensing::recorded_unchanged_for_s(recording, options.playback.sensor) / options.rate;
   wind::blend::BlendedEstimator estimator = sensing::make_estimator(one_source, gusts, animation.reach_m());
   wind::shaping::WindShaping shaping(config.shaping.settings, gusts);
   const std::optional<wind::judging::JudgeSettings>& judged_by = one_source.sensors[0].judge;

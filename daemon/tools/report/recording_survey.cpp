@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/settings/recorded_sensor.hpp"
 #include "engine/wind/blend/source_record.hpp"
 
 namespace yuragi::daemon::tools::report {
@@ -15,10 +16,11 @@ constexpr std::uint64_t kReadingsPerWord = 50'000;
 /// Surveys one sensor, reading by reading.
 class Surveyor {
  public:
-  explicit Surveyor(const drivers::windlog::LoggedSensor& sensor) {
-    survey_.name = sensor.name;
-    survey_.driver = sensor.driver;
-  }
+  explicit Surveyor(const drivers::windlog::LoggedSensor& sensor)
+      : survey_{.name = sensor.name,
+                .driver = sensor.driver,
+                .unchanged_for_s = settings::recorded_unchanged_for_s(sensor.driver, sensor.options)},
+        record_(survey_.unchanged_for_s) {}
 
   void add(Nanoseconds log_time, wind::WindReading reading) {
     if (survey_.readings == 0) run_begin_ = last_ = log_time;

@@ -144,6 +144,7 @@ ordered_json json_of_sensor(const RecordingNumbers& recording, const SensorNumbe
                        {"first_utc", iso_text(sensor.first)},
                        {"last_utc", iso_text(sensor.last)},
                        {"interval_s", sensor.interval_s},
+                       {"unchanged_for_s", sensor.unchanged_for_s},
                        {"mean_m_s", sensor.mean_m_s},
                        {"deviation_m_s", sensor.deviation_m_s},
                        {"min_m_s", sensor.min_m_s},

@@ -172,7 +172,8 @@ struct SensorNumbers {
   std::uint64_t directed = 0;              ///< believed readings with a direction
   double first_s = 0.0, last_s = 0.0;
   UtcTime first{}, last{};
-  double interval_s = 0.0;  ///< the median; 0 for fewer than two readings
+  double interval_s = 0.0;       ///< the median; 0 for fewer than two readings
+  double unchanged_for_s = 0.0;  ///< it spoke on change only: a silence of up to so long is none; 0: it did not
   double mean_m_s = 0.0, deviation_m_s = 0.0, min_m_s = 0.0, max_m_s = 0.0;
   double max_at_s = 0.0;
   std::optional<double> reported_gust_m_s;  ///< the strongest gust reported by the sensor itself

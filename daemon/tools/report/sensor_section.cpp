@@ -293,6 +293,13 @@ void add_states(PageWriter& page, const RecordingNumbers& recording, const Senso
       "least 1 s. {} of {} readings were accepted; {} were spikes. The numbers on this page are of the accepted "
       "readings, as recorded, before calibration.</p>\n",
       recording.stale_intervals, sensor.believed, sensor.readings, sensor.spikes);
+  if (sensor.unchanged_for_s > 0.0) {
+    page.add(
+        "<p class=\"quiet\">This one was set to speak on change only (on_change): a silence of up to {} says that the "
+        "wind "
+        "is unchanged, and is no gap.</p>\n",
+        settings::duration_text(sensor.unchanged_for_s));
+  }
   const auto is_gap = [](const StateEvent& event) { return event.state == RecordedState::kStale; };
   if (sensor.events.empty()) page.add("<p>No gap, and nothing else to report.</p>\n");
   add_events(page, recording, sensor, "Gaps", is_gap);

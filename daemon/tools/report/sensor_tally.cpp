@@ -48,6 +48,8 @@ SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_
       begin_s_(begin_s),
       end_s_(end_s),
       has_gusts_(survey.gusts > 0),
+      unchanged_for_s_(survey.unchanged_for_s),
+      record_(survey.unchanged_for_s),
       judge_(settings.judge),
       lesson_(settings.prior ? settings.prior(survey.name) : wind::turbulence::TurbulencePrior{}, survey.interval_s),
       three_seconds_(survey.interval_s),
@@ -55,6 +57,7 @@ SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_
       next_direction_s_(begin_s) {
   numbers_.name = survey.name;
   numbers_.driver = survey.driver;
+  numbers_.unchanged_for_s = survey.unchanged_for_s;
   numbers_.interval_s = survey.interval_s;
   numbers_.bins.resize(kTimeBins);
   plan_spectrum(survey);
@@ -118,7 +121,7 @@ void SensorTally::add(Nanoseconds log_time, const wind::WindReading& reading) {
   played.time.mono = MonoTime(log_time);
 
   // The state since the last reading. After a single reading the record has no interval yet.
-  const double patience_s = std::max(1.0, settings_.stale_intervals * numbers_.interval_s);
+  const double patience_s = std::max({1.0, settings_.stale_intervals * numbers_.interval_s, unchanged_for_s_});
   if (!record_.has_reading()) {
     if (time_s - begin_s_ > patience_s) mark(RecordedState::kStale, begin_s_, time_s);
     numbers_.first_s = time_s;

@@ -53,6 +53,7 @@ class SensorTally {
   double begin_s_;
   double end_s_;
   bool has_gusts_;
+  double unchanged_for_s_;
   SensorNumbers numbers_;
 
   wind::blend::SourceRecord record_;

@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 
 #include "daemon/settings/config_edit.hpp"
+#include "daemon/settings/recorded_sensor.hpp"
+#include "daemon/settings/recorded_sensor.hpp"
 #include "daemon/settings/secret_exposure.hpp"
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/site_octaves.hpp"
@@ -206,6 +208,22 @@ TEST(Config, ASensorThatSpeaksOnChangeIsUnchangedWhileItIsSilent) {
   EXPECT_EQ(config.sensors[0].blend.unchanged_for_s, 43200.0);
   EXPECT_EQ(parse_config(to_toml(config), "recorded.toml").sensors[0].blend.unchanged_for_s, 43200.0)
       << "a recording is replayed so";
+  const Config osc = parse_config("[[sensor]]\ndriver = \"osc\"\nsilence = 600\non_change = true\n", "wall.toml");
+  EXPECT_EQ(osc.sensors[0].blend.unchanged_for_s, 600.0);
+}
+
+TEST(Config, WhatWasRecordedOfASensorSaysWhetherItSpokeOnChange) {
+  const std::string sensor =
+      "[[sensor]]\ndriver = \"mqtt\"\ntopic = \"wind\"\nsilence = 43200\npassword_env = \"SECRET\"\n";
+  const auto recorded = [](const Config& config) {
+    return recorded_unchanged_for_s(config.sensors[0].driver->name, to_toml(config.sensors[0].values));
+  };
+  EXPECT_EQ(recorded(parse_config(sensor + "on_change = true\n", "wall.toml")), 43200.0);
+  EXPECT_EQ(recorded(parse_config(sensor, "wall.toml")), 0.0);
+  EXPECT_EQ(recorded_unchanged_for_s("mqtt", "on_change = true\nsilence = 60.0\nof_later = 1\n"), 0.0);
+  EXPECT_EQ(recorded_unchanged_for_s("mqtt", "on_change ="), 0.0);
+  EXPECT_EQ(recorded_unchanged_for_s("synthetic", "speed = 5"), 0.0);
+  EXPECT_EQ(recorded_unchanged_for_s("a driver of later", "on_change = true"), 0.0);
 }
 
 TEST(Config, ASensorHasItsPartAmongSeveral) {

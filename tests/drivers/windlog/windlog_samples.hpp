@@ -27,12 +27,13 @@ inline wind::WindReading reading_at(std::int64_t mono_ms, double speed_m_s) {
 
 /// Writes a session of one sensor and closes the file.
 inline void write_session(const std::filesystem::path& file, const std::vector<wind::WindReading>& readings,
-                          const std::string& sensor = "mast") {
+                          const std::string& sensor = "mast", const std::string& driver = "synthetic",
+                          const std::string& options = "speed = 5") {
   auto writer = drivers::windlog::WindlogWriter::open(file);
   ASSERT_TRUE(writer) << writer.error().message;
   const Instant started = readings.empty() ? at_ms(0, kSampleUtc_ms) : readings.front().time;
   ASSERT_TRUE(writer->begin_session({started, "yuragi test", "[wind]\n"}));
-  const auto id = writer->add_sensor(sensor, "synthetic", "speed = 5");
+  const auto id = writer->add_sensor(sensor, driver, options);
   ASSERT_TRUE(id);
   for (const wind::WindReading& reading : readings) ASSERT_TRUE(writer->append(*id, reading));
   const auto closed = writer->close();

@@ -44,6 +44,28 @@ TEST(MeasureRecording, ASilenceIsAGapFromReadingToReading) {
   EXPECT_EQ(breaks, 1U);
 }
 
+TEST(MeasureRecording, ThePausesOfASourceThatSpeaksOnChangeAreNoGaps) {
+  // It says something each 2 s, is calm for 50 minutes, speaks again, and is gone for two hours.
+  auto readings = test::made_readings(
+      200, 2000, [](std::size_t i, wind::WindReading& reading) { reading.speed_m_s = lively_m_s(i); });
+  for (std::size_t i = 100; i < readings.size(); ++i) {
+    readings[i].time = test::at_ms(3'000'000 + 2000 * static_cast<std::int64_t>(i),
+                                   test::kSampleUtc_ms + 3'000'000 + 2000 * static_cast<std::int64_t>(i));
+  }
+  readings.push_back(test::reading_at(10'800'000, 4.0));
+
+  const auto gaps_of = [&](const std::string& driver, const std::string& options) {
+    const auto numbers = test::numbers_of(readings, {}, driver, options);
+    return numbers.sensors.at(0).events;
+  };
+  EXPECT_EQ(gaps_of("mqtt", "topic = \"wind\"\nsilence = 3600.0\n").size(), 2U);
+  const auto gaps = gaps_of("mqtt", "topic = \"wind\"\nsilence = 3600.0\non_change = true\n");
+  ASSERT_EQ(gaps.size(), 1U) << "the calm is none";
+  EXPECT_EQ(gaps[0].state, RecordedState::kStale);
+  EXPECT_DOUBLE_EQ(gaps[0].from_s, 3398.0);
+  EXPECT_EQ(gaps_of("osc", "silence = 3600.0\non_change = true\n").size(), 1U);
+}
+
 TEST(MeasureRecording, TheMeanDirectionPassesThroughNorth) {
   const auto numbers = test::numbers_of(test::made_readings(200, 1000, [](std::size_t i, wind::WindReading& reading) {
     reading.speed_m_s = 5.0;

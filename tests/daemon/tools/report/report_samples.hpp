@@ -26,9 +26,11 @@ std::vector<wind::WindReading> made_readings(std::size_t count, std::int64_t int
 
 /// The numbers of a recording of one sensor.
 inline daemon::tools::report::RecordingNumbers numbers_of(const std::vector<wind::WindReading>& readings,
-                                                          const daemon::tools::report::ReportSettings& settings = {}) {
+                                                          const daemon::tools::report::ReportSettings& settings = {},
+                                                          const std::string& driver = "synthetic",
+                                                          const std::string& options = "speed = 5") {
   const TemporaryFolder folder;
-  write_session(folder / "a.windlog", readings);
+  write_session(folder / "a.windlog", readings, "mast", driver, options);
   auto reader = drivers::windlog::WindlogReader::open(folder / "a.windlog");
   EXPECT_TRUE(reader);
   const auto numbers = daemon::tools::report::measure_recording(*reader, settings);
