@@ -9,9 +9,10 @@ import threading
 HANG_S = 60.0  # so long waits only who waits for something that hangs
 
 
-def free_port():
+def free_port(kind=socket.SOCK_STREAM):
     """One of the loopback that nobody listens on."""
-    with socket.create_server(("127.0.0.1", 0)) as listener:
+    with socket.socket(socket.AF_INET, kind) as listener:
+        listener.bind(("127.0.0.1", 0))
         return listener.getsockname()[1]
 
 
