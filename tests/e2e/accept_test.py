@@ -114,6 +114,20 @@ class Accept(unittest.TestCase):
             self.assertAlmostEqual(one["mean_speed_m_s"], 8, delta=0.1)
             self.assertAlmostEqual(one["direction_deg"], direction_deg, delta=1)
 
+    def test_stations_in_the_network_are_simulated_on_this_machine(self):
+        # One that pushes, and one that is asked and sends, too; the plans of all are in simulated_sensor_test.cpp.
+        config = self.config('name = "console"\ndriver = "ecowitt-push"\nhost = "0.0.0.0"\nfrom = "192.0.2.0/24"\npath = "/roof/"\n'
+                             f'station_key = "hunter2"\nport = {free_port()}',
+                             f'name = "live"\ndriver = "weatherlink"\nhost = "192.0.2.8"\nport = {free_port(socket.SOCK_DGRAM)}')
+        done = self.accept(config, "--simulated-only", "--json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        for one in json.loads(done.stdout)["simulated"]:
+            self.assertEqual(one["verdict"], "passed", one)
+            self.assertAlmostEqual(one["mean_speed_m_s"], 8, delta=0.1)
+            self.assertAlmostEqual(one["direction_deg"], 225, delta=1)
+        with open(self.page, encoding="utf-8") as page:
+            self.assertNotIn("hunter2", page.read() + done.stdout + done.stderr)
+
     def test_wrong_slave_ids_in_a_profile_are_a_verdict(self):
         source = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../drivers/modbus/profiles/renke-rs-fsjt-n01.toml")
         profile = os.path.join(self.folder, "renke-rs-fsjt-n01.toml")

@@ -8,12 +8,10 @@
 
 #include "daemon/sensing/refusal_text.hpp"
 #include "daemon/tools/acceptance/acceptance.hpp"
+#include "drivers/decode/refusal.hpp"
 
 namespace yuragi::daemon::tools::acceptance {
 namespace {
-
-/// What a bus or a server says of other devices and other things, which is no fault (Refusal::kNotMine).
-constexpr std::string_view kOfOthers = "not mine";
 
 class VerdictBuilder {
  public:
@@ -36,9 +34,11 @@ void judge_readings(VerdictBuilder& verdict, const SensorMeasured& sensor) {
   if (!is_believed(status.state))
     verdict.fail(
         fmt::format("its readings are not used at the end: {}: {}", name_of(status.state), status.state_reason));
+  // What others say, or the sensor of other things, is no fault: a hub tells its own state between two winds.
+  const std::string_view not_mine = name_of(drivers::decode::Refusal::kNotMine);
   const double refused = std::accumulate(
       status.refused.begin(), status.refused.end(), 0.0,
-      [](double sum, const auto& one) { return one.first == kOfOthers ? sum : sum + static_cast<double>(one.second); });
+      [&](double sum, const auto& one) { return one.first == not_mine ? sum : sum + static_cast<double>(one.second); });
   if (refused > kLargestRefusedShare * (refused + static_cast<double>(status.readings)))
     verdict.remark("many of its messages were refused: " + sensing::refusal_text(status));
   if (status.reconnects > 0) verdict.remark(fmt::format("it was lost and found again {} times", status.reconnects));

@@ -22,7 +22,7 @@ void UnitReader::feed(drivers::decode::ByteSpan bytes, const Sink& sink) {
   for (const std::uint8_t byte : bytes) {
     if (byte == '\n') {
       take_hex_line(sink);
-    } else if (hex_line_.size() < kMaxHexLine) {
+    } else if (hex_line_.size() < longest_hex_line_) {
       hex_line_ += static_cast<char>(byte);
     } else {
       is_overlong_ = true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -43,7 +44,7 @@ class UnitReader {
   void finish(const Sink& sink);
 
  private:
-  static constexpr std::size_t kMaxHexLine = 3UL * 64 * 1024;  ///< a reply of HTTP, with blanks between
+  static constexpr std::size_t kMaxHexLine = 8192;
 
   void take_line(const drivers::decode::text::LineAssembler::Line& line, const Sink& sink);
   void take_hex_line(const Sink& sink);
@@ -51,6 +52,7 @@ class UnitReader {
   Form form_;
   drivers::decode::text::LineEnding ending_;
   std::size_t longest_line_;
+  std::size_t longest_hex_line_ = std::max(kMaxHexLine, 3 * longest_line_);  ///< two digits and a blank for a byte
   drivers::decode::text::LineAssembler lines_;
   std::string hex_line_;
   bool is_overlong_ = false;

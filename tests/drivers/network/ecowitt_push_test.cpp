@@ -32,7 +32,6 @@ using simulators::network::EcowittPushOptions;
 using simulators::network::EcowittPushSimulator;
 using simulators::network::PushProtocol;
 using testing::AllOf;
-using testing::Contains;
 using testing::Each;
 using testing::ElementsAre;
 using testing::Field;
