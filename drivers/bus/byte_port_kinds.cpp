@@ -12,6 +12,8 @@ std::unique_ptr<BytePort> make_byte_port(const BytePortAddress& address) {
       return make_tcp_port(address);
     case BytePortKind::kUdp:
       return make_udp_port(address);
+    case BytePortKind::kWebSocket:
+      return make_websocket_port(address);
     case BytePortKind::kFile:
       break;
   }

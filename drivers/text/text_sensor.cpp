@@ -84,7 +84,7 @@ Result<MonoTime, Failure> TextSensor::open(const sensor::Clock& clock) {
   if (const auto opened = port_->open(); !opened) return opened.error();
   const MonoTime now = clock.now().mono;
   is_fresh_ = settings_.delay_after_open > 0ns;
-  is_greeted_ = settings_.greeting.empty() || !is_connection();
+  is_greeted_ = settings_.greeting.empty() || !can_send();
   skips_line_ = settings_.doubts_first_line;
   awaits_reply_ = false;
   next_request_ = now;
@@ -166,6 +166,10 @@ Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::S
 bool TextSensor::is_connection() const noexcept {
   return settings_.address.kind == bus::BytePortKind::kSerial ||
          settings_.address.kind == bus::BytePortKind::kTcpClient;
+}
+
+bool TextSensor::can_send() const noexcept {
+  return is_connection() || settings_.address.kind == bus::BytePortKind::kWebSocket;
 }
 
 /// False: the port is lost.
@@ -329,6 +333,8 @@ decode::Refusal TextSensor::main_refusal() const {
 }
 
 std::string TextSensor::silence_trouble() const {
+  if (settings_.address.kind == bus::BytePortKind::kWebSocket)
+    return where_ + " is open, but silent: check that the server has a wind, and whether it wants a token";
   const bool is_serial = settings_.address.kind == bus::BytePortKind::kSerial;
   return fmt::format("{} {}: check {}", where_, is_polled() ? "does not reply" : "is open, but silent",
                      is_serial ? "the device's power, its wires (TX and RX crossed?) and baud"
