@@ -24,7 +24,7 @@ enum class FaultKind : std::uint8_t {
   kWrongId,           ///< replies with the id of another device
   kWrongTransaction,  ///< replies to the request before this one
   kLate,              ///< replies after the client's time-out
-  kException,         ///< replies with a Modbus exception
+  kException,         ///< replies with an error: a Modbus exception, HTTP 503
   kDisconnect,        ///< closes its connections and accepts no new ones
   kUnplug,            ///< removes the device (port, socket, place on the bus) and restores it afterwards
 };

@@ -25,6 +25,8 @@ std::string describe(const BytePortAddress& address) {
     case BytePortKind::kUdp:
       return address.host.empty() ? fmt::format("UDP port {}", address.port)
                                   : "UDP " + host_and_port(address.host, address.port);
+    case BytePortKind::kWebSocket:
+      return "ws://" + host_and_port(address.host, address.port);
     case BytePortKind::kFile:
       return address.path;
     case BytePortKind::kCan:

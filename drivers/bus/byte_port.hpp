@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/base/result.hpp"
+#include "engine/base/secret.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi::drivers::bus {
@@ -16,6 +17,7 @@ enum class BytePortKind : std::uint8_t {
   kSerial,     ///< a serial port
   kTcpClient,  ///< a client of a server in the network
   kUdp,        ///< datagrams to a local port
+  kWebSocket,  ///< a client of a WebSocket server (RFC 6455), whose messages are carried as datagrams are
   kFile,       ///< a file or named pipe
   kCan,        ///< a CAN interface: a line for each frame, as candump -L writes it
 };
@@ -33,14 +35,15 @@ inline constexpr std::array<int, 12> kBytePortBauds = {300,   600,   1200,  2400
 struct BytePortAddress {
   BytePortKind kind = BytePortKind::kSerial;
 
-  std::string path = {};  ///< serial: best by its stable name under /dev/serial/by-id; file: its path;
-                          ///< CAN: the interface's name
-  int baud = 9600;        ///< one of kBytePortBauds
+  /// Serial: best by its stable name under /dev/serial/by-id. File: its path. WebSocket: what is asked for, "/stream".
+  /// CAN: the interface's name.
+  std::string path = {};
+  int baud = 9600;  ///< one of kBytePortBauds
   int data_bits = 8;
   char parity = 'N';  ///< N, E or O
   int stop_bits = 1;
 
-  /// TCP: name or address to connect to. UDP: the local or multicast address to listen at; empty: any.
+  /// TCP, WebSocket: name or address to connect to. UDP: the local or multicast address to listen at; empty: any.
   std::string host = {};
   std::uint16_t port = 10110;
   std::string senders = {};  ///< UDP: take datagrams of these addresses and nets only (SenderFilter); empty: of any
@@ -54,10 +57,15 @@ struct BytePortAddress {
 
   CanFilter can = {};
 
+  /// WebSocket: sent as "Authorization: Bearer ..." and as nothing else; empty: nothing is sent. It is not encrypted.
+  Secret token = {};
+  /// WebSocket: a server that says nothing for half as long is pinged; one that says nothing for so long is lost.
+  Nanoseconds idle_timeout = std::chrono::seconds(30);
+
   Nanoseconds connect_timeout = std::chrono::seconds(3);
 };
 
-/// "/dev/ttyUSB0 at 9600 8N1", "host:port", "UDP port 10110", "CAN interface can0", a path: for people.
+/// "/dev/ttyUSB0 at 9600 8N1", "host:port", "UDP port 10110", "ws://host:port", "CAN interface can0", a path: for people.
 std::string describe(const BytePortAddress& address);
 
 /// The identity of a port that cannot be open twice: a serial port's device file behind its links, a UDP port that is
@@ -76,12 +84,13 @@ enum class ByteStatus : std::uint8_t {
 struct ByteArrival {
   ByteStatus status = ByteStatus::kSilence;
   std::size_t size = 0;            ///< for kBytes
-  bool is_whole_datagram = false;  ///< UDP, CAN: these bytes end a datagram, or a frame
+  bool is_whole_datagram = false;  ///< UDP, WebSocket, CAN: these bytes end a datagram, message or frame
   std::string sender = {};         ///< UDP, for kForeign: its address
   std::uint32_t overrun = 0;       ///< UDP: how many datagrams before this one the kernel dropped for want of room
 };
 
-/// A datagram that is longer than what it is read into loses its end; this is enough for each.
+/// A datagram that is longer than what it is read into loses its end; this is enough for each. A WebSocket's message
+/// that is longer ends the connection.
 inline constexpr std::size_t kLargestDatagram = 65536;
 
 /// A port that can be closed and opened again. Carries bytes without interpreting them. A test may substitute another.
@@ -92,14 +101,15 @@ class BytePort {
   virtual ~BytePort() = default;
 
   /// Opens. The failure's text: why, and what to do. Blocks for the connect time-out at most, or twice that where a
-  /// host name has to be looked up.
+  /// host name has to be looked up, and once more for the handshake of a WebSocket.
   virtual Result<void, Failure> open() = 0;
   virtual void close() noexcept = 0;
 
   /// The next bytes, waiting for at most `timeout`; none: what is there already. kLost while it is not open.
   virtual ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) = 0;
 
-  /// Sends all of it (serial and TCP). False: the port is lost, takes nothing for a second, or cannot be written to.
+  /// Sends all of it (serial, TCP; WebSocket: as one message of text). False: the port is lost, takes nothing for a
+  /// second, or cannot be written to.
   virtual bool write(std::span<const std::uint8_t> bytes) = 0;
 
   /// Ends a read(), write() or open() that waits and makes all later work end at once. What a port takes without a wait

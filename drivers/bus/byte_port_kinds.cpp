@@ -15,6 +15,8 @@ std::unique_ptr<BytePort> make_byte_port(const BytePortAddress& address) {
       return make_udp_port(address);
     case BytePortKind::kCan:
       return make_can_port(address);
+    case BytePortKind::kWebSocket:
+      return make_websocket_port(address);
     case BytePortKind::kFile:
       break;
   }

@@ -33,6 +33,7 @@ class DescriptorPort : public BytePort {
 std::unique_ptr<BytePort> make_serial_port(const BytePortAddress& address);
 std::unique_ptr<BytePort> make_tcp_port(const BytePortAddress& address);
 std::unique_ptr<BytePort> make_udp_port(const BytePortAddress& address);
+std::unique_ptr<BytePort> make_websocket_port(const BytePortAddress& address);
 std::unique_ptr<BytePort> make_file_port(const BytePortAddress& address);
 
 }  // namespace yuragi::drivers::bus

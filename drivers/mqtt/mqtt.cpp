@@ -383,24 +383,6 @@ void check_source(std::string_view name, const MqttSource& source) {
   }
 }
 
-/// The password from the one place that is given; empty: none. Throws, naming the setting.
-Secret password_of(const ParameterValues& values) {
-  const Secret& password = values.secret("password");
-  const std::string& file = values.text("password_file");
-  const std::string& variable = values.text("password_env");
-  if (static_cast<int>(!password.is_empty()) + static_cast<int>(!file.empty()) + static_cast<int>(!variable.empty()) >
-      1)
-    throw std::runtime_error(
-        "password: is given more than once; allowed: one of password, password_file, password_env");
-  const auto found = [](std::string_view name, const Result<Secret, Failure>& secret) {
-    if (!secret) throw std::runtime_error(fmt::format("{}: {}", name, secret.error().message));
-    return *secret;
-  };
-  if (!file.empty()) return found("password_file", sensor::secret_in_file(file));
-  if (!variable.empty()) return found("password_env", sensor::secret_in_environment(variable));
-  return password;
-}
-
 /// The places of a quantity: the one that is set, or the preset's. Of a speed a known key says the unit, unless
 /// `own_unit` was set with the path.
 std::vector<MqttPlace> places_of(const std::string& path, std::span<const PresetPlace> known, bool has_own_unit) {
@@ -450,7 +432,7 @@ MqttSettings mqtt_settings_of(const ParameterValues& values) {
   const std::int64_t port = values.integer("port");
   subscription.port = static_cast<std::uint16_t>(port != 0 ? port : subscription.uses_tls ? 8883 : 1883);
   subscription.user = values.text("user");
-  subscription.password = password_of(values);
+  subscription.password = sensor::secret_of(values, "password");
   subscription.ca_file = values.text("ca_file");
   subscription.keep_alive = std::chrono::seconds(values.integer("keep_alive"));
   for (const MqttSource* const source : {&settings.speed, &settings.direction, &settings.gust}) {

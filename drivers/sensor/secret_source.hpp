@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "engine/base/parameter.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/secret.hpp"
 
@@ -19,5 +20,9 @@ Result<Secret, Failure> secret_in_file(const std::filesystem::path& file);
 /// The value of an environment variable. Fails where it is not set, or empty. Thread-safe: as long as nobody changes
 /// the environment.
 Result<Secret, Failure> secret_in_environment(const std::string& variable);
+
+/// The secret of a driver's parameters NAME (itself), NAME_file and NAME_env (where it is), of which at most one is
+/// given; empty: none is. Throws std::runtime_error, naming the parameter, where it cannot be had.
+Secret secret_of(const ParameterValues& values, const std::string& name);
 
 }  // namespace yuragi::drivers::sensor

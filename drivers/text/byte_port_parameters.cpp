@@ -141,6 +141,10 @@ bus::BytePortAddress byte_port_address_of(const ParameterValues& values) {
   } else if (transport == "tcp") {
     address.kind = bus::BytePortKind::kTcpClient;
     if (address.host.empty()) throw std::runtime_error("host: is missing; transport tcp needs a server to connect to");
+  } else if (transport == "websocket") {
+    address.kind = bus::BytePortKind::kWebSocket;
+    if (address.host.empty())
+      throw std::runtime_error("host: is missing; transport websocket needs a server to connect to");
   } else if (transport == "udp") {
     address.kind = bus::BytePortKind::kUdp;
   } else if (transport == "can") {

@@ -66,7 +66,8 @@ void SignalKSensor::forget_remembered(decode::marine::SignalKUpdate& update) {
 /// Times of one server are written alike, so that they can be compared as texts. A source's clock may be behind the
 /// server's for ever; so what changes is never remembered. Only who subscribes is sent what is remembered.
 bool SignalKSensor::is_remembered(const decode::marine::SignalKUpdate& update, std::size_t quantity) {
-  const bool is_server = settings().address.kind == bus::BytePortKind::kTcpClient;
+  const bus::BytePortKind kind = settings().address.kind;
+  const bool is_server = kind == bus::BytePortKind::kTcpClient || kind == bus::BytePortKind::kWebSocket;
   const bool is_new = !hello_.timestamp.empty() && update.timestamp >= hello_.timestamp;
   if (!is_server || is_new || update.timestamp.empty()) return false;
   const auto first = std::ranges::find_if(

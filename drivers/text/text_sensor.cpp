@@ -84,7 +84,7 @@ Result<MonoTime, Failure> TextSensor::open(const sensor::Clock& clock) {
   if (const auto opened = port_->open(); !opened) return opened.error();
   const MonoTime now = clock.now().mono;
   is_fresh_ = settings_.delay_after_open > 0ns;
-  is_greeted_ = settings_.greeting.empty() || !is_connection();
+  is_greeted_ = settings_.greeting.empty() || !can_send();
   skips_line_ = settings_.doubts_first_line;
   awaits_reply_ = false;
   next_request_ = now;
@@ -166,6 +166,10 @@ Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::S
 bool TextSensor::is_connection() const noexcept {
   return settings_.address.kind == bus::BytePortKind::kSerial ||
          settings_.address.kind == bus::BytePortKind::kTcpClient;
+}
+
+bool TextSensor::can_send() const noexcept {
+  return is_connection() || settings_.address.kind == bus::BytePortKind::kWebSocket;
 }
 
 /// False: the port is lost.
@@ -336,6 +340,8 @@ std::string TextSensor::silence_trouble() const {
     suspects = "the device's power, its wires (TX and RX crossed?) and baud";
   if (settings_.address.kind == bus::BytePortKind::kCan)
     suspects = "the power, terminators and bit rate of the bus, and whether its device sends at all (candump)";
+  if (settings_.address.kind == bus::BytePortKind::kWebSocket)
+    suspects = "that the server has a wind, and whether it wants a token";
   return fmt::format("{} {}: check {}", where_, is_polled() ? "does not reply" : "is open, but silent", suspects);
 }
 

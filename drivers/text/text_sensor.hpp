@@ -76,6 +76,7 @@ class TextSensor : public sensor::ReopeningSensor {
   bool is_played() const noexcept;
   /// Serial or TCP: bytes follow each other, and can be sent.
   bool is_connection() const noexcept;
+  bool can_send() const noexcept;
   bool greet(sensor::SensorSink& sink);
   bool request_if_due(MonoTime now, sensor::SensorSink& sink);
   void give_up_reply(MonoTime now, sensor::SensorSink& sink);

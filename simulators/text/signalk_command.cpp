@@ -10,6 +10,8 @@ void add_signalk_command(CLI::App& app) {
   auto options = std::make_shared<TextOptions>();
   CLI::App* command = app.add_subcommand("signalk", "Signal K server that streams wind; with --udp, a device's deltas");
   options->add_to(*command);
+  options->websocket.path = "/signalk/v1/stream";
+  options->add_websocket_to(*command);
   command->callback([options] { options->run(make_signalk_device(options->udp.empty())); });
 }
 

@@ -20,9 +20,23 @@ CLI::Option_group& TextOptions::add_to(CLI::App& command) {
   return *wire;
 }
 
+void TextOptions::add_websocket_to(CLI::App& command) {
+  CLI::Option* const place =
+      command.get_option_group("wire")->add_option("--websocket", websocket_place, "a WebSocket server at HOST:PORT");
+  command.add_option("--token", websocket.token, "with --websocket: refuse clients that do not bring this token")
+      ->needs(place);
+}
+
 std::unique_ptr<TextWire> TextOptions::make_wire() const {
   if (pty) return make_pty_wire(link);
   if (!can.empty()) return make_can_wire(can);
+  if (!websocket_place.empty()) {
+    const Address address = address_option("--websocket", websocket_place);
+    WebSocketWireOptions options = websocket;
+    options.host = address.host;
+    options.port = address.port;
+    return make_websocket_wire(options);
+  }
   const bool is_tcp = !tcp.empty();
   const Address address = address_option(is_tcp ? "--tcp" : "--udp", is_tcp ? tcp : udp);
   return is_tcp ? make_tcp_wire(address.host, address.port) : make_udp_wire(address.host, address.port);

@@ -17,11 +17,15 @@ struct TextOptions {
   std::string tcp;
   std::string udp;
   std::string can;  ///< of the commands whose device has frames to say
+  WebSocketWireOptions websocket = {};  ///< its path: what clients ask for
+  std::string websocket_place;          ///< HOST:PORT; empty: no WebSocket
   double rate_hz = 4.0;
   CommonOptions common;
 
   /// Returns the group of options of which one says how the device is connected.
   CLI::Option_group& add_to(CLI::App& command);
+  /// Of a device that can speak by WebSocket, too; after add_to().
+  void add_websocket_to(CLI::App& command);
 
   /// Prints the device's address, for scripts that wait for that line, and runs it to its end. Throws
   /// CLI::ValidationError for options that contradict each other, std::runtime_error for an address that cannot be

@@ -45,6 +45,7 @@ void TextSimulator::serve(std::span<const int> ready, double time_s, std::option
     return;
   }
   wire_->bring_back();
+  wire_->refuse(fault == FaultKind::kException);
 
   receive(wire_->read(ready), time_s, fault);
   while (!waiting_.empty() && waiting_.front().time_s <= time_s) {

@@ -27,6 +27,9 @@ class TextWire {
   /// Sends the bytes to all clients.
   virtual void write(std::string_view bytes) = 0;
 
+  /// Drops its clients and refuses those that come, for as long as it is wanted. Only a wire that can say so does.
+  virtual void refuse(bool /*is_wanted*/) {}
+
   /// Closes the port and all connections. A second call does nothing.
   virtual void take_away() = 0;
   /// Opens the port again under the same name. A second call does nothing.
@@ -41,6 +44,16 @@ std::unique_ptr<TextWire> make_pty_wire(const std::string& link);
 
 /// A TCP server; port 0 takes a free one. Throws std::runtime_error where the address cannot be listened on.
 std::unique_ptr<TextWire> make_tcp_wire(const std::string& host, std::uint16_t port);
+
+struct WebSocketWireOptions {
+  std::string host = "127.0.0.1";
+  std::uint16_t port = 0;  ///< 0 takes a free one
+  std::string path = "/";  ///< what a client asks for begins so; another one gets HTTP 404
+  std::string token = {};  ///< a client without it gets HTTP 401; empty: none is wanted
+};
+
+/// A WebSocket server, each message as text. Throws std::runtime_error where the address cannot be listened on.
+std::unique_ptr<TextWire> make_websocket_wire(const WebSocketWireOptions& options);
 
 /// Datagrams to one address, one for each write. Throws std::runtime_error for a text that is no address.
 std::unique_ptr<TextWire> make_udp_wire(const std::string& host, std::uint16_t port);

@@ -52,6 +52,7 @@ class ObservedWire final : public simulators::text::TextWire {
     has_written_ = true;
     wire_->write(bytes);
   }
+  void refuse(bool is_wanted) override { wire_->refuse(is_wanted); }
   void take_away() override { wire_->take_away(); }
   void bring_back() override { wire_->bring_back(); }
   std::string place() const override { return wire_->place(); }
