@@ -34,8 +34,6 @@ class UmbStation final : public Simulator {
   UmbStation(std::unique_ptr<text::TextWire> wire, const UmbStationOptions& options, MeasuredWind wind);
 
   const text::TextWire& wire() const noexcept { return *wire_; }
-  /// How many queries of its channels it has received.
-  std::uint64_t queries() const noexcept { return queries_; }
 
   std::span<const FaultKind> known_faults() const override { return known_faults_; }
   std::vector<int> descriptors() const override { return wire_->descriptors(); }

@@ -18,7 +18,10 @@ class RecordedSilence : public ::testing::Test {
   /// Something each 2 s for a minute, and then a calm of half an hour.
   RecordedSilence() {
     std::vector<wind::WindReading> readings;
-    for (int i = 0; i < 30; ++i) readings.push_back(test::reading_at(2000 * i, 3.0 + 0.1 * (i % 7)));
+    readings.reserve(32);
+    for (std::int64_t i = 0; i < 30; ++i) {
+      readings.push_back(test::reading_at(2000 * i, 3.0 + 0.1 * static_cast<double>(i % 7)));
+    }
     readings.push_back(test::reading_at(60'000, 0.0));
     readings.push_back(test::reading_at(1'860'000, 2.0));
     test::write_session(file_, readings, "home", "mqtt", "topic = \"wind\"\nsilence = 3600.0\non_change = true\n");
