@@ -15,6 +15,7 @@
 
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/bus/sender_filter.hpp"
+#include "drivers/network/tempest_finder.hpp"
 #include "drivers/network/tempest_stations.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reading_limit.hpp"
@@ -247,6 +248,7 @@ const sensor::DriverDescription kTempestDriver{
     .summary = "weather stations of WeatherFlow (Tempest, Sky), by their hub's broadcasts in the local network",
     .parameters = kTempestParameters,
     .open = open_tempest,
+    .find_in_network = find_tempest_stations,
     .claims = tempest_claims};
 
 }  // namespace yuragi::drivers::network

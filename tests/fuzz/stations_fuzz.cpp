@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/decode/network/ecowitt.hpp"
+#include "drivers/decode/network/ecowitt_gateway.hpp"
 #include "drivers/decode/network/tempest.hpp"
 
 namespace {
@@ -41,6 +42,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(!message->serial_number.empty() && !message->hub_serial_number.empty());
     require(!message->wind || decode::checked(*message->wind).has_value());
     require(!message->wind || message->wind->speed_m_s.has_value());
+  }
+  if (const auto gateway = decode::network::decode_ecowitt_gateway({data, size})) {
+    require(gateway->mac.size() == 17 && gateway->port != 0);
   }
   read_reply({data, size});
   read_mended_reply({data, size});
