@@ -1,6 +1,7 @@
-// `yuragi sensors list`: lists the devices that are plugged in, or announced on an MQTT broker, and how to configure
-// them.
+// `yuragi sensors list`: lists the devices that are plugged in, announced on an MQTT broker, or found in the local
+// networks, and how to configure them.
 #include <memory>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -22,6 +23,8 @@ struct ListOptions {
   std::string password_file;
   std::string ca_file;
   std::string prefix = "homeassistant";
+  std::optional<double> network_s;
+  std::string ask;
   bool uses_tls = false;
   bool as_json = false;
 };
@@ -69,7 +72,8 @@ void list_plugged_in(bool as_json) {
   if (as_json) return print_json(tools::sensors::devices_json(findings));
   fmt::print(
       "{}Devices on a serial line or behind a Modbus gateway: `yuragi sensors probe modbus PORT|HOST:PORT`.\n"
-      "What is announced on an MQTT broker: `yuragi sensors list --broker HOST`.\n",
+      "What is announced on an MQTT broker: `yuragi sensors list --broker HOST`.\n"
+      "Stations and servers in the local network: `yuragi sensors list --network`.\n",
       tools::sensors::device_list(findings, drivers));
 }
 
@@ -83,6 +87,20 @@ void list_announced(const ListOptions& options) {
       options.broker, options.prefix);
 }
 
+void list_network(const ListOptions& options) {
+  drivers::sensor::NetworkSearch search;
+  search.duration = from_seconds(*options.network_s);
+  search.to = options.ask;
+  const auto findings = tools::sensors::find_devices_in_network(drivers::sensor::driver_table(), search);
+  if (options.as_json) return print_json(tools::sensors::devices_json(findings));
+  if (!findings.empty()) return fmt::print("{}", tools::sensors::device_list(findings, {}));
+  fmt::print(
+      "Nothing was found within {:g} s. What is in another network, behind a firewall (UDP 50222, and answers to what "
+      "is\nasked), or in a wireless network that keeps its stations apart is not found: ask its address with --ask, or "
+      "\nconfigure it by hand: `yuragi sensors describe tempest`, ecowitt, weatherlink, signalk.\n",
+      *options.network_s);
+}
+
 }  // namespace
 
 void add_sensors_list(CLI::App& sensors) {
@@ -93,6 +111,13 @@ void add_sensors_list(CLI::App& sensors) {
       "not\ndisturbed. If a permission is missing, the udev rule or group that grants it is shown.\n"
       "With --broker the anemometers are listed that ESPHome and others announce on an MQTT broker for Home "
       "Assistant.\n"
+      "With --network the networks that this machine is in are searched, for so many seconds (12), each asked three "
+      "times:\n"
+      "  listens  UDP port 50222: the broadcasts of WeatherFlow's hubs (tempest)\n"
+      "  sends    UDP broadcasts to port 46000: who is a gateway of Ecowitt's? (ecowitt)\n"
+      "  sends    multicast DNS, 224.0.0.251 port 5353: who is _signalk-ws._tcp, _signalk-tcp._tcp (signalk), "
+      "_weatherlinklive._tcp\n           (weatherlink)?\n"
+      "Without it nothing is sent.\n"
       "--json: a list with driver, device, settings (TOML to paste), trouble and remedy (null where it can be "
       "opened).");
   auto options = std::make_shared<ListOptions>();
@@ -107,9 +132,22 @@ void add_sensors_list(CLI::App& sensors) {
   command->add_option("--prefix", options->prefix, "the topic below which publishers announce what they have")
       ->needs(broker)
       ->capture_default_str();
+  CLI::Option* const network =
+      command
+          ->add_option("--network", options->network_s,
+                       "[SECONDS]: search the local networks instead; what is sent is said below")
+          ->expected(0, 1)
+          ->default_str("12")
+          ->check(CLI::Range(0.1, 3600.0))
+          ->excludes(broker);
+  command->add_option("--ask", options->ask, "ask this IPv4 address, and nobody else")
+      ->needs(network)
+      ->check(CLI::ValidIPV4);
   add_json(*command, options->as_json);
-  command->callback(
-      [options] { options->broker.empty() ? list_plugged_in(options->as_json) : list_announced(*options); });
+  command->callback([options] {
+    if (options->network_s) return list_network(*options);
+    options->broker.empty() ? list_plugged_in(options->as_json) : list_announced(*options);
+  });
 }
 
 }  // namespace yuragi::daemon::commands

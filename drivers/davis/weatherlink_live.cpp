@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/davis/weatherlink_live_finder.hpp"
 #include "drivers/davis/weatherlink_live_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 
@@ -64,6 +65,7 @@ const sensor::DriverDescription kWeatherLinkLiveDriver{
     .summary = "the WeatherLink Live of Davis stations, over the local network",
     .parameters = kWeatherLinkLiveParameters,
     .open = open_weatherlink_live,
+    .find_in_network = find_weatherlink_lives,
     .claims = [](const ParameterValues& values) {
       return sensor::claims_of(bus::sole_device_of(weatherlink_live_settings_of(values).broadcasts));
     }};

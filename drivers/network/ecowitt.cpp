@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include "drivers/bus/byte_port_kinds.hpp"
+#include "drivers/network/ecowitt_finder.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
 
@@ -192,6 +193,7 @@ const sensor::DriverDescription kEcowittDriver{
     .summary = "gateways of Ecowitt and Fine Offset (GW1000, GW1100, GW2000), asked over the local network",
     .parameters = kEcowittParameters,
     .open = open_ecowitt,
+    .find_in_network = find_ecowitt_gateways,
     .claims = ecowitt_claims};
 
 }  // namespace yuragi::drivers::network

@@ -16,6 +16,7 @@
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/bus/sender_filter.hpp"
 #include "drivers/network/followed_station.hpp"
+#include "drivers/network/tempest_finder.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
@@ -232,6 +233,7 @@ const sensor::DriverDescription kTempestDriver{
     .summary = "weather stations of WeatherFlow (Tempest, Sky), by their hub's broadcasts in the local network",
     .parameters = kTempestParameters,
     .open = open_tempest,
+    .find_in_network = find_tempest_stations,
     .claims = tempest_claims};
 
 }  // namespace yuragi::drivers::network

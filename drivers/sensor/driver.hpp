@@ -9,6 +9,7 @@
 
 #include "drivers/sensor/device_claim.hpp"
 #include "drivers/sensor/found_device.hpp"
+#include "drivers/sensor/network_search.hpp"
 #include "drivers/sensor/sensor.hpp"
 #include "engine/base/parameter.hpp"
 
@@ -39,6 +40,9 @@ struct DriverDescription {
   /// Finds plugged-in devices that this driver can read; nullptr where nothing can be plugged in. Opens devices only
   /// briefly.
   std::vector<FoundDevice> (*find)() = nullptr;
+  /// Searches the local networks for stations that it can read, for as long as the search takes; nullptr where it
+  /// cannot. Sends only what the search is for. Throws FailureError where the network cannot be searched.
+  std::vector<FoundDevice> (*find_in_network)(const NetworkSearch& search) = nullptr;
   /// The devices that a sensor of these values has to itself, without touching them, of values that open() takes;
   /// nullptr: none. Two sensors that claim the same device are refused.
   std::vector<DeviceClaim> (*claims)(const ParameterValues& values) = nullptr;

@@ -13,6 +13,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/secret_source.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
+#include "drivers/text/signalk_finder.hpp"
 #include "drivers/text/signalk_sensor.hpp"
 
 namespace yuragi::drivers::text {
@@ -68,7 +69,7 @@ std::vector<Parameter> signalk_parameters() {
     }
     if (parameter.name == "host") {
       parameter.help =
-          "websocket, tcp: name or address of the server; udp: the "
+          "websocket, tcp: name or address of the server (`yuragi sensors list --network` looks for it); udp: the "
           "local "
           "address to listen at, or a multicast address; empty: all addresses of this machine";
     }
@@ -139,6 +140,7 @@ const sensor::DriverDescription kSignalKDriver{
       return std::make_unique<SignalKSensor>(settings, bus::make_byte_port(settings.text.address));
     },
     .find = nullptr,
+    .find_in_network = find_signalk_servers,
     .claims =
         [](const ParameterValues& values) {
           return sensor::claims_of(bus::sole_device_of(signalk_address_of(values)));

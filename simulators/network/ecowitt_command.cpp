@@ -12,6 +12,7 @@ namespace {
 
 struct EcowittCommand {
   std::string tcp = "127.0.0.1:45000";
+  std::string search;
   EcowittOptions ecowitt;
   CommonOptions common;
 };
@@ -21,6 +22,11 @@ void simulate_ecowitt(EcowittCommand& command) {
   command.ecowitt.host = address.host;
   command.ecowitt.port = address.port;
   command.ecowitt.seed = command.common.synthetic.seed;
+  if (!command.search.empty()) {
+    const Address search = address_option("--search", command.search);
+    command.ecowitt.search_host = search.host;
+    command.ecowitt.search_port = search.port;
+  }
   EcowittSimulator simulator(command.ecowitt, command.common.make_wind());
 
   // Scripts wait for this line.
@@ -35,6 +41,9 @@ void add_ecowitt_command(CLI::App& app) {
   auto options = std::make_shared<EcowittCommand>();
   CLI::App* command = app.add_subcommand("ecowitt", "Ecowitt gateway (GW1000), which is asked over TCP");
   command->add_option("--tcp", options->tcp, "HOST:PORT to listen on; port 0 takes a free one")->capture_default_str();
+  command->add_option(
+      "--search", options->search,
+      "HOST:PORT, UDP, to answer who searches for gateways, such as 0.0.0.0:46000; without it nobody is");
   command->add_option("--interval", options->ecowitt.interval_s, "seconds between the anemometer's radio messages")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();

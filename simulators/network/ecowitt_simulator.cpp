@@ -8,11 +8,14 @@
 #include <numeric>
 #include <random>
 
+#include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/udp.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
 #include "engine/base/count_text.hpp"
+#include "simulators/socket_address.hpp"
 #include "simulators/tcp_listener.hpp"
 
 namespace yuragi::simulators::network {
@@ -22,6 +25,9 @@ using boost::asio::ip::tcp;
 using GatewayBytes = std::vector<std::uint8_t>;
 
 constexpr double kPieceGap_s = 0.03;
+const GatewayBytes kSearchQuestion = {0xFF, 0xFF, 0x12, 0x03, 0x15};
+const GatewayBytes kMacAddress = {0x02, 0x00, 0x5E, 0x10, 0x5B, 0x1C};
+constexpr std::string_view kGatewayName = "GW1000-WIFI5B1C V1.7.6";
 constexpr std::size_t kGatewayGarbageBytes = 40;
 const GatewayBytes kLiveDataRequest = {0xFF, 0xFF, 0x27, 0x03, 0x2A};
 
@@ -77,14 +83,23 @@ GatewayBytes live_items(const RadioWind* wind) {
 class EcowittSimulator::State {
  public:
   State(const EcowittOptions& options, MeasuredWind wind)
-      : options_(options), wind_(std::move(wind)), random_(options.seed), listener_(options.host, options.port) {}
+      : options_(options), wind_(std::move(wind)), random_(options.seed), listener_(options.host, options.port) {
+    if (options.search_host.empty()) return;
+    using boost::asio::ip::udp;
+    search_.open(udp::v4());
+    search_.bind(udp::endpoint(socket_address(options.search_host), options.search_port));
+    search_.non_blocking(true);
+  }
 
   std::uint16_t port() const { return listener_.endpoint().port(); }
+
+  std::uint16_t search_port() const { return search_.local_endpoint().port(); }
 
   std::vector<int> descriptors() {
     std::vector<int> all;
     if (listener_.is_open()) all.push_back(listener_.descriptor());
     for (Client& client : clients_) all.push_back(client.socket.native_handle());
+    if (search_.is_open()) all.push_back(search_.native_handle());
     return all;
   }
 
@@ -97,6 +112,7 @@ class EcowittSimulator::State {
       return;
     }
     if (!listener_.open_again()) return;
+    answer_searches();
     for (Client& client : clients_) {
       if (std::ranges::find(ready, client.socket.native_handle()) != ready.end()) read(client, time_s);
       send_what_is_due(client, time_s);
@@ -141,6 +157,37 @@ class EcowittSimulator::State {
     if (client.received.size() >= kLiveDataRequest.size()) client.received.clear();
   }
 
+  void answer_searches() {
+    while (search_.is_open()) {
+      std::array<std::uint8_t, 64> question{};
+      boost::asio::ip::udp::endpoint from;
+      boost::system::error_code error;
+      const std::size_t size = search_.receive_from(boost::asio::buffer(question), from, 0, error);
+      if (error) return;
+      if (GatewayBytes(question.begin(), question.begin() + static_cast<std::ptrdiff_t>(size)) != kSearchQuestion)
+        continue;
+      search_.send_to(boost::asio::buffer(who_it_is()), from, 0, error);
+    }
+  }
+
+  /// As a recorded answer has it: the size is counted up to the name's end, without the checksum.
+  GatewayBytes who_it_is() const {
+    GatewayBytes all = {0xFF, 0xFF, 0x12, 0x00, static_cast<std::uint8_t>(16 + kGatewayName.size())};
+    for (const std::uint8_t byte : kMacAddress) all.push_back(byte);
+    const auto address = listener_.endpoint().address();
+    if (address.is_v4()) {
+      for (const std::uint8_t byte : address.to_v4().to_bytes()) all.push_back(byte);
+    } else {
+      for (int i = 0; i < 4; ++i) all.push_back(0);
+    }
+    all.push_back(static_cast<std::uint8_t>(port() >> 8U));
+    all.push_back(static_cast<std::uint8_t>(port() & 0xFFU));
+    all.push_back(static_cast<std::uint8_t>(kGatewayName.size()));
+    for (const char c : kGatewayName) all.push_back(static_cast<std::uint8_t>(c));
+    all.push_back(static_cast<std::uint8_t>(std::accumulate(all.begin() + 2, all.end(), 0U)));
+    return all;
+  }
+
   void reply(Client& client, double time_s) {
     ++replied_;
     GatewayBytes bytes = framed(0x27, live_items(fault_ == FaultKind::kUnplug ? nullptr : &radio_));
@@ -180,6 +227,8 @@ class EcowittSimulator::State {
   std::mt19937_64 random_;
   TcpListener listener_;
   std::list<Client> clients_;
+  boost::asio::io_context context_;
+  boost::asio::ip::udp::socket search_{context_};
 
   double next_radio_s_ = 0.0;
   double gust_m_s_ = 0.0;
@@ -196,6 +245,10 @@ EcowittSimulator::~EcowittSimulator() = default;
 
 std::uint16_t EcowittSimulator::port() const {
   return state_->port();
+}
+
+std::uint16_t EcowittSimulator::search_port() const {
+  return state_->search_port();
 }
 
 std::span<const FaultKind> EcowittSimulator::known_faults() const {

@@ -11,14 +11,16 @@ namespace yuragi::simulators::network {
 
 struct EcowittOptions {
   std::string host = "127.0.0.1";
-  std::uint16_t port = 45000;  ///< 0 takes a free one
-  double interval_s = 16.0;    ///< of the anemometer's radio
-  double late_s = 5.0;         ///< the delay of a late reply
-  std::uint64_t seed = 1;      ///< of the bytes of the garbage fault
+  std::uint16_t port = 45000;     ///< 0 takes a free one
+  double interval_s = 16.0;       ///< of the anemometer's radio
+  double late_s = 5.0;            ///< the delay of a late reply
+  std::string search_host = {};   ///< where it answers who searches for gateways, by UDP; empty: nowhere
+  std::uint16_t search_port = 0;  ///< 0 takes a free one; a real gateway's is 46000
+  std::uint64_t seed = 1;         ///< of the bytes of the garbage fault
 };
 
 /// A gateway of Fine Offset's with a wind sensor, as the maker's "Data exchange TCP Protocol for GW1000" describes it:
-/// it replies to the request for its current values, and to no other.
+/// it replies to the request for its current values, and to no other. It can be searched for.
 ///
 /// Faults: silence, freeze, spike, garbage, split, partial, bad-checksum, wrong-transaction (the reply to another
 /// command), late, disconnect, unplug (the anemometer is not heard).
@@ -29,6 +31,7 @@ class EcowittSimulator final : public Simulator {
   ~EcowittSimulator() override;
 
   std::uint16_t port() const;
+  std::uint16_t search_port() const;
 
   std::span<const FaultKind> known_faults() const override;
   std::vector<int> descriptors() const override;

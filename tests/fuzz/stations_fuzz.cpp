@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/decode/network/ecowitt.hpp"
+#include "drivers/decode/network/ecowitt_gateway.hpp"
 #include "drivers/decode/network/station_push.hpp"
 #include "drivers/decode/network/tempest.hpp"
 
@@ -60,6 +61,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(!message->wind || message->wind->speed_m_s.has_value());
   }
   read_push({reinterpret_cast<const char*>(data), size});
+  if (const auto gateway = decode::network::decode_ecowitt_gateway({data, size})) {
+    require(gateway->mac.size() == 17 && gateway->port != 0);
+  }
   read_reply({data, size});
   read_mended_reply({data, size});
   return 0;

@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <initializer_list>
+#include <utility>
 
 #include "drivers/bus/osc_message.hpp"
 #include "drivers/decode/davis/vantage.hpp"
@@ -12,6 +13,8 @@
 #include "drivers/decode/hid/te923.hpp"
 #include "drivers/decode/hid/wmr100.hpp"
 #include "drivers/decode/hid/wmr300.hpp"
+#include "drivers/decode/lufft/umb.hpp"
+#include "drivers/decode/lufft/umb_assembler.hpp"
 #include "drivers/decode/modbus/modbus.hpp"
 #include "drivers/decode/modbus/modbus_quantity.hpp"
 #include "drivers/decode/network/ecowitt.hpp"
@@ -286,6 +289,43 @@ Winds vantage_winds(std::string_view bytes) {
   return winds;
 }
 
+// --- Lufft
+
+/// A weather station's reply to a query of speed, direction and greatest speed, each a float.
+Message make_umb_binary(Chance& chance) {
+  const float speed_m_s = static_cast<float>(chance.between(0, 6000)) / 128.0F;
+  const float gust_m_s = speed_m_s + static_cast<float>(chance.between(0, 1000)) / 128.0F;
+  const float direction_deg = static_cast<float>(chance.between(0, 35900)) / 128.0F;
+  Bytes frame(43);
+  frame.put(0, {0x01, 0x10, 0x01, 0xF0, 0x01, 0x70, 31, 0x02, 0x2F, 0x10, 0x00, 3});
+  std::size_t at = 12;
+  for (const auto& [channel, value] : {std::pair(401, speed_m_s), {501, direction_deg}, {440, gust_m_s}}) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    frame.put(at, {8, 0});
+    frame.put_little(at + 2, channel);
+    frame.put(at + 4, 0x16);
+    frame.put_little(at + 5, static_cast<int>(bits & 0xFFFFU));
+    frame.put_little(at + 7, static_cast<int>(bits >> 16U));
+    at += 9;
+  }
+  frame.put(39, 0x03);
+  frame.put_little(40, drivers::decode::lufft::umb_checksum(frame.span().first(40)));
+  frame.put(42, 0x04);
+  return {frame.text(), wind_of(speed_m_s, direction_deg, gust_m_s)};
+}
+Winds umb_binary_winds(std::string_view bytes) {
+  drivers::decode::lufft::UmbAssembler assembler;
+  Winds winds;
+  ByteSpan rest = span_of(bytes);
+  while (const auto frame = assembler.next(rest)) {
+    if (!*frame) continue;
+    const auto reply = drivers::decode::lufft::decode_umb_reply(drivers::decode::lufft::umb_address(7, 1), **frame);
+    if (!reply) continue;
+    if (const auto wind = drivers::decode::lufft::wind_of(*reply)) winds.push_back(*wind);
+  }
+  return winds;
+}
+
 // --- Network
 
 Message make_ecowitt(Chance& chance) {
@@ -386,6 +426,12 @@ constexpr std::array kByteProtocols = {
              .most_false_of_a_million = 15,
              .make = make_vantage_loop2,
              .winds_in = vantage_winds},
+    Protocol{.name = "UMB, binary",
+             .checksum = Checksum::kCrc16,
+             .is_stream = true,
+             .most_false_of_a_million = 15,
+             .make = make_umb_binary,
+             .winds_in = umb_binary_winds},
     Protocol{.name = "Ecowitt",
              .checksum = Checksum::kSum8,
              .most_false_of_a_million = 430,

@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "drivers/decode/marine/candump.hpp"
 #include "drivers/decode/marine/yacht_devices.hpp"
 #include "drivers/decode/modbus/modbus.hpp"
+#include "drivers/decode/network/station_push.hpp"
 #include "drivers/decode/text/ft.hpp"
 #include "drivers/decode/text/gill.hpp"
 #include "drivers/decode/text/line.hpp"
@@ -193,6 +195,37 @@ LineWinds yacht_devices_winds(std::string_view bytes) {
   });
 }
 
+/// As a CAN interface's frames are handed on, and as a log of candump has them.
+Message make_candump(Chance& chance) {
+  const int speed_cm_s = chance.between(0, 6000);
+  const int angle = chance.between(0, 62831);
+  return {fmt::format("(1436509052.249713) can0 09FD0205#64{:02X}{:02X}{:02X}{:02X}FAFFFF\n", speed_cm_s & 0xFF,
+                      speed_cm_s >> 8, angle & 0xFF, angle >> 8),
+          wind_of(speed_cm_s / 100.0, angle / 10'000.0 / kRadPerDeg)};
+}
+LineWinds candump_winds(std::string_view bytes) {
+  return winds_in_lines(bytes, [](std::string_view line) -> std::optional<DecodedWind> {
+    const auto said = drivers::decode::marine::decode_candump(line);
+    return said ? std::optional(said->wind) : std::nullopt;
+  });
+}
+
+/// A form as a gateway pushes it: miles per hour.
+Message make_station_push(Chance& chance) {
+  const int speed = chance.between(0, 10'000);
+  const int gust = chance.between(speed, 12'000);
+  const int direction_deg = chance.between(0, 359);
+  return {fmt::format("PASSKEY=0123456789ABCDEF0123456789ABCDEF&stationtype=GW2000A_V2.1.5&dateutc=2026-11-23+12:00:00&"
+                      "tempf=63.5&humidity=71&winddir={}&windspeedmph={:.2f}&windgustmph={:.2f}&baromabsin=29.9",
+                      direction_deg, speed / 100.0, gust / 100.0),
+          wind_of(speed / 100.0 * kMetresPerSecondPerMph, direction_deg, gust / 100.0 * kMetresPerSecondPerMph)};
+}
+LineWinds station_push_winds(std::string_view bytes) {
+  const auto push = drivers::decode::network::decode_station_push(bytes);
+  if (!push || !push->wind) return {};
+  return {*push->wind};
+}
+
 constexpr std::array kTextProtocols = {
     Protocol{.name = "NMEA MWV",
              .checksum = Checksum::kXor8,
@@ -266,6 +299,15 @@ constexpr std::array kTextProtocols = {
              .most_false_of_a_million = 31'000,
              .make = make_yacht_devices,
              .winds_in = yacht_devices_winds},
+    Protocol{.name = "candump",
+             .is_stream = true,
+             .most_false_of_a_million = 30'000,
+             .make = make_candump,
+             .winds_in = candump_winds},
+    Protocol{.name = "Ecowitt push",
+             .most_false_of_a_million = 42'000,
+             .make = make_station_push,
+             .winds_in = station_push_winds},
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <future>
 #include <iterator>
 #include <map>
 #include <sstream>
@@ -42,21 +43,42 @@ std::string names_of(std::span<const drivers::sensor::DriverDescription* const> 
   return names;
 }
 
+/// What a driver's search finds, or that it failed.
+template <class Search>
+std::vector<DeviceFinding> findings_of(const drivers::sensor::DriverDescription* driver, Search&& search) {
+  std::vector<DeviceFinding> findings;
+  try {
+    for (drivers::sensor::FoundDevice& device : search()) findings.push_back({driver, std::move(device)});
+  } catch (const std::exception& error) {
+    drivers::sensor::FoundDevice none;
+    none.what = fmt::format("devices of driver {}", driver->name);
+    none.trouble = fmt::format("search failed: {}", error.what());
+    findings.push_back({driver, std::move(none)});
+  }
+  return findings;
+}
+
 }  // namespace
 
 std::vector<DeviceFinding> find_devices(std::span<const drivers::sensor::DriverDescription* const> drivers) {
   std::vector<DeviceFinding> findings;
   for (const drivers::sensor::DriverDescription* driver : drivers) {
-    if (driver->find == nullptr) continue;
-    try {
-      for (drivers::sensor::FoundDevice& device : driver->find()) findings.push_back({driver, std::move(device)});
-    } catch (const std::exception& error) {
-      drivers::sensor::FoundDevice none;
-      none.what = fmt::format("devices of driver {}", driver->name);
-      none.trouble = fmt::format("search failed: {}", error.what());
-      findings.push_back({driver, std::move(none)});
-    }
+    if (driver->find != nullptr) std::ranges::move(findings_of(driver, driver->find), std::back_inserter(findings));
   }
+  return findings;
+}
+
+std::vector<DeviceFinding> find_devices_in_network(std::span<const drivers::sensor::DriverDescription* const> drivers,
+                                                   const drivers::sensor::NetworkSearch& search) {
+  std::vector<std::future<std::vector<DeviceFinding>>> searches;
+  for (const drivers::sensor::DriverDescription* driver : drivers) {
+    if (driver->find_in_network == nullptr) continue;
+    searches.push_back(std::async(std::launch::async, [driver, &search] {
+      return findings_of(driver, [&] { return driver->find_in_network(search); });
+    }));
+  }
+  std::vector<DeviceFinding> findings;
+  for (auto& each : searches) std::ranges::move(each.get(), std::back_inserter(findings));
   return findings;
 }
 

@@ -18,6 +18,10 @@ struct DeviceFinding {
 /// that trouble.
 std::vector<DeviceFinding> find_devices(std::span<const drivers::sensor::DriverDescription* const> drivers);
 
+/// Searches the local networks with every driver that can, all at the same time; otherwise as find_devices().
+std::vector<DeviceFinding> find_devices_in_network(std::span<const drivers::sensor::DriverDescription* const> drivers,
+                                                   const drivers::sensor::NetworkSearch& search);
+
 /// The findings, for a person: each device with the TOML to paste into a configuration, and, where it cannot be opened,
 /// why and what to do. Says so where nothing was found. `drivers` are those that were searched with.
 std::string device_list(std::span<const DeviceFinding> findings,

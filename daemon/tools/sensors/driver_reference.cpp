@@ -60,6 +60,8 @@ std::string describe_driver(const drivers::sensor::DriverDescription& driver) {
       "name = \"{0}\"  # any text, different for each sensor\n"
       "driver = \"{0}\"\n",
       driver.name, driver.summary);
+  if (driver.find_in_network != nullptr)
+    text += "\n`yuragi sensors list --network` searches the local network for its devices.\n";
   if (!driver.parameters.empty()) text += "\nIts keys:\n" + parameter_text(driver.parameters);
   if (driver.known_devices != nullptr)
     text += "\nThe devices that it knows by name:\n" + known_device_text(driver.known_devices());

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/decode/network/ecowitt.hpp"
+#include "drivers/decode/network/ecowitt_gateway.hpp"
 #include "tests/support/byte_vectors.hpp"
 #include "tests/support/decoded_winds.hpp"
 
@@ -133,6 +134,42 @@ TEST(Ecowitt, FindsEachByteThatIsChanged) {
       ASSERT_FALSE(decode_ecowitt(hurt).has_value()) << at << ' ' << change;
     }
   }
+}
+
+/// gjr80/weewx-gw1000, tests/test_gw1000.py: a GW1000 that was searched for.
+const std::string kGatewayAnswer =
+    "ff ff 12 00 26 50 02 91 e3 fd 32 c0 a8 02 20 af c8 16 47 57 31 30 30 30 2d 57 49 46 49 46 44 33 32 20 56 31 2e 36 "
+    "2e 38 5f";
+
+TEST(DecodeEcowittGateway, ReadsARecordedAnswer) {
+  const auto gateway = decode_ecowitt_gateway(hex_bytes(kGatewayAnswer));
+  ASSERT_TRUE(gateway.has_value());
+  EXPECT_EQ(gateway->mac, "50:02:91:e3:fd:32");
+  EXPECT_EQ(gateway->port, 45000);
+  EXPECT_EQ(gateway->name, "GW1000-WIFIFD32 V1.6.8");
+}
+
+TEST(DecodeEcowittGateway, RefusesWhatIsHurt) {
+  const ReplyBytes whole = hex_bytes(kGatewayAnswer);
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_FALSE(decode_ecowitt_gateway(decode::ByteSpan(whole).first(size)).has_value()) << size;
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    ReplyBytes hurt = whole;
+    hurt[at] ^= 0x40U;
+    EXPECT_FALSE(decode_ecowitt_gateway(hurt).has_value()) << at;
+  }
+  ReplyBytes other = whole;
+  other[2] = 0x27;
+  EXPECT_EQ(decode_ecowitt_gateway(other).error(), Refusal::kNotMine);
+}
+
+TEST(DecodeEcowittGateway, ShowsNothingThatATerminalObeys) {
+  ReplyBytes answer = hex_bytes(kGatewayAnswer);
+  answer[18] = 0x1B;
+  answer.back() = static_cast<std::uint8_t>(answer.back() - 0x47U + 0x1BU);
+  const auto gateway = decode_ecowitt_gateway(answer);
+  ASSERT_TRUE(gateway.has_value());
+  EXPECT_EQ(gateway->name, "?W1000-WIFIFD32 V1.6.8");
 }
 
 }  // namespace

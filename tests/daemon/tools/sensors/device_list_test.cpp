@@ -121,6 +121,26 @@ TEST(DriverReference, SaysOfEachDeviceThatADriverKnowsWhoConfirmsItAndWhatNobody
   EXPECT_THAT(driver_reference(drivers), HasSubstr("| `b-2` | B 2 | nobody | the id \\| all |\n"));
 }
 
+TEST(DriverReference, SaysWhichDevicesCanBeSearchedForInTheNetwork) {
+  drivers::sensor::DriverDescription driver{.name = "far", .summary = "", .parameters = {}, .open = nullptr};
+  EXPECT_THAT(describe_driver(driver), Not(HasSubstr("--network")));
+  driver.find_in_network = [](const drivers::sensor::NetworkSearch& search) {
+    if (search.to == "bad") throw std::runtime_error("no network");
+    return std::vector<drivers::sensor::FoundDevice>{
+        {.what = "station at " + search.to, .settings = {}, .trouble = {}, .remedy = {}}};
+  };
+  EXPECT_THAT(describe_driver(driver), HasSubstr("`yuragi sensors list --network` searches"));
+
+  const drivers::sensor::DriverDescription near{.name = "near", .summary = "", .parameters = {}, .open = nullptr};
+  const std::vector<const drivers::sensor::DriverDescription*> drivers = {&near, &driver};
+  const auto found = find_devices_in_network(drivers, {.to = "10.0.0.1"});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().device.what, "station at 10.0.0.1");
+  const auto failed = find_devices_in_network(drivers, {.to = "bad"});
+  ASSERT_EQ(failed.size(), 1U);
+  EXPECT_EQ(failed.front().device.trouble, "search failed: no network");
+}
+
 TEST(DriverReference, KeepsItsTablesWhole) {
   const Parameter parameter{
       .name = "key", .unit = "", .default_value = std::string("a|b"), .help = "either | or <this>"};

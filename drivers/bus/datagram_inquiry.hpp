@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi::drivers::bus {
+
+/// A question to whoever is in the local networks, by UDP over IPv4.
+struct DatagramInquiry {
+  std::vector<std::uint8_t> question;
+  std::uint16_t port = 0;
+  /// The one address that is asked, or a multicast group, asked on each interface; empty: the broadcast address of each
+  /// interface.
+  std::string to = {};
+  Nanoseconds duration = std::chrono::seconds(5);  ///< answers are taken for so long
+};
+
+struct DatagramAnswer {
+  std::vector<std::uint8_t> bytes;
+  std::string sender;  ///< its address
+
+  bool operator==(const DatagramAnswer&) const = default;
+};
+
+/// Asks three times within the first three seconds, as datagrams get lost, from a port of its own, and takes what comes
+/// to that port: each answer once, at most 1000 of them. What is sent leaves no local network (a time to live of 1),
+/// unless it is to one address. Waits for the whole duration. The failure's text: why nobody could be asked.
+Result<std::vector<DatagramAnswer>, Failure> ask_networks(const DatagramInquiry& inquiry);
+
+}  // namespace yuragi::drivers::bus

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace yuragi::drivers::bus {
+
+// Messages of DNS-based service discovery over multicast DNS (S. Cheshire and M. Krochmal, RFC 6762 and RFC 6763,
+// 2013), made and taken apart by the resolver of the C library. Who asks from another port than 5353 is answered there
+// alone (RFC 6762, sections 5.1 and 6.7), so that no service of this machine's has to be asked.
+
+inline constexpr std::uint16_t kMulticastDnsPort = 5353;
+inline constexpr const char* kMulticastDnsGroup = "224.0.0.251";
+
+/// One service that somebody announces.
+struct AnnouncedService {
+  std::string name;  ///< of the instance, as it says: "weatherlinklive-700008"; can be shown, at most 63 characters
+  std::string address = {};  ///< IPv4; empty: the message does not say it
+  std::uint16_t port = 0;    ///< 0: the message does not say it
+
+  bool operator==(const AnnouncedService&) const = default;
+};
+
+/// The question for services of a type ("_signalk-ws._tcp.local"), with the id 0: the WeatherLink Live answers no id
+/// above 4 (drivers/SOURCES.md S9.20). Empty where the type is no name. Thread-safe: yes.
+std::vector<std::uint8_t> service_question(const std::string& type);
+
+/// The services of that type in an answer; none for any bytes that are no answer. At most 64 of one message.
+/// Thread-safe: yes.
+std::vector<AnnouncedService> services_in(std::span<const std::uint8_t> message, const std::string& type);
+
+}  // namespace yuragi::drivers::bus

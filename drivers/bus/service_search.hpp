@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/bus/dns_message.hpp"
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi::drivers::bus {
+
+/// Asks for services of a type ("_signalk-ws._tcp.local") by multicast DNS, or one address alone, for so long. Each
+/// service once, with the address that it says, or whose answer it is. Fails as ask_networks() does.
+Result<std::vector<AnnouncedService>, Failure> find_services(const std::string& type, const std::string& to,
+                                                             std::uint16_t port, Nanoseconds duration);
+
+}  // namespace yuragi::drivers::bus
