@@ -162,6 +162,20 @@ class Accept(unittest.TestCase):
             self.assertIn("stop it first", done.stderr)
             self.assertEqual(daemon.end(), 0)
 
+    def test_stations_in_the_network_are_simulated_on_this_machine(self):
+        # One that pushes, and one that is asked and sends, too; the plans of all are in simulated_sensor_test.cpp.
+        config = self.config('name = "console"\ndriver = "ecowitt-push"\nhost = "0.0.0.0"\nfrom = "192.0.2.0/24"\npath = "/roof/"\n'
+                             f'station_key = "hunter2"\nport = {free_port()}',
+                             f'name = "live"\ndriver = "weatherlink"\nhost = "192.0.2.8"\nport = {free_port(socket.SOCK_DGRAM)}')
+        done = self.accept(config, "--simulated-only", "--json")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        for one in json.loads(done.stdout)["simulated"]:
+            self.assertEqual(one["verdict"], "passed", one)
+            self.assertAlmostEqual(one["mean_speed_m_s"], 8, delta=0.1)
+            self.assertAlmostEqual(one["direction_deg"], 225, delta=1)
+        with open(self.page, encoding="utf-8") as page:
+            self.assertNotIn("hunter2", page.read() + done.stdout + done.stderr)
+
     def test_it_asks_only_a_person(self):
         config = self.config('name = "a"\ndriver = "synthetic"')
         done = subprocess.run([YURAGI, "accept", "--config", config, "--ask", "--out", self.page], capture_output=True,

@@ -9,10 +9,19 @@ import threading
 HANG_S = 60.0  # so long waits only who waits for something that hangs
 
 
-def free_port():
-    """One of the loopback that nobody listens on."""
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]
+def free_ports(kinds):
+    """A port of 127.0.0.1 that nobody has for each of these socket types, all different."""
+    taken = [socket.socket(socket.AF_INET, kind) for kind in kinds]
+    for one in taken:
+        one.bind(("127.0.0.1", 0))
+    ports = [one.getsockname()[1] for one in taken]
+    for one in taken:
+        one.close()
+    return ports
+
+
+def free_port(kind=socket.SOCK_STREAM):
+    return free_ports([kind])[0]
 
 
 class Program:

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,9 @@
 
 namespace yuragi::daemon::tools::acceptance {
 namespace {
+
+/// What a bus or a server says of other devices and other things, which is no fault (Refusal::kNotMine).
+constexpr std::string_view kOfOthers = "not mine";
 
 class VerdictBuilder {
  public:
@@ -32,9 +36,9 @@ void judge_readings(VerdictBuilder& verdict, const SensorMeasured& sensor) {
   if (!is_believed(status.state))
     verdict.fail(
         fmt::format("its readings are not used at the end: {}: {}", name_of(status.state), status.state_reason));
-  const double refused =
-      std::accumulate(status.refused.begin(), status.refused.end(), 0.0,
-                      [](double sum, const auto& one) { return sum + static_cast<double>(one.second); });
+  const double refused = std::accumulate(
+      status.refused.begin(), status.refused.end(), 0.0,
+      [](double sum, const auto& one) { return one.first == kOfOthers ? sum : sum + static_cast<double>(one.second); });
   if (refused > kLargestRefusedShare * (refused + static_cast<double>(status.readings)))
     verdict.remark("many of its messages were refused: " + sensing::refusal_text(status));
   if (status.reconnects > 0) verdict.remark(fmt::format("it was lost and found again {} times", status.reconnects));

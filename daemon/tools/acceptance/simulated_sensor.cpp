@@ -135,6 +135,9 @@ SimulationPlan plan_davis(const SensorConfig& sensor) {
   return plan;
 }
 
+/// Stations that speak every 3 to 16 s would say too little in the time that there is.
+constexpr std::array<std::string_view, 2> kOftenEnough = {"--interval", "1"};
+
 /// The plan for a subcommand that sends to where the sensor listens, at the port that is configured.
 SimulationPlan plan_of_sender(const SensorConfig& sensor, std::string subcommand, std::string option) {
   const std::string to = fmt::format("{}:{}", kHost, sensor.values.integer("port"));
@@ -146,6 +149,7 @@ SimulationPlan plan_of_sender(const SensorConfig& sensor, std::string subcommand
 
 SimulationPlan plan_tempest(const SensorConfig& sensor) {
   SimulationPlan plan = plan_of_sender(sensor, "tempest", "--udp");
+  plan.arguments.insert(plan.arguments.end(), kOftenEnough.begin(), kOftenEnough.end());
   const std::string& station = sensor.values.text("serial_number");
   if (!station.empty()) plan.arguments.insert(plan.arguments.end(), {"--station", station});
   return plan;
@@ -154,12 +158,15 @@ SimulationPlan plan_tempest(const SensorConfig& sensor) {
 SimulationPlan plan_ecowitt(const SensorConfig& sensor) {
   SimulationPlan plan = plan_of_place(sensor, "ecowitt", "--tcp", fmt::format("{}:0", kHost));
   plan.sensor.values.set("host", std::string(kHost));
+  plan.arguments.insert(plan.arguments.end(), kOftenEnough.begin(), kOftenEnough.end());
+  plan.sensor.values.set("sensor_interval", 1.0);
+  plan.sensor.values.set("poll_interval", 0.5);
   return plan;
 }
 
 SimulationPlan plan_ecowitt_push(const SensorConfig& sensor) {
   SimulationPlan plan = plan_of_sender(sensor, "ecowitt-push", "--to");
-  plan.arguments.insert(plan.arguments.end(), {"--interval", "1"});
+  plan.arguments.insert(plan.arguments.end(), kOftenEnough.begin(), kOftenEnough.end());
   const std::string& path = sensor.values.text("path");
   if (!path.empty()) plan.arguments.insert(plan.arguments.end(), {"--path", path});
   // No key on a command line, which others can see.
@@ -170,6 +177,7 @@ SimulationPlan plan_ecowitt_push(const SensorConfig& sensor) {
 SimulationPlan plan_weatherlink(const SensorConfig& sensor) {
   SimulationPlan plan = plan_of_place(sensor, "weatherlink-live", "--tcp", fmt::format("{}:0", kHost));
   plan.arguments.insert(plan.arguments.end(), {"--udp", fmt::format("{}:{}", kHost, sensor.values.integer("port"))});
+  plan.arguments.insert(plan.arguments.end(), kOftenEnough.begin(), kOftenEnough.end());
   plan.sensor.values.set("host", std::string(kHost));
   plan.sensor.values.set("transmitter", std::int64_t{0});
   return plan;

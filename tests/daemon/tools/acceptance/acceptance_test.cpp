@@ -95,7 +95,7 @@ TEST(JudgeSensor, RemarksWhatIsToBeLookedAt) {
   EXPECT_THAT(remark_where([](SensorMeasured& s) { s.least_speed_m_s = s.largest_speed_m_s = 0.0; }),
               HasSubstr("0.00 m/s all the time"));
   SensorMeasured few = good();
-  few.status.refused = {{"timeout", 10}};
+  few.status.refused = {{"timeout", 10}, {"not mine", 5000}};
   EXPECT_EQ(verdict_of(few).outcome, Outcome::kPassed) << "less than 5 %";
 }
 

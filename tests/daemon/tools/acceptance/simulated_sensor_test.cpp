@@ -77,7 +77,7 @@ TEST(SimulationPlan, PlaysADavisConsoleOverTcp) {
 TEST(SimulationPlan, PlaysWhatSendsToTheSensor) {
   const SimulationPlan tempest = plan_of_entry("driver = \"tempest\"\nserial_number = \"ST-1\"\nport = 4000");
   EXPECT_THAT(tempest.arguments, ElementsAre("tempest", "--udp", "127.0.0.1:4000", "--speed", "8", "--direction", "225",
-                                             "--turbulence", "0", "--station", "ST-1"));
+                                             "--turbulence", "0", "--interval", "1", "--station", "ST-1"));
   EXPECT_EQ(tempest.sensor.values.text("host"), "127.0.0.1");
   EXPECT_EQ(tempest.sensor.values.text("from"), "127.0.0.1") << "real hubs are not heard";
   EXPECT_EQ(at_port(tempest.sensor, simulator_port("sending to 127.0.0.1:4000\n").value()).values.integer("port"),
@@ -96,12 +96,12 @@ TEST(SimulationPlan, PlaysWhatSendsToTheSensor) {
 TEST(SimulationPlan, PlaysWhatIsAskedInTheNetwork) {
   const SimulationPlan ecowitt = plan_of_entry("driver = \"ecowitt\"\nhost = \"192.168.1.30\"");
   EXPECT_THAT(ecowitt.arguments, ElementsAre("ecowitt", "--tcp", "127.0.0.1:0", "--speed", "8", "--direction", "225",
-                                             "--turbulence", "0"));
+                                             "--turbulence", "0", "--interval", "1"));
   EXPECT_EQ(ecowitt.sensor.values.text("host"), "127.0.0.1");
 
   const SimulationPlan live = plan_of_entry("driver = \"weatherlink\"\nhost = \"192.168.1.40\"\ntransmitter = 3");
   EXPECT_THAT(live.arguments, ElementsAre("weatherlink-live", "--tcp", "127.0.0.1:0", "--speed", "8", "--direction",
-                                          "225", "--turbulence", "0", "--udp", "127.0.0.1:22222"));
+                                          "225", "--turbulence", "0", "--udp", "127.0.0.1:22222", "--interval", "1"));
   const settings::SensorConfig sensor = at_port(live.sensor, 4321);
   EXPECT_EQ(sensor.values.integer("http_port"), 4321);
   EXPECT_EQ(sensor.values.integer("port"), 22222);
