@@ -61,9 +61,9 @@ TEST_F(DecodeCommand, ReadsEachKindOfStationByItsFormat) {
   EXPECT_TRUE(is_value(block["gust_m_s"], 12.3 * 0.44704, 1e-9));
   EXPECT_TRUE(is_value(block["direction_deg"], 270.0));
 
-  // Packet d4 of 54 bytes: gust 1.4 m/s, average 2.9 m/s from 13 degrees; the sum of all before at the end.
+  // Packet d4 of 54 bytes: gust 3.4 m/s, average 2.9 m/s from 13 degrees; the sum of all before at the end.
   std::vector<std::uint8_t> wmr300(54, 0);
-  const std::vector<std::uint8_t> head = {0xD4, 0x36, 14, 5, 9, 18, 20, 1, 0, 14, 0, 168, 0, 29, 0, 13};
+  const std::vector<std::uint8_t> head = {0xD4, 0x36, 14, 5, 9, 18, 20, 1, 0, 34, 0, 168, 0, 29, 0, 13};
   std::ranges::copy(head, wmr300.begin());
   unsigned sum = 0;
   for (const std::uint8_t byte : wmr300) sum += byte;
@@ -71,7 +71,7 @@ TEST_F(DecodeCommand, ReadsEachKindOfStationByItsFormat) {
   wmr300[53] = static_cast<std::uint8_t>(sum & 0xFFU);
   json packet = one(tools::decode::to_hex(wmr300) + "\n", {"wmr300", "--hex"});
   EXPECT_TRUE(is_value(packet["speed_m_s"], 2.9, 1e-9));
-  EXPECT_TRUE(is_value(packet["gust_m_s"], 1.4, 1e-9));
+  EXPECT_TRUE(is_value(packet["gust_m_s"], 3.4, 1e-9));
   EXPECT_TRUE(is_value(packet["direction_deg"], 13.0));
 
   json record = one("05 2d c8 00 3a 78 00 a4 27 2f 48 00 06 00 00 00\n", {"fineoffset", "--hex"});
