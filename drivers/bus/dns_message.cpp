@@ -15,7 +15,9 @@
 namespace yuragi::drivers::bus {
 namespace {
 
-constexpr std::size_t kMostServices = 64;
+constexpr std::size_t kMostServices = 16;
+/// No message of multicast DNS is longer (RFC 6762, section 17).
+constexpr std::size_t kLongestMessage = 9000;
 constexpr std::size_t kLongestLabel = 63;
 /// The class of a record, without the bit that tells others to forget what they knew (RFC 6762, section 10.2).
 constexpr unsigned kClassMask = 0x7FFF;
@@ -52,14 +54,13 @@ std::string first_label(const std::string& name) {
   std::string label;
   for (std::size_t i = 0; i < name.size() && name[i] != '.'; ++i) {
     const auto is_digit = [&](std::size_t at) { return at < name.size() && name[at] >= '0' && name[at] <= '9'; };
-    if (name[i] != '\\') {
-      label += name[i];
-    } else if (is_digit(i + 1) && is_digit(i + 2) && is_digit(i + 3)) {
+    if (name[i] == '\\' && is_digit(i + 1) && is_digit(i + 2) && is_digit(i + 3)) {
       label += static_cast<char>((name[i + 1] - '0') * 100 + (name[i + 2] - '0') * 10 + (name[i + 3] - '0'));
       i += 3;
-    } else if (++i < name.size()) {
-      label += name[i];
+      continue;
     }
+    if (name[i] == '\\' && i + 1 < name.size()) ++i;
+    label += name[i];
   }
   make_printable(label);
   return shortened(label, kLongestLabel);
@@ -79,6 +80,7 @@ std::vector<std::uint8_t> service_question(const std::string& type) {
 
 std::vector<AnnouncedService> services_in(std::span<const std::uint8_t> bytes, const std::string& type) {
   std::vector<AnnouncedService> services;
+  if (bytes.size() > kLongestMessage) return services;
   ns_msg message{};
   if (ns_initparse(bytes.data(), static_cast<int>(bytes.size()), &message) != 0) return services;
   if (ns_msg_getflag(message, ns_f_qr) == 0) return services;
@@ -94,10 +96,11 @@ std::vector<AnnouncedService> services_in(std::span<const std::uint8_t> bytes, c
     AnnouncedService service{.name = first_label(name)};
     std::string host;
     for_each_record(message, [&](const ns_rr& record) {
-      constexpr std::uint16_t kBeforeTarget = 3 * NS_INT16SZ;  // priority, weight, port
+      constexpr std::ptrdiff_t kPortAt = 2L * NS_INT16SZ;  // after priority and weight
+      constexpr std::ptrdiff_t kBeforeTarget = 3L * NS_INT16SZ;
       if (ns_rr_type(record) != ns_t_srv || ns_rr_rdlen(record) <= kBeforeTarget || !host.empty()) return;
       if (!is_same_name(ns_rr_name(record), name)) return;
-      service.port = static_cast<std::uint16_t>(ns_get16(ns_rr_rdata(record) + 2 * NS_INT16SZ));
+      service.port = static_cast<std::uint16_t>(ns_get16(ns_rr_rdata(record) + kPortAt));
       host = name_at(message, ns_rr_rdata(record) + kBeforeTarget).value_or("");
     });
     for_each_record(message, [&](const ns_rr& record) {

@@ -27,7 +27,7 @@ struct AnnouncedService {
 /// above 4 (drivers/SOURCES.md S9.20). Empty where the type is no name. Thread-safe: yes.
 std::vector<std::uint8_t> service_question(const std::string& type);
 
-/// The services of that type in an answer; none for any bytes that are no answer. At most 64 of one message.
+/// The services of that type in an answer; none for any bytes that are no answer. At most 16 of one message.
 /// Thread-safe: yes.
 std::vector<AnnouncedService> services_in(std::span<const std::uint8_t> message, const std::string& type);
 

@@ -58,6 +58,14 @@ TEST(DnsMessage, TakesNoQuestionForAnAnswer) {
   EXPECT_THAT(services_in({}, kType), IsEmpty());
 }
 
+TEST(DnsMessage, TakesNoMoreThanItPromises) {
+  DnsAnswer answer;
+  for (int i = 0; i < 40; ++i) answer.add(kType, DnsAnswer::kPtr, DnsAnswer::name_of(std::to_string(i) + "." + kType));
+  EXPECT_EQ(services_in(answer.bytes(), kType).size(), 16U);
+  for (int i = 0; i < 200; ++i) answer.add(kType, DnsAnswer::kPtr, DnsAnswer::name_of(std::to_string(i) + "." + kType));
+  EXPECT_THAT(services_in(answer.bytes(), kType), IsEmpty()) << "longer than any message of multicast DNS";
+}
+
 TEST(DnsMessage, KeepsItsPromisesWhateverIsHurt) {
   const auto whole = DnsAnswer().add_service(kType, "boat", "boat.local", 3000, kAddress).bytes();
   std::mt19937 random(1);
