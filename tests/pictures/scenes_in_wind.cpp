@@ -36,8 +36,10 @@ std::span<const std::string_view> picture_scenes() {
 }
 
 ScenesInWind::ScenesInWind(std::string_view scene, double mean_speed_m_s)
-    : ScenesInWind(config_of(scene, mean_speed_m_s),
-                   daemon::sensing::make_gust_noise(config_of(scene, mean_speed_m_s))) {}
+    : ScenesInWind(config_of(scene, mean_speed_m_s)) {}
+
+ScenesInWind::ScenesInWind(const daemon::settings::Config& config)
+    : ScenesInWind(config, daemon::sensing::make_gust_noise(config)) {}
 
 ScenesInWind::ScenesInWind(const daemon::settings::Config& config,
                            std::shared_ptr<const wind::turbulence::GustNoise> gusts)

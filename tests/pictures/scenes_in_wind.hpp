@@ -25,6 +25,8 @@ inline constexpr std::array kWeathers{Weather{"calm", 0.0}, Weather{"breeze", 4.
 class ScenesInWind {
  public:
   ScenesInWind(std::string_view scene, double mean_speed_m_s);
+  /// Those of a configuration, in its default wind.
+  explicit ScenesInWind(const daemon::settings::Config& config);
 
   void advance(double duration_s);
 

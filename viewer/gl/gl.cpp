@@ -45,6 +45,7 @@ void compile(const GlShader& shader, const std::string& name, std::string_view s
 }
 
 std::atomic<int> error_count{0};
+std::atomic<std::size_t> upload_count{0};
 
 void GLAPIENTRY log_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
                             const void*) {
@@ -135,6 +136,13 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
 void set_sampler(const GlProgram& program, const char* name, GLint unit) {
   glUseProgram(program.name());
   glUniform1i(glGetUniformLocation(program.name(), name), unit);
+}
+
+std::size_t uploaded_bytes() {
+  return upload_count;
+}
+void count_upload(std::size_t bytes) {
+  upload_count += bytes;
 }
 
 bool is_software_renderer() {
