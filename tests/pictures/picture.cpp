@@ -17,6 +17,10 @@ constexpr int kBrighter = 4;
 
 using Mean = std::array<double, 3>;
 
+std::size_t index(int row, int columns, int column) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+}
+
 std::vector<Mean> means_over_squares(const Picture& picture) {
   const int columns = (picture.width_px + kSquare_px - 1) / kSquare_px;
   const int rows = (picture.height_px + kSquare_px - 1) / kSquare_px;
@@ -24,8 +28,8 @@ std::vector<Mean> means_over_squares(const Picture& picture) {
   std::vector<double> counts(sums.size());
   for (int y = 0; y < picture.height_px; ++y) {
     for (int x = 0; x < picture.width_px; ++x) {
-      const auto square = static_cast<std::size_t>(y / kSquare_px * columns + x / kSquare_px);
-      const auto at = static_cast<std::size_t>(3 * (y * picture.width_px + x));
+      const std::size_t square = index(y / kSquare_px, columns, x / kSquare_px);
+      const std::size_t at = 3 * index(y, picture.width_px, x);
       for (std::size_t channel = 0; channel < 3; ++channel) sums[square][channel] += picture.rgb[at + channel];
       counts[square] += 1.0;
     }

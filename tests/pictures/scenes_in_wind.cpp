@@ -42,7 +42,7 @@ ScenesInWind::ScenesInWind(const daemon::settings::Config& config)
     : ScenesInWind(config, daemon::sensing::make_gust_noise(config)) {}
 
 ScenesInWind::ScenesInWind(const daemon::settings::Config& config,
-                           std::shared_ptr<const wind::turbulence::GustNoise> gusts)
+                           const std::shared_ptr<const wind::turbulence::GustNoise>& gusts)
     : tick_s_(1.0 / config.animation.rate_hz),
       animation_(config, gusts),
       estimator_(daemon::sensing::make_estimator(config, gusts, animation_.reach_m())) {}

@@ -34,7 +34,7 @@ class ScenesInWind {
   stream::PoseMoment moment() const;
 
  private:
-  ScenesInWind(const daemon::settings::Config& config, std::shared_ptr<const wind::turbulence::GustNoise> gusts);
+  ScenesInWind(const daemon::settings::Config& config, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts);
 
   double tick_s_;
   daemon::animation::Animation animation_;

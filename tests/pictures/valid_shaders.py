@@ -25,6 +25,11 @@ def programs_in(sources):
         yield from call.findall(source.read_text())
 
 
+def passed(part, word):
+    """What a shader takes (`in`) or gives (`out`): qualifier, type and name of each."""
+    return set(re.findall(rf"^(flat |smooth |noperspective )?{word} (\w+) (\w+);", part.read_text(), re.MULTILINE))
+
+
 def complaints_of(files, options=()):
     ended = subprocess.run([VALIDATOR, *options, *files], capture_output=True, text=True, check=False)
     return ended.stdout if ended.returncode != 0 else ""
@@ -46,6 +51,8 @@ def check(folder):
             linked |= {vertex, fragment}
             if said := complaints_of([parts[vertex], parts[fragment]], ["-l"]):
                 complaints.append(f"program {name} of {vertex} and {fragment}:\n{said}")
+            if missing := passed(parts[fragment], "in") - passed(parts[vertex], "out"):
+                complaints.append(f"program {name}: {vertex} does not give what {fragment} takes: {sorted(missing)}")
         complaints += [f"{part.name}.glsl is in no program" for name, part in parts.items() if name not in linked]
     if not parts:
         complaints.append(f"no shaders in {shader_folder}")
