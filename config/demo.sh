@@ -108,7 +108,7 @@ if [ -n "${DISPLAY:-}" ]; then
   "$bin/yuragi-viewer" --connect "$stream"
 else
   echo "demo: no display; $duration_s s of status, and a picture in $picture"
-  xvfb-run -a "$bin/yuragi-viewer" --connect "$stream" --at 4 --screenshot "$picture" >"$work/viewer.log" 2>&1 &
+  "$bin/yuragi-viewer" --connect "$stream" --at 4 --screenshot "$picture" >"$work/viewer.log" 2>&1 &
   viewer=$!
   "$bin/yuragi" sensors watch --connect "$stream" --duration "$duration_s"
   wait "$viewer" || { cat "$work/viewer.log" >&2; exit 1; }

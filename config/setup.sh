@@ -17,7 +17,7 @@ build_packages=(
   libglfw3-dev libepoxy-dev libglm-dev libimgui-dev libstb-dev
   gnuplot-nox                # plots
   tzdata                     # opening hours in local time
-  libgl1-mesa-dri xvfb xauth # the viewer's picture where there is no display
+  libgl1-mesa-dri libegl-mesa0 libegl1 # the viewer's drivers, with a display and without
 )
 test_packages=(
   libgtest-dev libbenchmark-dev
@@ -29,6 +29,8 @@ test_packages=(
   mosquitto-clients openssl                               # a publisher that is not ours; a certificate for the broker
   umockdev libumockdev-dev                                # USB devices without a kernel's
   libasound2-dev libasound2-plugins pulseaudio pulseaudio-utils # sound cards without a card
+  xvfb                                                    # a display for the viewer's window
+  glslang-tools                                           # an independent judge of the shaders
   systemd lintian man-db                                  # independent judges of the units and of the package
   qemu-system-x86 busybox-static kmod cpio usbip alsa-utils     # USB and sound through a real kernel, in a virtual machine
 )

@@ -89,9 +89,9 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       "  yuragi run &                                    the daemon, with a synthetic wind\n"
       "  yuragi-viewer                                   show it\n"
       "  yuragi-viewer --connect wall.local:7410 --fullscreen --no-overlay\n"
-      "  xvfb-run -a yuragi-viewer --screenshot now.png  a picture, on a machine without a screen\n"
+      "  yuragi-viewer --screenshot now.png              a picture; needs no screen\n"
       "\n"
-      "Exit code 0: done; 64: wrong command line; 69: no daemon answers, or there is no display; 73: the picture "
+      "Exit code 0: done; 64: wrong command line; 69: no daemon answers, or nothing to draw on; 73: the picture "
       "cannot be\n"
       "written.");
 }

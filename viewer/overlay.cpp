@@ -196,7 +196,7 @@ void write_scenes(const OverlayFacts& facts) {
 
 }  // namespace
 
-Overlay::Overlay(GLFWwindow* window, double content_scale) {
+Overlay::Overlay(GLFWwindow* window, double content_scale) : has_window_(window != nullptr) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // nothing is kept on disk
   load_font(content_scale);
@@ -209,19 +209,23 @@ Overlay::Overlay(GLFWwindow* window, double content_scale) {
   style.ScaleAllSizes(static_cast<float>(content_scale));
   style.Colors[ImGuiCol_WindowBg] = ImVec4(0.06F, 0.07F, 0.06F, 0.62F);
   style.Colors[ImGuiCol_Text] = ImVec4(0.98F, 0.97F, 0.94F, 1.0F);
-  ImGui_ImplGlfw_InitForOpenGL(window, true);
+  if (has_window_) ImGui_ImplGlfw_InitForOpenGL(window, true);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
 Overlay::~Overlay() {
   ImGui_ImplOpenGL3_Shutdown();
-  ImGui_ImplGlfw_Shutdown();
+  if (has_window_) ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
 }
 
-void Overlay::draw(const OverlayFacts& facts) {
+void Overlay::draw(const PixelSize& size, const OverlayFacts& facts) {
   ImGui_ImplOpenGL3_NewFrame();
-  ImGui_ImplGlfw_NewFrame();
+  if (has_window_) {
+    ImGui_ImplGlfw_NewFrame();
+  } else {
+    ImGui::GetIO().DisplaySize = ImVec2(static_cast<float>(size.width_px), static_cast<float>(size.height_px));
+  }
   ImGui::NewFrame();
 
   const float margin = ImGui::GetFontSize();

@@ -5,8 +5,7 @@
 
 #include "viewer/stream/pose_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
-
-struct GLFWwindow;
+#include "viewer/window.hpp"
 
 namespace yuragi::viewer {
 
@@ -23,17 +22,20 @@ struct OverlayFacts {
   double heading_deg = 0.0;          ///< of the camera: up on the compass
 };
 
-/// Small texts over the picture: wind, sensors, stream. It takes no input. One at a time; its window's context is
-/// current.
+/// Small texts over the picture: wind, sensors, stream. It takes no input. One at a time; needs a current context.
 class Overlay {
  public:
+  /// `window`: null where there is none.
   Overlay(GLFWwindow* window, double content_scale);
   ~Overlay();
   Overlay(const Overlay&) = delete;
   Overlay& operator=(const Overlay&) = delete;
 
-  /// Draws over the framebuffer that is bound, of the window's size.
-  void draw(const OverlayFacts& facts);
+  /// Draws over the framebuffer that is bound, of this size.
+  void draw(const PixelSize& size, const OverlayFacts& facts);
+
+ private:
+  bool has_window_;
 };
 
 }  // namespace yuragi::viewer

@@ -4,9 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 
 #include "engine/base/address.hpp"
 #include "viewer/gl/dimmer.hpp"
+#include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/overlay.hpp"
 #include "viewer/picture_file.hpp"
@@ -35,6 +37,21 @@ stream::StreamOptions address_of(const ViewerOptions& options) {
   return {.host = address->host, .port = address->port};
 }
 
+/// The context for pictures that no window shows.
+std::unique_ptr<gl::HeadlessContext> make_headless_context() {
+  try {
+#ifdef YURAGI_GL_DEBUG
+    return std::make_unique<gl::HeadlessContext>(gl::HeadlessOptions{.has_messages = true});
+#else
+    return std::make_unique<gl::HeadlessContext>();
+#endif
+  } catch (const std::runtime_error& error) {
+    throw ViewerExit(EX_UNAVAILABLE, std::string(error.what()) +
+                                         ".\nMesa's drivers, which can draw by the processor, are in the packages "
+                                         "libegl-mesa0 and libgl1-mesa-dri.");
+  }
+}
+
 }  // namespace
 
 class Viewer::Show {
@@ -43,15 +60,18 @@ class Viewer::Show {
       : options_(options),
         is_stopping_(is_stopping),
         connection_(address_of(options)),
-        window_({.width_px = options.width_px,
-                 .height_px = options.height_px,
-                 .is_visible = options.screenshot.empty(),
-                 .is_fullscreen = options.is_fullscreen,
-                 .monitor = options.monitor}),
         began_s_(now_s()),
         last_s_(began_s_),
         brightness_(options.is_dark_when_closed ? 0.0 : 1.0),
         has_overlay_(options.overlay.value_or(options.screenshot.empty())) {
+    if (options.screenshot.empty()) {
+      window_.emplace(WindowOptions{.width_px = options.width_px,
+                                    .height_px = options.height_px,
+                                    .is_fullscreen = options.is_fullscreen,
+                                    .monitor = options.monitor});
+    } else {
+      headless_ = make_headless_context();
+    }
 #ifdef YURAGI_GL_DEBUG
     gl::report_gl_errors();
 #endif
@@ -60,24 +80,24 @@ class Viewer::Show {
     stage_.emplace();
     dimmer_.emplace();
     if (!options.scene.empty()) stage_->show_only(options.scene);
-    overlay_.emplace(window_.handle(), window_.content_scale());
+    window_ ? overlay_.emplace(window_->handle(), window_->content_scale()) : overlay_.emplace(nullptr, 1.0);
     camera_.set_turning(options.is_turning);
     frame_camera();
   }
 
   void run_window() {
-    while (!is_stopping_ && !window_.is_closing()) {
-      window_.poll();
+    while (!is_stopping_ && !window_->is_closing()) {
+      window_->poll();
       use_input();
       advance();
-      const PixelSize size = window_.framebuffer_size();
+      const PixelSize size = window_->framebuffer_size();
       if (size.is_empty()) {
-        window_.wait(kIdleWait_s);
+        window_->wait(kIdleWait_s);
         continue;
       }
       draw(size);
       target_->show(size.width_px, size.height_px);
-      window_.swap();
+      window_->swap();
       keep_pace();
     }
   }
@@ -135,7 +155,7 @@ class Viewer::Show {
   }
 
   void use_input() {
-    const WindowInput input = window_.take_input();
+    const WindowInput input = window_->take_input();
     camera_.orbit(input.orbit_right, input.orbit_down);
     camera_.pan(input.pan_right, input.pan_down);
     camera_.zoom(input.zoom_notches);
@@ -187,27 +207,28 @@ class Viewer::Show {
     stage_->draw(*moment_, camera_, *target_);
     dimmer_->draw(static_cast<float>(brightness_));
     if (!has_overlay_) return;
-    overlay_->draw({.wind = moment_->wind,
-                    .playback = timeline_.playback(),
-                    .stream = connection_.status(),
-                    .sensors = sensors_ ? &*sensors_ : nullptr,
-                    .pictures_per_s = 1.0 / picture_s_,
-                    .nodes = stage_->node_count(),
-                    .scenes = stage_->scenes(),
-                    .opacities = moment_->opacities,
-                    .heading_deg = camera_.place().heading_deg});
+    overlay_->draw(size, {.wind = moment_->wind,
+                          .playback = timeline_.playback(),
+                          .stream = connection_.status(),
+                          .sensors = sensors_ ? &*sensors_ : nullptr,
+                          .pictures_per_s = 1.0 / picture_s_,
+                          .nodes = stage_->node_count(),
+                          .scenes = stage_->scenes(),
+                          .opacities = moment_->opacities,
+                          .heading_deg = camera_.place().heading_deg});
   }
 
   /// Waits where the driver does not wait for the screen: no more pictures than the screen can show.
   void keep_pace() {
-    const double rest_s = 0.95 / window_.refresh_rate_hz() - (now_s() - last_s_);
-    if (rest_s > 0.0) window_.wait(rest_s);
+    const double rest_s = 0.95 / window_->refresh_rate_hz() - (now_s() - last_s_);
+    if (rest_s > 0.0) window_->wait(rest_s);
   }
 
   const ViewerOptions options_;
   const std::atomic<bool>& is_stopping_;
   stream::StreamConnection connection_;
-  Window window_;  // the members below need its context
+  std::optional<Window> window_;  // this or the next; the members below need its context
+  std::unique_ptr<gl::HeadlessContext> headless_;
   std::optional<looks::Stage> stage_;
   std::optional<gl::Dimmer> dimmer_;
   std::optional<Overlay> overlay_;

@@ -18,9 +18,9 @@ std::string& last_glfw_error() {
 }
 
 [[noreturn]] void throw_unavailable(const std::string& what) {
-  throw ViewerExit(EX_UNAVAILABLE, what + " (" + last_glfw_error() +
-                                       ").\nOn a machine without a screen, use a virtual one: "
-                                       "xvfb-run -a yuragi-viewer --screenshot picture.png");
+  throw ViewerExit(EX_UNAVAILABLE,
+                   what + " (" + last_glfw_error() +
+                       ").\nA picture in a file needs no screen: yuragi-viewer --screenshot picture.png");
 }
 
 }  // namespace
@@ -36,7 +36,6 @@ struct Window::State {
 #ifdef YURAGI_GL_DEBUG
     glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
 #endif
-    glfwWindowHint(GLFW_VISIBLE, options.is_visible ? GLFW_TRUE : GLFW_FALSE);
     window = glfwCreateWindow(options.width_px, options.height_px, "Yuragi", nullptr, nullptr);
     if (window == nullptr) {
       glfwTerminate();

@@ -11,7 +11,6 @@ namespace yuragi::viewer {
 struct WindowOptions {
   int width_px = 1280;
   int height_px = 720;
-  bool is_visible = true;
   bool is_fullscreen = false;
   std::optional<int> monitor;  ///< for full screen, counted from 0; empty: the primary one
 };

@@ -1,13 +1,16 @@
-// The real program, drawing under a virtual X server. What it writes is looked at as a person would: sky above, grass
-// below, and the grass leans.
+// The real program: pictures in files, drawn without a display, and a window on a virtual X server. They are looked at
+// as a person would: sky above, grass below, and the grass leans.
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
+#include <thread>
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -129,7 +132,7 @@ class PictureTest : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Runs the viewer on a screen of its own.
+  /// Runs the viewer where there is no display.
   Ended take_picture(std::uint16_t port, const std::string& file, const std::vector<std::string>& more) const {
     std::vector<std::string> words = {test::built_path("bin/yuragi-viewer"),
                                       "--connect",
@@ -139,8 +142,7 @@ class PictureTest : public testing::Test {
                                       "--screenshot",
                                       (folder_ / file).string()};
     words.insert(words.end(), more.begin(), more.end());
-    const VirtualScreen screen;
-    return run(words, folder_, screen.environment());
+    return run(words, folder_, environment_without_screen());
   }
 
   Ended run_without_screen(const std::vector<std::string>& arguments) const {
@@ -298,7 +300,57 @@ TEST_F(PictureTest, EndsWith73WhenThePictureCannotBeWritten) {
 TEST_F(PictureTest, EndsWith69AndSaysWhatToDoWhereThereIsNoDisplay) {
   const Ended ended = run_without_screen({});
   EXPECT_EQ(ended.code, 69);
-  EXPECT_THAT(ended.said, testing::HasSubstr("xvfb-run -a yuragi-viewer"));
+  EXPECT_THAT(ended.said, testing::HasSubstr("yuragi-viewer --screenshot"));
+}
+
+TEST_F(PictureTest, EndsWith69AndNamesThePackagesWhereNothingCanDraw) {
+  std::vector<std::string> environment = environment_without_screen();
+  environment.emplace_back("__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent");
+  const Ended ended = run({test::built_path("bin/yuragi-viewer"), "--screenshot", (folder_ / "none.png").string()},
+                          folder_, environment);
+  EXPECT_EQ(ended.code, 69);
+  EXPECT_THAT(ended.said, testing::HasSubstr("libegl-mesa0"));
+}
+
+/// The whole way to a screen: a window without a frame, in the upper left corner.
+TEST_F(PictureTest, ShowsThePictureInAWindow) {
+  const pose::Skeleton meadow = test_meadow(60, 6.0);
+  wire::FrameEncoder encoder;
+  const StreamServer server(greeting_for(meadow) +
+                            frame_of(meadow, test_pose(meadow, 0.0, 0.3, 0.0, 140.0), 1, 0.1, 140.0, encoder));
+  const VirtualScreen screen(folder_);
+  const pid_t viewer =
+      start_program({test::built_path("bin/yuragi-viewer"), "--connect", "127.0.0.1:" + std::to_string(server.port()),
+                     "--size", "480x270", "--no-overlay"},
+                    screen.environment(), nullptr);
+  ASSERT_NE(viewer, 0);
+
+  // The grass is green: not before the stream has come.
+  const auto shows_grass = [&screen] {
+    const std::vector<std::uint8_t> pixels = screen.pixels();
+    if (pixels.empty()) return false;
+    double blue = 0.0;
+    double green = 0.0;
+    for (std::size_t y = 200; y < 260; ++y) {
+      for (std::size_t x = 0; x < 480; ++x) {
+        const std::size_t at = 4 * (y * VirtualScreen::kWidth_px + x);
+        blue += pixels[at];
+        green += pixels[at + 1];
+      }
+    }
+    return green > 40.0 * 60 * 480 && green > 2.0 * blue;
+  };
+  const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+  bool is_seen = false;
+  while (!is_seen && std::chrono::steady_clock::now() < limit) {
+    is_seen = shows_grass();
+    if (!is_seen) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  EXPECT_TRUE(is_seen);
+  ::kill(viewer, SIGTERM);
+  int status = -1;
+  waitpid(viewer, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
 TEST_F(PictureTest, EndsWith64ForAPictureThatItCannotWriteAndNamesThoseThatItCan) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <csignal>
+#include <fstream>
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -33,7 +34,7 @@ std::vector<std::string> environment_without_screen() {
   return environment;
 }
 
-VirtualScreen::VirtualScreen() {
+VirtualScreen::VirtualScreen(const std::filesystem::path& folder) : picture_(folder / "Xvfb_screen0") {
   constexpr int kNumberFd = 9;
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return;
@@ -41,9 +42,10 @@ VirtualScreen::VirtualScreen() {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], kNumberFd);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  server_ = start_program(
-      {"Xvfb", "-displayfd", std::to_string(kNumberFd), "-terminate", "-nolisten", "tcp", "-screen", "0", "640x480x24"},
-      environment_without_screen(), &actions);
+  server_ =
+      start_program({"Xvfb", "-displayfd", std::to_string(kNumberFd), "-terminate", "-nolisten", "tcp", "-screen", "0",
+                     std::to_string(kWidth_px) + "x" + std::to_string(kHeight_px) + "x24", "-fbdir", folder.string()},
+                    environment_without_screen(), &actions);
   posix_spawn_file_actions_destroy(&actions);
   ::close(ends[1]);
 
@@ -61,8 +63,20 @@ VirtualScreen::~VirtualScreen() {
 
 std::vector<std::string> VirtualScreen::environment() const {
   std::vector<std::string> environment = environment_without_screen();
-  environment.push_back("DISPLAY=" + name());
+  environment.push_back("DISPLAY=:" + number_);
   return environment;
+}
+
+std::vector<std::uint8_t> VirtualScreen::pixels() const {
+  // An XWD file (X11/XWDFile.h): its pixels are the last of it.
+  constexpr std::size_t kBytes = 4 * kWidth_px * kHeight_px;
+  std::ifstream file(picture_, std::ios::binary | std::ios::ate);
+  const std::streamoff end = file.tellg();
+  if (!file || end < static_cast<std::streamoff>(kBytes)) return {};
+  std::vector<std::uint8_t> pixels(kBytes);
+  file.seekg(end - static_cast<std::streamoff>(kBytes));
+  file.read(reinterpret_cast<char*>(pixels.data()), static_cast<std::streamsize>(kBytes));
+  return file ? pixels : std::vector<std::uint8_t>{};
 }
 
 }  // namespace yuragi::viewer

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,21 +18,28 @@ pid_t start_program(std::vector<std::string> words, std::vector<std::string> env
 std::vector<std::string> environment_without_screen();
 
 /// A virtual X server, on a display number that it finds free itself. (xvfb-run -a guesses one, and may lose it to
-/// another.) It ends with its first client, or with this.
+/// another.) It ends with its first client, or with this. What it shows is in a file.
 class VirtualScreen {
  public:
-  VirtualScreen();
+  /// `folder`: of that file; must outlive this.
+  explicit VirtualScreen(const std::filesystem::path& folder);
   ~VirtualScreen();
   VirtualScreen(const VirtualScreen&) = delete;
   VirtualScreen& operator=(const VirtualScreen&) = delete;
 
-  /// As DISPLAY has it.
-  std::string name() const { return ":" + number_; }
+  /// Our own environment, and DISPLAY.
   std::vector<std::string> environment() const;
+
+  static constexpr std::size_t kWidth_px = 640;
+  static constexpr std::size_t kHeight_px = 480;
+  /// Blue, green, red and a byte without meaning for each pixel, rows from the top down: the screen at this moment.
+  /// Empty where the server has not written its file.
+  std::vector<std::uint8_t> pixels() const;
 
  private:
   pid_t server_ = 0;
   std::string number_;
+  std::filesystem::path picture_;
 };
 
 }  // namespace yuragi::viewer

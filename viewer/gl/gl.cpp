@@ -1,5 +1,6 @@
 #include "viewer/gl/gl.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdio>
@@ -18,12 +19,20 @@ struct GlShader {
   GLuint name;
 };
 
+/// The file that a text is of; `otherwise` where it is of none.
+std::string file_of(std::string_view source, const std::string& otherwise) {
+  const auto all = shaders::all();
+  const auto found = std::ranges::find(all, source, &shaders::Shader::text);
+  return found == all.end() ? otherwise : std::string(found->file);
+}
+
 void compile(const GlShader& shader, const std::string& name, std::string_view source) {
-  const std::string_view version = "#version 330 core\n";
-  const std::array<const GLchar*, 3> parts{version.data(), shaders::kCommon.data(), source.data()};
-  const std::array<GLint, 3> lengths{static_cast<GLint>(version.size()), static_cast<GLint>(shaders::kCommon.size()),
-                                     static_cast<GLint>(source.size())};
-  glShaderSource(shader.name, 3, parts.data(), lengths.data());
+  // Lines from 10001 on are those of common.glsl.
+  std::string text = "#version 330 core\n#line 10001\n";
+  text.append(shaders::kCommon).append("\n#line 1\n").append(source);
+  const GLchar* const begin = text.data();
+  const auto length = static_cast<GLint>(text.size());
+  glShaderSource(shader.name, 1, &begin, &length);
   glCompileShader(shader.name);
 
   GLint is_compiled = GL_FALSE;
@@ -31,10 +40,12 @@ void compile(const GlShader& shader, const std::string& name, std::string_view s
   if (is_compiled == GL_TRUE) return;
   std::array<GLchar, 4096> log{};
   glGetShaderInfoLog(shader.name, log.size(), nullptr, log.data());
-  throw std::runtime_error("the graphics driver cannot compile the shader " + name + ":\n" + log.data());
+  throw std::runtime_error("the graphics driver cannot compile " + file_of(source, name) +
+                           " (10001 is line 1 of common.glsl):\n" + log.data());
 }
 
 std::atomic<int> error_count{0};
+std::atomic<std::size_t> upload_count{0};
 
 void GLAPIENTRY log_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
                             const void*) {
@@ -125,6 +136,13 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
 void set_sampler(const GlProgram& program, const char* name, GLint unit) {
   glUseProgram(program.name());
   glUniform1i(glGetUniformLocation(program.name(), name), unit);
+}
+
+std::size_t uploaded_bytes() {
+  return upload_count;
+}
+void count_upload(std::size_t bytes) {
+  upload_count += bytes;
 }
 
 bool is_software_renderer() {

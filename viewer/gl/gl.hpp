@@ -75,12 +75,18 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
 /// not used.
 void set_sampler(const GlProgram& program, const char* name, GLint unit);
 
+/// All that uploads count since the program began, in bytes. For measurements.
+std::size_t uploaded_bytes();
+/// To be called with every upload of a picture that stream_to() does not make.
+void count_upload(std::size_t bytes);
+
 /// Gives new content to a buffer that is drawn from every frame, without waiting for the GPU, which may still read the
 /// old content.
 template <class T>
 void stream_to(GLenum target, const GlBuffer& buffer, std::span<const T> content) {
   glBindBuffer(target, buffer.name());
   glBufferData(target, static_cast<GLsizeiptr>(content.size_bytes()), content.data(), GL_STREAM_DRAW);
+  count_upload(content.size_bytes());
 }
 
 /// Does the driver compute every pixel on the processor, without graphics hardware?

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string_view>
 
 /// The text of viewer/gl/shaders/*.glsl, which the build puts into the program.
@@ -31,5 +32,12 @@ extern const std::string_view kSolidFrag;
 extern const std::string_view kUndercoatVert;
 extern const std::string_view kWaterVert;
 extern const std::string_view kWaterFrag;
+
+struct Shader {
+  std::string_view file;
+  std::string_view text;
+};
+/// All of them.
+std::span<const Shader> all();
 
 }  // namespace yuragi::viewer::gl::shaders

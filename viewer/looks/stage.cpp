@@ -85,6 +85,7 @@ meshes::Bounds Stage::field(const stream::PoseMoment& moment) const {
 void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target) {
   const meshes::View view = meshes::view_of(camera, target.width_px(), target.height_px(), field(moment));
   const meshes::View flat = meshes::laid_flat(view);
+  if (clock_ != nullptr) clock_->begin();
   view_buffer_.set(view);
   target.begin();
   glEnable(GL_DEPTH_TEST);
@@ -103,23 +104,28 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
     door_.begin_mark(gl::kHole);
     renderer.draw_hole();
     door_.end_mark();
+    mark_pass(scenes_[scene]->kind);
     if (renderer.casts_shadow()) {
       view_buffer_.set(flat);
       door_.begin_mark(gl::kShadow);
       renderer.draw(flat);
       door_.end_mark();
       view_buffer_.set(view);
+      mark_pass("shadows");
     }
     door_.close();
   }
   landscape_.draw();
+  mark_pass("landscape");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
     door_.open(moment.opacities[scene], scene);
     views_[scene]->renderer->draw_light();
     door_.close();
   }
+  mark_pass("lights");
   target.resolve();
+  mark_pass("resolving");
 }
 
 }  // namespace yuragi::viewer::looks

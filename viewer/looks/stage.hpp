@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "viewer/gl/pass_clock.hpp"
 #include "viewer/gl/render_target.hpp"
 #include "viewer/gl/screen_door.hpp"
 #include "viewer/gl/view_buffer.hpp"
@@ -37,6 +38,10 @@ class Stage {
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
+  /// From now on each picture's passes are timed: by kind of scene, their shadows, the landscape, lights. Null: no
+  /// longer. Must outlive the drawing.
+  void time_passes_with(gl::PassClock* clock) { clock_ = clock; }
+
  private:
   struct SceneView {
     wire::SceneModel scene;
@@ -49,6 +54,9 @@ class Stage {
   std::optional<meshes::Bounds> around(IsChosen&& is_chosen) const;
   bool is_seen(const stream::PoseMoment& moment, std::size_t scene) const;
   meshes::Bounds field(const stream::PoseMoment& moment) const;
+  void mark_pass(std::string_view name) {
+    if (clock_ != nullptr) clock_->mark(name);
+  }
 
   std::vector<std::unique_ptr<SceneView>> views_;  // a renderer refers to its scene, which may not move
   std::vector<const wire::SceneModel*> scenes_;    // of views_
@@ -56,6 +64,7 @@ class Stage {
   Landscape landscape_;
   gl::ScreenDoor door_;
   gl::ViewBuffer view_buffer_;
+  gl::PassClock* clock_ = nullptr;
 };
 
 }  // namespace yuragi::viewer::looks

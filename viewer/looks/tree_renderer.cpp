@@ -107,6 +107,7 @@ void TreeRenderer::move_to(const pose::Pose& pose) {
     const std::span<const float> joints = std::as_const(joints_).level(i).data();
     glBufferSubData(GL_TEXTURE_BUFFER, static_cast<GLintptr>(meshes::first_joint_at(*tree_, i) * sizeof(float)),
                     static_cast<GLsizeiptr>(joints.size_bytes()), joints.data());
+    gl::count_upload(joints.size_bytes());
   }
 }
 

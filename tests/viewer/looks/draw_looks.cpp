@@ -1,6 +1,6 @@
 // Draws models of the tests, calm and in a storm, without a daemon: to look at what has been changed.
 //
-//   xvfb-run -a draw_looks FOLDER [WIDTHxHEIGHT [KIND...]]      KIND as in test_models.hpp, or "garden"
+//   draw_looks FOLDER [WIDTHxHEIGHT [KIND...]]      KIND as in test_models.hpp, or "garden"
 
 #include <cstdio>
 #include <string>
@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "tests/viewer/test_models.hpp"
+#include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/picture_file.hpp"
-#include "viewer/window.hpp"
 
 int main(int argc, char** argv) {
   using namespace yuragi;
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
     kinds = {"grass", "fur", "curtain", "flag", "banner", "tree", "ripple", "flame", "flame panel", "garden"};
   }
 
-  const viewer::Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
+  const viewer::gl::HeadlessContext context({.has_messages = true});
   viewer::gl::report_gl_errors();
   viewer::looks::Stage stage;
   viewer::gl::RenderTarget target(width_px, height_px, 4);

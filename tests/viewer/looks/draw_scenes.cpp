@@ -1,6 +1,6 @@
 // Pictures of every scene of the engine, alone: calm, in a breeze, in a storm; without a daemon.
 //
-//   xvfb-run -a draw_scenes FOLDER [WIDTHxHEIGHT [KIND[,PARAMETER=VALUE...]...]]
+//   draw_scenes FOLDER [WIDTHxHEIGHT [KIND[,PARAMETER=VALUE...]...]]
 
 #include <algorithm>
 #include <cstdio>
@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "engine/scenes/scene.hpp"
+#include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/picture_file.hpp"
-#include "viewer/window.hpp"
 
 namespace {
 
@@ -64,7 +64,7 @@ int draw_scenes(const std::vector<std::string>& words) {
     for (const scenes::SceneDescription* description : scenes::scene_table()) kinds.emplace_back(description->name);
   }
 
-  const viewer::Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
+  const viewer::gl::HeadlessContext context({.has_messages = true});
   viewer::gl::report_gl_errors();
   viewer::looks::Stage stage;
   viewer::gl::RenderTarget target(width_px, height_px, 4);

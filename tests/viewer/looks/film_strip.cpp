@@ -2,7 +2,7 @@
 // moments from left to right and then downward. Everything is played in lock-step, so that the same recording,
 // configuration and build give the same poses.
 //
-//   xvfb-run -a film_strip RECORDING.windlog STRIP.png --from 600 --camera 350,12,20 --camera 0,89,12
+//   film_strip RECORDING.windlog STRIP.png --from 600 --camera 350,12,20 --camera 0,89,12
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +17,9 @@
 
 #include "daemon/animation/animation.hpp"
 #include "daemon/tools/offline/lockstep_replay.hpp"
+#include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/picture_file.hpp"
-#include "viewer/window.hpp"
 
 namespace {
 
@@ -153,7 +153,7 @@ class Sheet {
 };
 
 void make_strip(const StripOptions& options) {
-  const viewer::Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
+  const viewer::gl::HeadlessContext context({.has_messages = true});
   viewer::gl::report_gl_errors();
   viewer::looks::Stage stage;
   viewer::gl::RenderTarget target(options.width_px, options.height_px, 4);

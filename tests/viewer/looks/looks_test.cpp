@@ -1,4 +1,4 @@
-// Each renderer, drawn for real by the processor under a virtual X server, and looked at: is something there where it
+// Each renderer, drawn for real by the processor, and looked at: is something there where it
 // should be, and does it move and fade?
 
 #include <algorithm>
@@ -11,10 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/test_models.hpp"
-#include "tests/viewer/virtual_screen.hpp"
+#include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/stream/scene_timeline.hpp"
-#include "viewer/window.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
@@ -37,16 +36,10 @@ std::size_t changed(const Pixels& a, const Pixels& b) {
 class OnScreenTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    screen_ = std::make_unique<VirtualScreen>();
-    ::setenv("DISPLAY", screen_->name().c_str(), 1);  // NOLINT(concurrency-mt-unsafe): before any thread begins
-    window_ =
-        std::make_unique<Window>(WindowOptions{.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
+    context_ = std::make_unique<gl::HeadlessContext>(gl::HeadlessOptions{.is_software = true, .has_messages = true});
     gl::report_gl_errors();
   }
-  static void TearDownTestSuite() {
-    window_.reset();
-    screen_.reset();
-  }
+  static void TearDownTestSuite() { context_.reset(); }
 
   void SetUp() override {
     stage_ = std::make_unique<Stage>();
@@ -80,8 +73,7 @@ class OnScreenTest : public testing::Test {
   std::unique_ptr<gl::RenderTarget> target_;
 
  private:
-  static inline std::unique_ptr<VirtualScreen> screen_;
-  static inline std::unique_ptr<Window> window_;
+  static inline std::unique_ptr<gl::HeadlessContext> context_;
   int errors_before_ = 0;
 };
 

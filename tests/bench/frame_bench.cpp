@@ -1,0 +1,150 @@
+// yuragi-frame-bench: what a picture of the viewer costs, for meadows of 10,000, 100,000 and 1,000,000 blades and the
+// garden, drawn without a display on what graphics this machine has. It prints a table: the time to the last pixel, the
+// processor time of this thread (with its part of the former) and of all threads, which draw where there is no graphics
+// hardware, what is uploaded, and on graphics hardware the time of each pass. Poses are made before; all are medians.
+// Of other programs at work, the processor times feel least.
+//
+//   yuragi-frame-bench [--size 1280x720] [--pictures 30] [--samples 1] [--software] [--only 100,000]
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <functional>
+#include <map>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "tests/pictures/scenes_in_wind.hpp"
+#include "tests/support/places.hpp"
+#include "viewer/gl/headless_context.hpp"
+#include "viewer/looks/stage.hpp"
+
+namespace {
+
+using namespace yuragi;
+using namespace yuragi::viewer;
+
+struct BenchOptions {
+  std::string size = "1280x720";
+  int width_px = 1280;
+  int height_px = 720;
+  int pictures = 30;
+  int samples = 1;
+  bool is_software = false;
+  std::string only;
+};
+
+struct Row {
+  std::string name;
+  daemon::settings::Config config;
+};
+
+/// As dense as the meadow is by default.
+daemon::settings::Config meadow(int across, int deep) {
+  return daemon::settings::parse_config(
+      fmt::format("[[scene]]\nkind = \"grass\"\nblades_across = {}\nblades_deep = {}\nwidth = {}\ndepth = {}\n", across,
+                  deep, 0.07 * across, 0.07 * deep),
+      "a meadow");
+}
+
+std::vector<Row> rows() {
+  return {{"10,000", meadow(100, 100)},
+          {"100,000", meadow(400, 250)},
+          {"1,000,000", meadow(1250, 800)},
+          {"garden", daemon::settings::load_config(test::source_path("config/garden.toml"))}};
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double processor_time_ms(clockid_t whose) {
+  std::timespec time{};
+  ::clock_gettime(whose, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
+}
+
+void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, gl::RenderTarget& target) {
+  constexpr int kWarmUp = 3;
+  constexpr std::size_t kMoments = 4;
+  ScenesInWind scenes(row.config);
+  scenes.advance(1.0);
+  std::vector<stream::PoseMoment> moments;
+  for (std::size_t i = 0; i < kMoments; ++i) {
+    scenes.advance(1.0 / 60.0);
+    moments.push_back(scenes.moment());
+  }
+  stage.set_scenes(scenes.models());
+  meshes::OrbitCamera camera;
+  camera.frame(stage.home(static_cast<double>(options.width_px) / options.height_px));
+
+  gl::PassClock clock;
+  if (!gl::is_software_renderer()) stage.time_passes_with(&clock);
+  std::vector<double> times_ms, thread_ms, process_ms, uploads_mb;
+  std::map<std::string, std::vector<double>> passes_ms;
+  std::vector<std::string> pass_names;
+  for (int picture = -kWarmUp; picture < options.pictures; ++picture) {
+    glFinish();
+    const auto begin = std::chrono::steady_clock::now();
+    const double thread_begin_ms = processor_time_ms(CLOCK_THREAD_CPUTIME_ID);
+    const double process_begin_ms = processor_time_ms(CLOCK_PROCESS_CPUTIME_ID);
+    const std::size_t uploaded = gl::uploaded_bytes();
+    stage.draw(moments[static_cast<std::size_t>(picture + kWarmUp) % kMoments], camera, target);
+    glFinish();
+    if (picture < 0) continue;
+    times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    thread_ms.push_back(processor_time_ms(CLOCK_THREAD_CPUTIME_ID) - thread_begin_ms);
+    process_ms.push_back(processor_time_ms(CLOCK_PROCESS_CPUTIME_ID) - process_begin_ms);
+    uploads_mb.push_back(1e-6 * static_cast<double>(gl::uploaded_bytes() - uploaded));
+    if (gl::is_software_renderer()) continue;
+    for (const gl::PassClock::Pass& pass : clock.passes()) {
+      std::vector<double>& of_pass = passes_ms[pass.name];
+      if (of_pass.empty()) pass_names.push_back(pass.name);
+      of_pass.push_back(pass.time_ms);
+    }
+  }
+  stage.time_passes_with(nullptr);
+
+  const double time_ms = median(times_ms);
+  fmt::print("{:>10} {:>10} {:>9.2f} {:>11.1f} {:>10.2f} {:>6.0f} % {:>11.2f} {:>10.2f}\n", row.name, options.size,
+             time_ms, 1e3 / time_ms, median(thread_ms), 100.0 * median(thread_ms) / time_ms, median(process_ms),
+             median(uploads_mb));
+  for (const std::string& name : pass_names) fmt::print("{:>31} {:>7.3f} ms\n", name, median(passes_ms[name]));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    BenchOptions options;
+    CLI::App app("What a picture of the viewer costs");
+    app.add_option("--size", options.size, "WIDTHxHEIGHT, pixels")->capture_default_str();
+    app.add_option("--pictures", options.pictures, "of each row")->check(CLI::Range(1, 100000))->capture_default_str();
+    app.add_option("--samples", options.samples, "a pixel")->check(CLI::Range(1, 16))->capture_default_str();
+    app.add_flag("--software", options.is_software, "by the processor, even where there is graphics hardware");
+    app.add_option("--only", options.only, "one row: 10,000 or 100,000 or 1,000,000 or garden");
+    CLI11_PARSE(app, argc, argv);
+    if (std::sscanf(options.size.c_str(), "%dx%d", &options.width_px, &options.height_px) != 2) return 64;
+
+    const gl::HeadlessContext context({.is_software = options.is_software});
+    looks::Stage stage;
+    gl::RenderTarget target(options.width_px, options.height_px, options.samples);
+    fmt::print("{}, {} samples a pixel, medians of {} pictures\n",
+               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(), options.pictures);
+    fmt::print("{:>10} {:>10} {:>9} {:>11} {:>10} {:>8} {:>11} {:>10}\n", "blades", "size", "frame ms", "pictures/s",
+               "thread ms", "share", "process ms", "upload MB");
+    for (const Row& row : rows()) {
+      if (options.only.empty() || options.only == row.name) measure(row, options, stage, target);
+    }
+    return glGetError() == GL_NO_ERROR ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "yuragi-frame-bench: %s\n", error.what());
+    return 70;
+  }
+}

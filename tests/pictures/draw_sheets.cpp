@@ -1,0 +1,157 @@
+// Contact sheets, to look at: of each scene a page for each light, calm to storm from left to right and one framing
+// under the other, and a strip of 12 pictures over time in a breeze. tests/pictures/sheet calls this.
+//
+//   draw_sheets FOLDER [--scene NAME]...
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "tests/pictures/canvas.hpp"
+#include "tests/pictures/scenes_in_wind.hpp"
+#include "viewer/gl/headless_context.hpp"
+#include "viewer/looks/stage.hpp"
+
+namespace {
+
+using namespace yuragi;
+using namespace yuragi::viewer;
+
+constexpr int kSamples = 4;
+constexpr int kGap_px = 8;
+constexpr double kSettling_s = 20.0;
+
+/// The times of day that a page is made of, once the viewer has more than one.
+struct Light {
+  const char* name;
+};
+constexpr std::array kLights{Light{"evening"}};
+
+struct Framing {
+  const char* name;
+  int width_px, height_px;
+  meshes::CameraPlace (*place)(const looks::Stage& stage, double aspect);
+};
+
+meshes::CameraPlace home(const looks::Stage& stage, double aspect) {
+  return stage.home(aspect);
+}
+meshes::CameraPlace near(const looks::Stage& stage, double aspect) {
+  meshes::CameraPlace place = stage.home(aspect);
+  place.distance_m *= 0.35;
+  return place;
+}
+meshes::CameraPlace around_middle(const looks::Stage& stage, double pitch_deg, double distance_m) {
+  const meshes::Bounds bounds = stage.bounds();
+  return {.target_m = glm::dvec3((bounds.low_m + bounds.high_m) / 2.0F),
+          .heading_deg = stage.home(1.0).heading_deg,
+          .pitch_deg = pitch_deg,
+          .distance_m = distance_m};
+}
+meshes::CameraPlace far(const looks::Stage& stage, double /*aspect*/) {
+  return around_middle(stage, 8.0, 40.0);
+}
+meshes::CameraPlace above(const looks::Stage& stage, double /*aspect*/) {
+  const meshes::Bounds bounds = stage.bounds();
+  return around_middle(stage, 80.0, 2.0 + 1.6 * static_cast<double>(glm::length(bounds.high_m - bounds.low_m)));
+}
+
+constexpr std::array kFramings{Framing{"wide", 640, 360, home},     Framing{"portrait", 202, 360, home},
+                               Framing{"6:1", 640, 107, home},      Framing{"near", 640, 360, near},
+                               Framing{"far, 40 m", 640, 360, far}, Framing{"above", 640, 360, above}};
+
+std::vector<std::uint8_t> draw(looks::Stage& stage, const stream::PoseMoment& moment, const Framing& framing) {
+  gl::RenderTarget target(framing.width_px, framing.height_px, kSamples);
+  meshes::OrbitCamera camera;
+  camera.frame(framing.place(stage, static_cast<double>(framing.width_px) / framing.height_px));
+  stage.draw(moment, camera, target);
+  return target.read_rgb();
+}
+
+/// Draws the pages of a scene.
+void draw_pages(looks::Stage& stage, std::string_view scene, const std::filesystem::path& folder) {
+  constexpr int kColumn_px = 640 + kGap_px;
+  int height_px = kGap_px;
+  for (const Framing& framing : kFramings) height_px += framing.height_px + Canvas::kTextHeight_px + kGap_px;
+  std::vector<Canvas> pages(kLights.size(), Canvas(static_cast<int>(kWeathers.size()) * kColumn_px, height_px));
+
+  int left_px = 0;
+  for (const Weather& weather : kWeathers) {
+    ScenesInWind scenes(scene, weather.speed_m_s);
+    scenes.advance(kSettling_s);
+    stage.set_scenes(scenes.models());
+    const stream::PoseMoment moment = scenes.moment();
+    for (std::size_t light = 0; light < kLights.size(); ++light) {
+      int top_px = 0;
+      for (const Framing& framing : kFramings) {
+        pages[light].write_text(left_px + kGap_px, top_px + kGap_px,
+                                fmt::format("{}, {} {:g} m/s, {}, {}", scene, weather.name, weather.speed_m_s,
+                                            kLights[light].name, framing.name));
+        top_px += Canvas::kTextHeight_px + kGap_px;
+        pages[light].put(left_px, top_px, framing.width_px, draw(stage, moment, framing));
+        top_px += framing.height_px;
+      }
+    }
+    left_px += kColumn_px;
+  }
+  for (std::size_t light = 0; light < kLights.size(); ++light) {
+    pages[light].save(folder / fmt::format("{}-{}.png", scene, kLights[light].name));
+  }
+}
+
+/// Draws what a scene does in a breeze, from left to right and downward.
+void draw_strip(looks::Stage& stage, std::string_view scene, const std::filesystem::path& folder) {
+  constexpr int kPictures = 12;
+  constexpr int kColumns = 4;
+  constexpr double kStep_s = 1.0 / 6.0;
+  constexpr Framing kFraming{"strip", 480, 270, home};
+  constexpr int kRow_px = kFraming.height_px + Canvas::kTextHeight_px + kGap_px;
+  const Weather& breeze = kWeathers[1];
+
+  Canvas strip(kColumns * (kFraming.width_px + kGap_px), kPictures / kColumns * kRow_px + kGap_px);
+  ScenesInWind scenes(scene, breeze.speed_m_s);
+  scenes.advance(kSettling_s);
+  stage.set_scenes(scenes.models());
+  for (int i = 0; i < kPictures; ++i) {
+    const int left_px = i % kColumns * (kFraming.width_px + kGap_px);
+    const int top_px = i / kColumns * kRow_px;
+    strip.write_text(left_px + kGap_px, top_px + kGap_px,
+                     fmt::format("{}, {} {:g} m/s, {:.2f} s", scene, breeze.name, breeze.speed_m_s, i * kStep_s));
+    strip.put(left_px, top_px + Canvas::kTextHeight_px + kGap_px, kFraming.width_px,
+              draw(stage, scenes.moment(), kFraming));
+    scenes.advance(kStep_s);
+  }
+  strip.save(folder / fmt::format("{}-strip.png", scene));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    std::filesystem::path folder;
+    std::vector<std::string> names{picture_scenes().begin(), picture_scenes().end()};
+    CLI::App app("Contact sheets of the scenes");
+    app.add_option("folder", folder)->required()->check(CLI::ExistingDirectory);
+    app.add_option("--scene", names, "only this; can be given again")->check(CLI::IsMember(names));
+    CLI11_PARSE(app, argc, argv);
+
+    const gl::HeadlessContext context({.has_messages = true});
+    gl::report_gl_errors();
+    looks::Stage stage;
+    for (const std::string& name : names) {
+      std::printf("%s\n", name.c_str());
+      std::fflush(stdout);
+      draw_pages(stage, name, folder);
+      draw_strip(stage, name, folder);
+    }
+    return gl::gl_error_count() == 0 ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "draw_sheets: %s\n", error.what());
+    return 70;
+  }
+}

@@ -1,0 +1,52 @@
+// Every shader through the driver's compiler; what a program's stages say to each other is checked where the pictures
+// are drawn, and by glslangValidator (valid_shaders.py).
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "viewer/gl/gl.hpp"
+#include "viewer/gl/headless_context.hpp"
+#include "viewer/gl/shaders.hpp"
+
+namespace yuragi::viewer::gl {
+namespace {
+
+/// What compiling and linking complains of; empty: nothing.
+std::string complaint_of(std::string_view vertex, std::string_view fragment) {
+  try {
+    link_program("a test", vertex, fragment);
+    return {};
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+constexpr std::string_view kPlainVertex = "void main() { gl_Position = to_clip * vec4(0.0, 0.0, 0.0, 1.0); }";
+
+TEST(ShaderTest, EachCompiles) {
+  const HeadlessContext context({.is_software = true, .has_messages = true});
+  for (const shaders::Shader& shader : shaders::all()) {
+    if (shader.text == shaders::kCommon) continue;  // in front of each
+    const bool is_vertex = shader.file.find(".vert.") != std::string_view::npos;
+    const std::string complaint =
+        is_vertex ? complaint_of(shader.text, "void main() {}") : complaint_of(kPlainVertex, shader.text);
+    // A fragment shader alone misses what the vertex shader gives it: linking is not the matter here.
+    EXPECT_THAT(complaint, testing::Not(testing::HasSubstr("cannot compile")));
+  }
+}
+
+TEST(ShaderTest, AnErrorIsToldWithItsProgramAndLine) {
+  const HeadlessContext context({.is_software = true, .has_messages = true});
+  const std::string complaint = complaint_of("void main() {\n  nonsense;\n}", "void main() {}");
+  EXPECT_THAT(complaint, testing::AllOf(testing::HasSubstr("a test.vert"), testing::HasSubstr(":2(")));
+}
+
+TEST(ShaderTest, WhatDoesNotFitTogetherDoesNotLink) {
+  const HeadlessContext context({.is_software = true, .has_messages = true});
+  EXPECT_THAT(complaint_of("out vec2 given; void main() { given = vec2(0.5); gl_Position = vec4(0.0); }",
+                           "in vec3 given; out vec4 color; void main() { color = given.xyzx; }"),
+              testing::HasSubstr("cannot link the program a test"));
+}
+
+}  // namespace
+}  // namespace yuragi::viewer::gl

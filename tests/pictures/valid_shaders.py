@@ -1,0 +1,71 @@
+"""Every shader and every program of the viewer, judged as GLSL 3.30 core by glslangValidator: what one driver lets pass,
+another refuses.
+
+    valid_shaders.py SOURCE_FOLDER      exit code 1 and the shader's file and line where something is wrong
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+VALIDATOR = "glslangValidator"
+
+
+def constant_of(file):
+    """kGrassVert of grass.vert.glsl, as viewer/gl/CMakeLists.txt has it."""
+    return "k" + "".join(word.capitalize() for word in re.split(r"[._]", file.name.removesuffix(".glsl")))
+
+
+def programs_in(sources):
+    """The names of programs, and of the constants that they are linked of."""
+    call = re.compile(r'link_program\(\s*"([^"]+)",\s*(?:gl::)?shaders::(\w+),\s*(?:gl::)?shaders::(\w+)\)')
+    for source in sources:
+        yield from call.findall(source.read_text())
+
+
+def passed(part, word):
+    """What a shader takes (`in`) or gives (`out`): qualifier, type and name of each."""
+    return set(re.findall(rf"^(flat |smooth |noperspective )?{word} (\w+) (\w+);", part.read_text(), re.MULTILINE))
+
+
+def complaints_of(files, options=()):
+    ended = subprocess.run([VALIDATOR, *options, *files], capture_output=True, text=True, check=False)
+    return ended.stdout if ended.returncode != 0 else ""
+
+
+def check(folder):
+    shader_folder = folder / "viewer/gl/shaders"
+    common = (shader_folder / "common.glsl").read_text()
+    complaints, parts = [], {}
+    with tempfile.TemporaryDirectory() as made:
+        for file in sorted(shader_folder.glob("*.*.glsl")):
+            whole = pathlib.Path(made) / file.name.removesuffix(".glsl")
+            whole.write_text(f"#version 330 core\n#line 10001\n{common}\n#line 1\n{file.read_text()}")
+            parts[constant_of(file)] = whole
+            if said := complaints_of([whole]):
+                complaints.append(f"{file} (10001 is line 1 of common.glsl):\n{said}")
+        linked = set()
+        for name, vertex, fragment in programs_in(sorted((folder / "viewer").rglob("*.cpp"))):
+            linked |= {vertex, fragment}
+            if said := complaints_of([parts[vertex], parts[fragment]], ["-l"]):
+                complaints.append(f"program {name} of {vertex} and {fragment}:\n{said}")
+            if missing := passed(parts[fragment], "in") - passed(parts[vertex], "out"):
+                complaints.append(f"program {name}: {vertex} does not give what {fragment} takes: {sorted(missing)}")
+        complaints += [f"{part.name}.glsl is in no program" for name, part in parts.items() if name not in linked]
+    if not parts:
+        complaints.append(f"no shaders in {shader_folder}")
+    return complaints
+
+
+def main():
+    if shutil.which(VALIDATOR) is None:
+        sys.exit(f"{VALIDATOR} is not there: config/setup.sh --test installs it")
+    complaints = check(pathlib.Path(sys.argv[1]))
+    print("\n".join(complaints))
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
