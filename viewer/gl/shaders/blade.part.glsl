@@ -2,6 +2,7 @@
 
 const float kFarFrom_m = 6.0;  // where that begins
 const float kFar_m = 20.0;     // from here on it is all
+const vec4 kNowhere = vec4(2.0, 2.0, 2.0, 1.0);  // outside of the picture: a blade without length would leave dots
 uniform bool is_far;           // every blade that is drawn is farther away than that
 
 out vec3 shade;  // the screen's value; blades are so small that one for each vertex is exact enough

@@ -27,6 +27,11 @@ void main() {
   float is_up = clamp((share - traits.z) / (0.12 * share), 0.0, 1.0);
   is_up = share < 1.0 ? is_up : 1.0;
   is_up *= 1.0 - smoothstep(0.5 * kTallReach_m, kTallReach_m, distance(eye_m.xyz, root_width.xyz));
+  if (is_up <= 0.0) {
+    gl_Position = kNowhere;
+    shade = vec3(0.0);
+    return;
+  }
   place.y = root_width.y + (place.y - root_width.y) * is_up;
   put_vertex(place, normalize(along), float(ring) / float(rings), side, root_width.w * pow(share, -0.7) * is_up, traits.x, traits.y,
              patches(root_width.xz), bend_at(root_width.xz, 1.0), length(chord.xz) / length(chord), 1.0);

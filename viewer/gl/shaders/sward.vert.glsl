@@ -38,6 +38,11 @@ void main() {
   is_up *= max(tall * grown.g, grown.b) > fract(chance * 31.0) ? 0.0 : 1.0;  // streamed ones stand here, or water
   float length_m = grown_m(grown.r, tall, fract(chance * 13.0)) * form.w * (1.0 + 0.55 * patch_at.y) * is_up;
   length_m *= is_seed(chance) || is_flower(chance, patch_at) ? 1.12 : 1.0;
+  if (length_m < 1e-4) {
+    gl_Position = kNowhere;
+    shade = vec3(0.0);
+    return;
+  }
 
   // An arc: its own tilt and droop, and the wind's bend in proportion to the height.
   vec2 heading = vec2(sin(traits.x), -cos(traits.x));
@@ -51,6 +56,6 @@ void main() {
   vec3 place = vec3(root_m.x, 0.0, root_m.y) + length_m * t * leaning(tilt + turned * (0.5 * t));
   vec3 along = leaning(tilt + turned * max(t, 0.15));
   vec3 chord = leaning(tilt + turned * 0.5);
-  put_vertex(place, along, t, side, width_m * (length_m > 0.0 ? 1.0 : 0.0) * pow(share, -0.7) * min(is_up * 2.0, 1.0), traits.x + form.z, chance, patch_at,
+  put_vertex(place, along, t, side, width_m * pow(share, -0.7) * min(is_up * 2.0, 1.0), traits.x + form.z, chance, patch_at,
              bend, mix(0.55, length(chord.xz), tall), tall);
 }
