@@ -97,6 +97,9 @@ port = ${sensor##*:}
 
 [[scene]]
 kind = "grass"
+
+[[scene]]
+kind = "ground"
 TOML
 "$bin/yuragi" run --config "$work/demo.toml" --listen 127.0.0.1:0 >"$work/daemon.log" 2>&1 &
 children+=($!)

@@ -299,14 +299,14 @@ ParameterValues defaults_of(const Description& description) {
   return ParameterValues::resolve(parameters_of(description), {}).value();
 }
 
-// The sensor and the scene of a file without any.
+// The sensor and the scenes of a file without any.
 SensorConfig synthetic_sensor() {
   const drivers::sensor::DriverDescription& synthetic = description_named(drivers::sensor::driver_table(), "synthetic");
   return default_sensor(std::string(synthetic.name), synthetic, defaults_of(synthetic));
 }
-SceneConfig grass_scene() {
-  const scenes::SceneDescription& grass = description_named(scenes::scene_table(), "grass");
-  return scene_config_of(std::string(grass.name), grass, defaults_of(grass));
+SceneConfig default_scene(std::string_view kind) {
+  const scenes::SceneDescription& scene = description_named(scenes::scene_table(), kind);
+  return scene_config_of(std::string(scene.name), scene, defaults_of(scene));
 }
 
 toml::table to_table(const ParameterValues& values) {
@@ -348,7 +348,9 @@ Config parse_config(std::string_view toml_text, const std::string& source_name) 
   }
   Config config = ConfigReader(source_name).read(root);
   if (config.sensors.empty()) config.sensors.push_back(synthetic_sensor());
-  if (config.scenes.empty()) config.scenes.push_back(grass_scene());
+  if (config.scenes.empty()) {
+    for (const char* kind : {"grass", "ground"}) config.scenes.push_back(default_scene(kind));
+  }
   return config;
 }
 

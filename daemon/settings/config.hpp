@@ -54,7 +54,7 @@ class ConfigError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What `yuragi run` does without a file: one synthetic sensor and one grass scene.
+/// What `yuragi run` does without a file: one synthetic sensor, a grass scene and the ground around it.
 Config default_config();
 
 /// A sensor that is in no file, with the defaults of the tables that every sensor has.

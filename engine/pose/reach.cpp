@@ -17,6 +17,7 @@ double reach_of(const std::vector<float>& x_m, const std::vector<float>& z_m, st
 }
 
 double reach_of(const StrandSkeleton& strands) {
+  if (strands.columns > 0) return 0.0;
   return reach_of(strands.root_x_m, strands.root_z_m, 0, strands.strand_count);
 }
 

@@ -34,6 +34,9 @@ struct StrandSkeleton {
   std::vector<float> curl_x, curl_y, curl_z;  ///< unit vector across `rest`: where the chain curls to
   std::vector<float> rest_curl_rad;           ///< between one link and the next, at rest
   std::vector<float> link_length_m;
+  /// Where the strands stand for all of the ground around them, on a grid with even spacings: how many there are in a
+  /// row from west to east; rows follow each other from north to south, and strand_count is a multiple. 0: on none.
+  std::size_t columns = 0;
 
   std::size_t padded_count() const { return padded_to_blocks(strand_count); }
   friend bool operator==(const StrandSkeleton&, const StrandSkeleton&) = default;

@@ -22,9 +22,7 @@ namespace {
 constexpr double kPaceSpread = 0.15;
 
 constexpr std::array<std::string_view, 2> kGusts = {"outside", "own"};
-/// The canopy's waves, the shortest and the longest; the part of the wind's speed that they run with; and how many
-/// standard deviations they reach.
-constexpr std::array kCanopyWaves_m = {2.0, 4.0};
+/// The part of the wind's speed that the canopy's waves run with; and how many standard deviations they reach.
 constexpr double kCanopyCarry = 0.65;
 constexpr double kLargestCanopyWave = 2.2;
 
@@ -62,12 +60,13 @@ StrandSway::OwnGusts::OwnGusts(const StrandSwaySpec& spec, std::span<const float
       steepest_along_per_m(steepest_slope(along, spec.noise.period_m)),
       strength(place_x_m.size(), 0.0F) {}
 
-StrandSway::OutsideGusts::OutsideGusts(const pose::StrandSkeleton& strands, const SceneSetup& setup)
+StrandSway::OutsideGusts::OutsideGusts(const pose::StrandSkeleton& strands, const StrandSwaySpec& spec,
+                                       const SceneSetup& setup)
     : grid(setup.gusts, strands.root_x_m, strands.root_z_m, setup.row),
       east_m_s(strands.padded_count(), 0.0F),
       south_m_s(strands.padded_count(), 0.0F),
-      canopy(CarriedNoise::band(kCanopyWaves_m[0], kCanopyWaves_m[1], setup.seed ^ math::stream_id("canopy waves"),
-                                false)),
+      canopy(CarriedNoise::band(spec.shortest_canopy_wave_m, 2.0 * spec.shortest_canopy_wave_m,
+                                setup.seed ^ math::stream_id("canopy waves"), false)),
       places(canopy.places(strands.root_x_m, strands.root_z_m)),
       strength(strands.padded_count(), 1.0F) {}
 
@@ -86,7 +85,7 @@ StrandSway::StrandSway(pose::StrandSkeleton strands, std::span<const float> plac
       pose_(pose::rest_pose(skeleton_)) {
   if (setup.gusts) spec_.gust_strength = 0.0;
   if (setup.gusts && !spec.has_own_gusts) {
-    outside_.emplace(*std::get_if<pose::StrandSkeleton>(&skeleton_), setup);
+    outside_.emplace(*std::get_if<pose::StrandSkeleton>(&skeleton_), spec, setup);
   } else {
     own_.emplace(spec, place_x_m, place_z_m);
   }

@@ -31,6 +31,7 @@ struct StrandSwaySpec {
   bool has_own_gusts = false;   ///< and not those of the wind outside, where the setup has these
   double canopy_waves = 0.15;   ///< beside the gusts outside: how much the stand's own waves vary the wind, as a part
   CarriedNoiseSpec noise = {};  ///< the wind on the ground
+  double shortest_canopy_wave_m = 2.0;  ///< the longest is twice as long
 };
 
 /// Strands in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine
@@ -90,7 +91,7 @@ class StrandSway final : public Scene {
 
   /// Those of the wind outside.
   struct OutsideGusts {
-    OutsideGusts(const pose::StrandSkeleton& strands, const SceneSetup& setup);
+    OutsideGusts(const pose::StrandSkeleton& strands, const StrandSwaySpec& spec, const SceneSetup& setup);
 
     WindGrid grid;
     std::vector<float> east_m_s, south_m_s;  ///< each strand's wind

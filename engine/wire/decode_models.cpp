@@ -97,6 +97,8 @@ bool read(const fb::StrandSkeleton& from, pose::StrandSkeleton& to) {
   if (count > kMaxStrands || from.links_per_strand() < 1 || from.links_per_strand() > kMaxLinksPerStrand) return false;
   to.strand_count = count;
   to.links_per_strand = from.links_per_strand();
+  to.columns = from.columns();
+  if (to.columns != 0 && (to.columns > count || count % to.columns != 0)) return false;
   const Layout all = strands_of(count);
   return read_numbers(from.root_x_m(), all, kMaxExtent_m, to.root_x_m) &&
          read_numbers(from.root_y_m(), all, kMaxExtent_m, to.root_y_m) &&

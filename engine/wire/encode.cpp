@@ -41,7 +41,8 @@ flatbuffers::Offset<fb::StrandSkeleton> add_skeleton(Builder& builder, const pos
   const auto rest_curl = add(skeleton.rest_curl_rad);
   const auto link_length = add(skeleton.link_length_m);
   return fb::CreateStrandSkeleton(builder, static_cast<std::uint32_t>(skeleton.links_per_strand), root_x, root_y,
-                                  root_z, rest_x, rest_y, rest_z, curl_x, curl_y, curl_z, rest_curl, link_length);
+                                  root_z, rest_x, rest_y, rest_z, curl_x, curl_y, curl_z, rest_curl, link_length,
+                                  static_cast<std::uint32_t>(skeleton.columns));
 }
 
 flatbuffers::Offset<fb::GridSkeleton> add_skeleton(Builder& builder, const pose::GridSkeleton& skeleton) {

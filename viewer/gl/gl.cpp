@@ -128,8 +128,10 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
   glDetachShader(program.name(), vertex_shader.name);
   glDetachShader(program.name(), fragment_shader.name);
 
-  const GLuint view_block = glGetUniformBlockIndex(program.name(), "View");
-  if (view_block != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), view_block, kViewBinding);
+  for (const auto& [block_name, binding] : {std::pair{"View", kViewBinding}, std::pair{"Ground", kGroundBinding}}) {
+    const GLuint block = glGetUniformBlockIndex(program.name(), block_name);
+    if (block != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), block, binding);
+  }
   return program;
 }
 

@@ -1,21 +1,103 @@
 #include "viewer/looks/grass_renderer.hpp"
 
+#include <algorithm>
+#include <string>
+
+#include "engine/pose/pose_arrays.hpp"
 #include "viewer/gl/shaders.hpp"
+#include "viewer/looks/ground_maps.hpp"
+#include "viewer/meshes/sward.hpp"
 
 namespace yuragi::viewer::looks {
+namespace {
 
-GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands)
-    : ribbons_(strands, meshes::BladeStyle::kGrass),
-      program_(gl::link_program("grass", gl::shaders::kGrassVert, gl::shaders::kShadeFrag)) {
+constexpr GLint kStreamedBladeUnit = 4;
+constexpr GLint kBlockUnit = 5;
+
+}  // namespace
+
+GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands, float drawn_at_1m_per_m2)
+    : thinning_{.blades_per_m2 = meshes::stand_of(strands).blades_per_m2, .drawn_at_1m_per_m2 = drawn_at_1m_per_m2},
+      tiles_(strands, thinning_),
+      pose_{std::vector<float>(tiles_.skeleton().padded_count()), std::vector<float>(tiles_.skeleton().padded_count())},
+      joints_(tiles_.skeleton()),
+      program_(gl::link_program(
+          "grass", std::string(gl::shaders::kSwardPart).append(gl::shaders::kBladePart).append(gl::shaders::kGrassVert),
+          gl::shaders::kShadeFrag)),
+      triangles_(tiles_.levels().size()) {
+  GroundMaps::set_samplers(program_);
   gl::set_sampler(program_, "joints", 0);
+  gl::set_sampler(program_, "blades", kStreamedBladeUnit);
+  gl::set_sampler(program_, "blocks", kBlockUnit);
+  glUniform1i(glGetUniformLocation(program_.name(), "links"), static_cast<GLint>(strands.links_per_strand));
+  glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
+  glBindBuffer(GL_TEXTURE_BUFFER, blade_buffer_.name());
+  glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(tiles_.blades().size_bytes()), tiles_.blades().data(),
+               GL_STATIC_DRAW);
+  glBindVertexArray(array_.name());
+  for (std::size_t level = 0; level < triangles_.size(); ++level) {
+    const std::vector<std::uint32_t> triangles =
+        meshes::ribbon_triangles(tiles_.most_strands_a_tile(), tiles_.levels()[level].rings);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_[level].name());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(std::span(triangles).size_bytes()), triangles.data(),
+                 GL_STATIC_DRAW);
+  }
 }
 
 void GrassRenderer::move_to(const pose::Pose& pose) {
-  if (const auto* const bends = std::get_if<pose::StrandPose>(&pose)) ribbons_.move_to(*bends);
+  latest_ = std::get_if<pose::StrandPose>(&pose);
+}
+
+void GrassRenderer::upload_joints() {
+  if (latest_ != nullptr) tiles_.take(*latest_, pose_);
+  const std::size_t blocks = tiles_.skeleton().padded_count() / pose::kStrandsPerBlock;
+  const std::size_t block_floats = tiles_.skeleton().links_per_strand * 3 * pose::kStrandsPerBlock;
+  shown_joints_.resize(tiles_.blocks().size() * block_floats);
+  auto to = shown_joints_.begin();
+  for (const std::uint32_t block : tiles_.blocks()) {
+    // The forward kinematics of engine/pose, for the strands of this block.
+    const pose::StrandKinematicsJob job{.skeleton = &tiles_.skeleton(),
+                                        .pose = &pose_,
+                                        .row = {},
+                                        .part = {.index = block, .count = blocks},
+                                        .joints = &joints_};
+    if (job.run() != pose::StrandKinematicsJob::Problem::kNone) return;
+    const auto from = std::as_const(joints_).data().subspan(block * block_floats, block_floats);
+    to = std::ranges::copy(from, to).out;
+  }
+  gl::stream_to(GL_TEXTURE_BUFFER, joint_buffer_, std::span(std::as_const(shown_joints_)));
+  gl::stream_to(GL_TEXTURE_BUFFER, block_buffer_, tiles_.blocks());
 }
 
 void GrassRenderer::draw(const meshes::View& view) {
-  ribbons_.draw(program_, view);
+  tiles_.choose(view);
+  if (tiles_.blocks().empty()) return;
+  upload_joints();
+  glUseProgram(program_.name());
+  glBindVertexArray(array_.name());
+  const auto bind = [](GLint unit, GLenum format, const gl::GlTexture& texture, const gl::GlBuffer& buffer) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_BUFFER, texture.name());
+    glTexBuffer(GL_TEXTURE_BUFFER, format, buffer.name());
+  };
+  bind(kStreamedBladeUnit, GL_RGBA32F, blade_texture_, blade_buffer_);
+  bind(kBlockUnit, GL_R32UI, block_texture_, block_buffer_);
+  bind(0, GL_R32F, joint_texture_, joint_buffer_);
+  for (std::size_t i = 0; i < triangles_.size(); ++i) {
+    const meshes::StrandTiles::Level& level = tiles_.levels()[i];
+    if (level.tiles.empty()) continue;
+    counts_.clear();
+    first_corners_.clear();
+    for (const meshes::StrandTiles::Drawn& tile : level.tiles) {
+      counts_.push_back(static_cast<GLsizei>(tile.strands * 3 * (2 * level.rings - 1)));
+      first_corners_.push_back(static_cast<GLint>(tile.first_slot * (2 * level.rings + 1)));
+    }
+    offsets_.assign(level.tiles.size(), nullptr);
+    glUniform1i(glGetUniformLocation(program_.name(), "rings"), static_cast<GLint>(level.rings));
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_[i].name());
+    glMultiDrawElementsBaseVertex(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
+                                  static_cast<GLsizei>(counts_.size()), first_corners_.data());
+  }
 }
 
 }  // namespace yuragi::viewer::looks

@@ -1,8 +1,11 @@
 #include "viewer/looks/landscape.hpp"
 
+#include <string>
+
 #include "viewer/gl/noise_texture.hpp"
 #include "viewer/gl/screen_door.hpp"
 #include "viewer/gl/shaders.hpp"
+#include "viewer/looks/ground_maps.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
@@ -19,17 +22,16 @@ constexpr float kSunInShadow = 0.22F;  // leaves, threads and the air let some t
 
 Landscape::Landscape()
     : noise_(gl::make_noise_texture()),
-      ground_(gl::link_program("ground", gl::shaders::kGroundVert, gl::shaders::kGroundFrag)),
+      ground_(gl::link_program("ground", gl::shaders::kGroundVert,
+                               std::string(gl::shaders::kSwardPart).append(gl::shaders::kGroundFrag))),
       hills_(gl::link_program("hills", gl::shaders::kHillsVert, gl::shaders::kShadeFrag)),
       sky_(gl::link_program("sky", gl::shaders::kSkyVert, gl::shaders::kSkyFrag)) {
-  gl::set_sampler(ground_, "noise_tile", 0);
+  GroundMaps::set_samplers(ground_);
   sunlight_place_ = glGetUniformLocation(ground_.name(), "sunlight");
   gl::set_sampler(sky_, "noise_tile", 0);
 }
 
 void Landscape::draw() {
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, noise_.name());
   glBindVertexArray(no_attributes_.name());
   glUseProgram(ground_.name());
   glEnable(GL_STENCIL_TEST);
@@ -41,6 +43,8 @@ void Landscape::draw() {
   }
   glDisable(GL_STENCIL_TEST);
 
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, noise_.name());
   // From near to far; the sky is at the far end of the depth range.
   glUseProgram(hills_.name());
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kHillSteps + 1), kHillLines);

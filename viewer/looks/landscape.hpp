@@ -10,7 +10,7 @@ class Landscape {
  public:
   Landscape();
 
-  /// The View is bound (ViewBuffer::set). The ground has holes and shadows where the stencil has
+  /// The View (ViewBuffer::set) and the GroundMaps are bound. The ground has holes and shadows where the stencil has
   /// kHole and kShadow.
   void draw();
 

@@ -5,13 +5,26 @@
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/tree_renderer.hpp"
 #include "viewer/looks/water_renderer.hpp"
+#include "viewer/meshes/ground_map.hpp"
+#include "viewer/meshes/sward.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
 
+/// The nodes of the ground are not drawn: the stage gives their bends to the grass that grows there.
+class GroundNodes : public SceneRenderer {
+ public:
+  void move_to(const pose::Pose&) override {}
+  void draw(const meshes::View&) override {}
+  bool is_field() const override { return true; }
+  bool is_ground() const override { return true; }
+};
+
 std::unique_ptr<SceneRenderer> renderer_of(const pose::StrandSkeleton& strands, const wire::SceneModel& scene) {
   if (scene.kind == "fur") return std::make_unique<FurRenderer>(strands);
-  return std::make_unique<GrassRenderer>(strands);
+  if (meshes::bend_grid_of(strands).columns > 0) return std::make_unique<GroundNodes>();
+  return std::make_unique<GrassRenderer>(
+      strands, gl::is_software_renderer() ? meshes::kFewBladesAt1m_per_m2 : meshes::kManyBladesAt1m_per_m2);
 }
 std::unique_ptr<SceneRenderer> renderer_of(const pose::GridSkeleton& cloth, const wire::SceneModel& scene) {
   return std::make_unique<ClothRenderer>(cloth, scene.kind);

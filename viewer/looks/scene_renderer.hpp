@@ -34,6 +34,9 @@ class SceneRenderer {
 
   /// Does it cover the ground as a field, in which the camera stands?
   virtual bool is_field() const { return false; }
+
+  /// Is it no thing, but the bends of the grass on all of the ground around?
+  virtual bool is_ground() const { return false; }
 };
 
 /// The renderer for the scene's kind of skeleton, and for the scene's own kind where there are several. `scene` must

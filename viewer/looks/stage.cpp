@@ -9,12 +9,22 @@ namespace yuragi::viewer::looks {
 namespace {
 
 constexpr meshes::Bounds kNoField{glm::vec3(1e6F), glm::vec3(-1e6F)};
+constexpr meshes::Bounds kPartOfGround{glm::vec3(-4.0F, 0.0F, -4.0F), glm::vec3(4.0F, 0.8F, 4.0F)};
+
+float blades_at_1m_per_m2() {
+  return gl::is_software_renderer() ? meshes::kFewBladesAt1m_per_m2 : meshes::kManyBladesAt1m_per_m2;
+}
+
+bool is_alike(const meshes::Stand& a, const meshes::Stand& b) {
+  return a.length_m == b.length_m && a.blades_per_m2 == b.blades_per_m2;
+}
 
 }  // namespace
 
 void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
   std::vector<std::unique_ptr<SceneView>> before = std::exchange(views_, {});
   scenes_.clear();
+  ground_.set_standing({});  // it refers to the skeletons
   for (wire::SceneModel& scene : scenes) {
     const auto same = std::ranges::find_if(before, [&](const auto& view) {
       return view && view->scene.kind == scene.kind && view->scene.skeleton == scene.skeleton;
@@ -27,6 +37,10 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
       view->scene = std::move(scene);
       view->bounds = meshes::bounds_of(view->scene.skeleton);
       view->renderer = make_scene_renderer(view->scene);
+      if (const auto* strands = std::get_if<pose::StrandSkeleton>(&view->scene.skeleton)) {
+        view->grid = meshes::bend_grid_of(*strands);
+        if (view->renderer->is_field() && !view->renderer->is_ground()) view->stand = meshes::stand_of(*strands);
+      }
       views_.push_back(std::move(view));
     }
     scenes_.push_back(&views_.back()->scene);
@@ -53,7 +67,11 @@ std::optional<meshes::Bounds> Stage::around(IsChosen&& is_chosen) const {
 }
 
 meshes::Bounds Stage::bounds() const {
-  return around([this](std::size_t scene) { return is_chosen(scene); }).value_or(meshes::Bounds{});
+  // The ground is everywhere: where it is alone, a part of it.
+  const auto is_thing = [this](std::size_t scene) { return is_chosen(scene) && !views_[scene]->renderer->is_ground(); };
+  const bool is_ground_alone =
+      !views_.empty() && std::ranges::all_of(views_, [](const auto& view) { return view->renderer->is_ground(); });
+  return around(is_thing).value_or(is_ground_alone || only_ ? kPartOfGround : meshes::Bounds{});
 }
 
 meshes::CameraPlace Stage::home(double aspect) const {
@@ -77,9 +95,77 @@ bool Stage::is_seen(const stream::PoseMoment& moment, std::size_t scene) const {
 
 meshes::Bounds Stage::field(const stream::PoseMoment& moment) const {
   const auto grows = [&](std::size_t scene) {
-    return is_seen(moment, scene) && views_[scene]->renderer->is_field() && moment.opacities[scene] > 0.5F;
+    return is_seen(moment, scene) && views_[scene]->stand && moment.opacities[scene] > 0.5F;
   };
   return around(grows).value_or(kNoField);
+}
+
+/// What stands on the ground, and how its grass is bent.
+void Stage::move_ground(const stream::PoseMoment& moment) {
+  standing_.clear();
+  tall_ = 0.0F;
+  tall_door_ = 0;
+  stand_ = {};
+  bool is_bare = true;  // no grass is streamed, and the ground is
+  const pose::StrandPose* nodes = nullptr;
+  const pose::StrandPose* near_by = nullptr;
+  meshes::BendGrid grid;
+  float ground_opacity = 0.0F;
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    const SceneView& view = *views_[scene];
+    const bool fits = scene < moment.poses.size() && scene < moment.opacities.size() &&
+                      pose::fits(moment.poses[scene], scenes_[scene]->skeleton);
+    if (view.renderer->is_ground()) {
+      // It moves the grass around whatever scene is chosen.
+      if (!fits || moment.opacities[scene] <= 0.0F) continue;
+      nodes = std::get_if<pose::StrandPose>(&moment.poses[scene]);
+      grid = view.grid;
+      ground_opacity = std::max(ground_opacity, moment.opacities[scene]);
+      continue;
+    }
+    is_bare = is_bare && !is_chosen(scene);
+    if (!is_seen(moment, scene)) continue;
+    const float opacity = moment.opacities[scene];
+    meshes::Standing& thing = standing_.emplace_back();
+    thing.bounds = view.bounds;
+    thing.opacity = opacity;
+    if (view.stand) {
+      thing.kind = meshes::Standing::Kind::kGrass;
+      thing.blades = std::get_if<pose::StrandSkeleton>(&view.scene.skeleton);
+      if (opacity > tall_) {
+        tall_ = opacity;
+        tall_door_ = scene;
+        stand_ = *view.stand;
+        near_by = std::get_if<pose::StrandPose>(&moment.poses[scene]);
+      }
+    } else if (const auto* surface = std::get_if<pose::SurfaceSkeleton>(&view.scene.skeleton);
+               surface != nullptr && surface->ramp_rgba.empty()) {
+      thing.kind = meshes::Standing::Kind::kWater;
+    }
+  }
+  if (is_bare && ground_opacity > 0.0F) {
+    tall_ = ground_opacity;
+    stand_ = {};
+  }
+  ground_.set_standing(standing_);
+  ground_.move_to(grid, nodes, near_by);
+  ground_.bind(stand_, tall_, tall_door_);
+}
+
+void Stage::draw_sward(const meshes::View& view) {
+  if (tall_ > 0.0F) {
+    if (!meadow_ || !meadow_stand_ || !is_alike(*meadow_stand_, stand_)) {
+      meadow_.emplace(Sward::Kind::kTall, stand_, blades_at_1m_per_m2());
+      meadow_stand_ = stand_;
+    }
+    door_.open(tall_, tall_door_);
+    meadow_->draw(view);
+    door_.close();
+  }
+  if (tall_ < 1.0F) {
+    if (!lawn_) lawn_.emplace(Sward::Kind::kLawn, stand_, blades_at_1m_per_m2());
+    lawn_->draw(view);
+  }
 }
 
 void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target) {
@@ -95,6 +181,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   glDisable(GL_SCISSOR_TEST);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
 
+  move_ground(moment);
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
     SceneRenderer& renderer = *views_[scene]->renderer;
@@ -115,6 +202,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
     }
     door_.close();
   }
+  draw_sward(view);
   landscape_.draw();
   mark_pass("landscape");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {

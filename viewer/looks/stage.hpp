@@ -9,8 +9,10 @@
 #include "viewer/gl/render_target.hpp"
 #include "viewer/gl/screen_door.hpp"
 #include "viewer/gl/view_buffer.hpp"
+#include "viewer/looks/ground_maps.hpp"
 #include "viewer/looks/landscape.hpp"
 #include "viewer/looks/scene_renderer.hpp"
+#include "viewer/looks/sward.hpp"
 #include "viewer/meshes/view.hpp"
 #include "viewer/stream/pose_moment.hpp"
 
@@ -47,6 +49,8 @@ class Stage {
     wire::SceneModel scene;
     meshes::Bounds bounds;
     std::unique_ptr<SceneRenderer> renderer;
+    meshes::BendGrid grid;               // of the ground
+    std::optional<meshes::Stand> stand;  // of grass
   };
 
   bool is_chosen(std::size_t scene) const { return !only_ || scenes_[scene]->name == *only_; }
@@ -57,11 +61,20 @@ class Stage {
   void mark_pass(std::string_view name) {
     if (clock_ != nullptr) clock_->mark(name);
   }
+  void move_ground(const stream::PoseMoment& moment);
+  void draw_sward(const meshes::View& view);
 
   std::vector<std::unique_ptr<SceneView>> views_;  // a renderer refers to its scene, which may not move
   std::vector<const wire::SceneModel*> scenes_;    // of views_
   std::optional<std::string> only_;
   Landscape landscape_;
+  GroundMaps ground_;
+  std::vector<meshes::Standing> standing_;
+  meshes::Stand stand_;  // of the tall grass, of which this share is to be seen
+  float tall_ = 0.0F;
+  std::size_t tall_door_ = 0;
+  std::optional<Sward> meadow_, lawn_;  // made when first needed
+  std::optional<meshes::Stand> meadow_stand_;
   gl::ScreenDoor door_;
   gl::ViewBuffer view_buffer_;
   gl::PassClock* clock_ = nullptr;

@@ -87,14 +87,7 @@ BladeSorter::BladeSorter(const pose::StrandSkeleton& skeleton, BladeStyle style)
 void BladeSorter::sort(const View& view) {
   for (DetailLevel& level : levels_) level.blades.clear();
 
-  // The planes of the view frustum's sides, from the rows of the projection (Gribb and Hartmann 2001, "Fast extraction
-  // of viewing frustum planes from the world-view-projection matrix").
-  const auto row = [&](int i) {
-    return glm::vec4(view.to_clip[0][i], view.to_clip[1][i], view.to_clip[2][i], view.to_clip[3][i]);
-  };
-  std::array<glm::vec4, 5> planes{row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1), row(3) + row(2)};
-  for (glm::vec4& plane : planes) plane /= glm::length(glm::vec3(plane));
-
+  const std::array<glm::vec4, 5> planes = side_planes(view);
   for (std::size_t i = 0; i < blades_.size(); ++i) {
     const Blade& blade = blades_[i];
     const glm::vec4 root(blade.root_m[0], blade.root_m[1], blade.root_m[2], 1.0F);

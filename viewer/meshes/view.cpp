@@ -1,5 +1,6 @@
 #include "viewer/meshes/view.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -34,6 +35,24 @@ View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bound
   view.to_sun = sun_direction();
   view.field = {field.low_m.x, field.low_m.z, field.high_m.x, field.high_m.z};
   return view;
+}
+
+std::array<glm::vec4, 5> side_planes(const View& view) {
+  const auto row = [&](int i) {
+    return glm::vec4(view.to_clip[0][i], view.to_clip[1][i], view.to_clip[2][i], view.to_clip[3][i]);
+  };
+  std::array<glm::vec4, 5> planes{row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1), row(3) + row(2)};
+  for (glm::vec4& plane : planes) plane /= glm::length(glm::vec3(plane));
+  return planes;
+}
+
+bool is_in_view(const std::array<glm::vec4, 5>& planes, const glm::vec3& low_m, const glm::vec3& high_m) {
+  // The corner that is farthest inside of each.
+  return std::all_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
+    const glm::vec3 corner(plane.x > 0.0F ? high_m.x : low_m.x, plane.y > 0.0F ? high_m.y : low_m.y,
+                           plane.z > 0.0F ? high_m.z : low_m.z);
+    return glm::dot(plane, glm::vec4(corner, 1.0F)) >= 0.0F;
+  });
 }
 
 View laid_flat(const View& view) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "viewer/meshes/orbit_camera.hpp"
@@ -21,6 +24,14 @@ struct View {
 
 /// For a picture of so many pixels. The sun is low in the south-west.
 View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bounds& field);
+
+/// The planes of the picture's sides and of its near side: dot(plane, (x, y, z, 1)) is a point's distance inside,
+/// metres. Of the rows of the projection (Gribb and Hartmann 2001, "Fast extraction of viewing frustum planes from the
+/// world-view-projection matrix").
+std::array<glm::vec4, 5> side_planes(const View& view);
+
+/// May a box be in view, as far as these planes say?
+bool is_in_view(const std::array<glm::vec4, 5>& planes, const glm::vec3& low_m, const glm::vec3& high_m);
 
 /// The same view of everything projected onto the ground along the sun's rays: of its shadows.
 View laid_flat(const View& view);

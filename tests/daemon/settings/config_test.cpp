@@ -42,8 +42,9 @@ TEST(Config, AnEmptyFileIsTheDefaultInstallation) {
   const Config config = parse_config("", "empty.toml");
   ASSERT_EQ(config.sensors.size(), 1U);
   EXPECT_EQ(config.sensors[0].driver->name, "synthetic");
-  ASSERT_EQ(config.scenes.size(), 1U);
+  ASSERT_EQ(config.scenes.size(), 2U);
   EXPECT_EQ(config.scenes[0].kind->name, "grass");
+  EXPECT_EQ(config.scenes[1].kind->name, "ground");
   EXPECT_EQ(config.stream.listen, "127.0.0.1:7410");
   EXPECT_EQ(config.animation.rate_hz, 60.0);
 }

@@ -123,6 +123,8 @@ TEST(HostileBytes, SkeletonsOutOfBoundsAreRefused) {
       [](auto& s) { s.rest_curl_rad[0] = -kInfinity; },
       [](auto& s) { s.link_length_m[0] = -0.1f; },
       [](auto& s) { s.link_length_m[0] = kNan; },
+      [](auto& s) { s.columns = s.strand_count + 1; },  // rows that are not full
+      [](auto& s) { s.columns = s.strand_count - 1; },
       [](auto& s) {  // unit vectors, but not one across the other
         s.curl_x = s.rest_x;
         s.curl_y = s.rest_y;

@@ -62,7 +62,17 @@ TEST(WireRoundTrip, ScenesComeBackBitForBitAndPaddedToBlocks) {
     EXPECT_EQ(b.curl_z, a.curl_z);
     EXPECT_EQ(b.rest_curl_rad, a.rest_curl_rad);
     EXPECT_EQ(b.link_length_m, a.link_length_m);
+    EXPECT_EQ(b.columns, 0U);
   }
+}
+
+TEST(WireRoundTrip, StrandsOnAGridComeBackWithItsColumns) {
+  Scenes sent = samples::scenes();
+  auto& strands = std::get<pose::StrandSkeleton>(sent.scenes[0].skeleton);
+  strands = samples::meadow(6 * 7);
+  strands.columns = 6;
+  const Scenes got = decoded<Scenes>(encode(sent));
+  EXPECT_EQ(std::get<pose::StrandSkeleton>(got.scenes[0].skeleton), strands);
 }
 
 TEST(WireRoundTrip, AFrameComesBackWithinHalfAQuantisationStep) {

@@ -292,6 +292,71 @@ TEST_F(StageTest, ThrowsShadowsOnTheGround) {
   EXPECT_GT(darker, 500U);
 }
 
+/// Nodes of the ground, all bent alike toward the east.
+wire::SceneModel ground_model() {
+  pose::StrandSkeleton nodes;
+  nodes.strand_count = 64;
+  nodes.links_per_strand = 1;
+  nodes.columns = 8;
+  const std::vector<float> zeros(64, 0.0F);
+  const std::vector<float> ones(64, 1.0F);
+  nodes.root_x_m = nodes.root_y_m = nodes.root_z_m = nodes.rest_x = nodes.rest_z = zeros;
+  nodes.curl_y = nodes.curl_z = nodes.rest_curl_rad = zeros;
+  nodes.rest_y = nodes.curl_x = nodes.link_length_m = ones;
+  for (std::size_t i = 0; i < 64; ++i) {
+    nodes.root_x_m[i] = 8.0F * (static_cast<float>(i % 8) - 3.5F);
+    nodes.root_z_m[i] = 8.0F * (static_cast<float>(i / 8) - 3.5F);
+  }
+  return {.name = "ground", .kind = "ground", .skeleton = nodes};
+}
+
+TEST_F(StageTest, TheMeadowHasNoEdgeSeenFromAbove) {
+  show({test_model("grass")});
+  const meshes::Bounds box = stage_->bounds();
+  const double distance_m = 16.0;
+  const glm::dvec3 middle((box.low_m.x + box.high_m.x) / 2, 0.0, (box.low_m.z + box.high_m.z) / 2);
+  camera_.frame({middle, 0.0, 89.0, distance_m});
+  const Pixels pixels = draw(0.3, 1.0F);
+
+  // North is up: the mean light of the streamed blades' ground, and of the ground around it.
+  const double px_per_m =
+      kHeight_px / (2.0 * distance_m * std::tan(meshes::OrbitCamera::kFieldOfView_deg / 360.0 * 3.1416));
+  std::array<double, 2> sums{};
+  std::array<double, 2> counts{};
+  for (int row = 0; row < kHeight_px; ++row) {
+    for (int column = 0; column < kWidth_px; ++column) {
+      const double out_x_m = std::abs(column - kWidth_px / 2) / px_per_m - static_cast<double>(box.high_m.x - box.low_m.x) / 2;
+      const double out_z_m = std::abs(row - kHeight_px / 2) / px_per_m - static_cast<double>(box.high_m.z - box.low_m.z) / 2;
+      const double out_m = std::max(out_x_m, out_z_m);
+      if (std::abs(out_m) < 0.3 || out_m > 2.0) continue;
+      const std::size_t side = out_m > 0.0 ? 1 : 0;
+      sums[side] += pixels[3 * static_cast<std::size_t>(row * kWidth_px + column) + 1];
+      counts[side] += 1.0;
+    }
+  }
+  ASSERT_GT(counts[0], 200.0);
+  ASSERT_GT(counts[1], 200.0);
+  std::printf("light within %.1f, around %.1f\n", sums[0] / counts[0], sums[1] / counts[1]);
+  EXPECT_NEAR(sums[0] / counts[0] / (sums[1] / counts[1]), 1.0, 0.12);
+}
+
+TEST_F(StageTest, TheNodesOfTheGroundBendTheGrassAroundAndAreNoThing) {
+  const wire::SceneModel grass = test_model("grass");
+  show({grass});
+  const double home_m = stage_->home(1.33).distance_m;
+  show({grass, ground_model()});
+  EXPECT_EQ(stage_->home(1.33).distance_m, home_m);
+  camera_.frame({{20.0, 0.0, 20.0}, 45.0, 15.0, 12.0});  // far from the streamed blades
+
+  stream::PoseMoment moment = stream::rest_moment(models_);
+  stage_->draw(moment, camera_, *target_);
+  const Pixels calm = target_->read_rgb();
+  auto& nodes = std::get<pose::StrandPose>(moment.poses[1]);
+  std::ranges::fill(nodes.bend_east_rad, 1.0F);
+  stage_->draw(moment, camera_, *target_);
+  EXPECT_GT(changed(calm, target_->read_rgb()), 5000U);
+}
+
 TEST_F(StageTest, HasNoTroubleWithModelsOfNothing) {
   pose::StrandSkeleton no_strands;
   no_strands.links_per_strand = 1;

@@ -1,5 +1,4 @@
-// Short turf to the horizon; under a meadow, shaded earth and stems.
-uniform sampler2D noise_tile;
+// The ground between the blades near by, and the grass itself where blades would be smaller than pixels.
 uniform float sunlight;  // 1, and less in a shadow
 in vec3 place_m;
 out vec4 color;
@@ -7,25 +6,35 @@ out vec4 color;
 void main() {
   vec3 from_eye = place_m - eye_m.xyz;
   float distance_m = length(from_eye);
-  float broad = texture(noise_tile, place_m.xz * 0.023).r;
-  float fine = texture(noise_tile, mat2(0.8, 0.6, -0.6, 0.8) * place_m.xz * 0.13 + 0.73).r;
+  vec3 to_eye = -from_eye / distance_m;
+  vec2 at_m = place_m.xz;
+  vec2 patch_at = patches(at_m);
+  float growth_here = growth_at(at_m).r;
+  // While tall grass fades it is on the pixels that its door leaves open (door.frag.glsl).
+  float threshold = fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy) + 5.588238 * stand.z, vec2(0.06711056, 0.00583715))));
+  float tall = threshold < bend_mean.w ? tall_share(growth_here) : 0.0;
 
-  // The distance inside the field, with a ragged edge.
-  vec2 inside = min(place_m.xz - field.xy, field.zw - place_m.xz);
-  float in_field = smoothstep(-0.5, 0.3, min(inside.x, inside.y) + 0.8 * (fine - 0.5));
+  // Tufts, as large as a few pixels at every distance: two sizes, of which one replaces the other. Of the noise only what
+  // is fine, so that its tile is not seen. At flat angles as sharp as half of them allow.
+  float size = log2(max(distance_m, 2.0) * 0.035);
+  float next = fract(size);
+  float per_m = 0.30 * exp2(-floor(size));
+  float blur = log2(256.0 * per_m * distance_m * eye_m.w) - 0.5 * log2(max(to_eye.y, 0.02));
+  vec2 turned_m = mat2(0.8, 0.6, -0.6, 0.8) * at_m * (0.5 * per_m) + 0.31;
+  float fine = textureLod(noise_tile, at_m * per_m, blur).r - textureLod(noise_tile, at_m * per_m, max(blur, 4.0)).r;
+  float coarse = textureLod(noise_tile, turned_m, blur - 1.0).r - textureLod(noise_tile, turned_m, max(blur - 1.0, 4.0)).r;
+  float tufts = clamp(2.6 * mix(fine, coarse, next), -0.5, 0.5);
 
-  vec3 turf = mix(vec3(0.070, 0.122, 0.028), vec3(0.138, 0.158, 0.042), smoothstep(0.25, 0.8, broad));
-  float tufts = texture(noise_tile, mat2(0.28, 0.96, -0.96, 0.28) * place_m.xz * 0.43 + 0.31).r;
-  float blades = texture(noise_tile, mat2(0.6, 0.8, -0.8, 0.6) * place_m.xz * 1.9).r;
-  turf *= 0.62 + 0.65 * fine;
-  turf *= 0.66 + 0.42 * tufts + 0.26 * blades;
-  vec3 under = mix(vec3(0.020, 0.030, 0.009), vec3(0.060, 0.070, 0.020), fine);
+  vec3 canopy = canopy_light(bend_at(at_m, tall), to_eye, patch_at, tufts, tall);
+  canopy *= sunlight < 1.0 ? 0.4 : 1.0;
 
-  // Toward the low sun the light shines through the turf's blades.
-  vec3 direction = from_eye / distance_m;
-  float against = max(dot(direction, to_sun.xyz), 0.0);
-  vec3 sun = kSunLight * sunlight;
-  vec3 light = mix(turf * (kSkyLight * 0.8 + sun * (0.30 + 0.55 * against * against)),
-                   under * (kSkyLight * 0.8 + sun * 0.10), in_field);
-  color = vec4(finish(mix(light, air_light(vec3(direction.x, 0.02, direction.z)), haze(distance_m))), 1.0);
+  // Shaded earth and stems.
+  vec3 under = mix(vec3(0.040, 0.056, 0.016), vec3(0.100, 0.118, 0.034), 0.5 + tufts);
+  vec3 lawn_floor = 0.55 * tint_of(patch_at, 0.4 + tufts);
+  vec3 below = mix(lawn_floor * (kSkyLight * 0.7 + kSunLight * (0.25 * sunlight)), under * (kSkyLight * 0.8 + kSunLight * (0.13 * sunlight)), tall);
+
+  float far = mix(smoothstep(1.0, 14.0, distance_m), smoothstep(3.0, 32.0, distance_m), tall);
+  vec3 light = mix(below, canopy, far);
+  light = mix(vec3(0.07, 0.05, 0.03) * (kSkyLight + kSunLight * (0.3 * sunlight)), light, smoothstep(0.0, 0.1, growth_here));
+  color = vec4(seen(light, place_m), 1.0);
 }

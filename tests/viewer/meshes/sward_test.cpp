@@ -1,0 +1,208 @@
+#include "viewer/meshes/sward.hpp"
+
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/viewer/test_meadow.hpp"
+#include "viewer/meshes/ground_map.hpp"
+#include "viewer/meshes/strand_tiles.hpp"
+
+namespace yuragi::viewer::meshes {
+namespace {
+
+constexpr Thinning kThinning{.blades_per_m2 = 200.0F, .drawn_at_1m_per_m2 = 4000.0F};
+
+View view_from(const CameraPlace& place) {
+  OrbitCamera camera;
+  camera.frame(place);
+  return view_of(camera, 1280, 720, {});
+}
+
+TEST(ThinningTest, ThinsOutWithTheDistanceAndNeverAtOnce) {
+  EXPECT_EQ(kThinning.share(0.0F), 1.0F);
+  EXPECT_EQ(kThinning.share(2.0F), 1.0F);
+  float before = 1.0F;
+  for (float r = 0.1F; r < 200.0F; r *= 1.01F) {
+    const float share = kThinning.share(r);
+    EXPECT_LE(share, before) << r;
+    EXPECT_GT(share, 0.97F * before) << r;
+    before = share;
+  }
+  EXPECT_LT(before, 0.01F);
+}
+
+TEST(SwardTest, HasTheSameBladesEachTimeAndAnyFirstPartCoversTheTile) {
+  const std::vector<SwardBlade> blades = sward_blades(4000);
+  const std::vector<SwardBlade> again = sward_blades(4000);
+  for (const std::size_t part : {std::size_t{100}, std::size_t{700}, std::size_t{4000}}) {
+    // As many in each of 5 x 5 fields, nearly.
+    std::array<std::size_t, 25> counts{};
+    for (std::size_t i = 0; i < part; ++i) {
+      ASSERT_GE(blades[i].x, 0.0F);
+      ASSERT_LT(blades[i].x, 1.0F);
+      ASSERT_EQ(blades[i].x, again[i].x);
+      ASSERT_EQ(blades[i].chance, again[i].chance);
+      const auto field = [](float at) { return std::min<std::size_t>(static_cast<std::size_t>(5.0F * at), 4); };
+      ++counts[field(blades[i].z) * 5 + field(blades[i].x)];
+    }
+    for (const std::size_t count : counts) {
+      EXPECT_GE(count, part / 50) << part;
+      EXPECT_LE(count, part * 2 / 25) << part;
+    }
+  }
+}
+
+TEST(SwardTest, LaysTilesWithoutAGapAndNoneTwice) {
+  SwardTiles tiles(5000, kThinning, 30.0F);
+  tiles.choose(view_from({{0.0, 0.0, 0.0}, 0.0, 89.0, 60.0}), 1.0F);  // from above, higher than the reach
+  for (std::size_t level = 0; level < SwardTiles::kLevels; ++level) EXPECT_TRUE(tiles.level(level).empty());
+
+  // From above, nearer: every tile of the ground that is in the picture is there.
+  const CameraPlace above{{0.0, 0.0, 0.0}, 0.0, 89.0, 20.0};
+  tiles.choose(view_from(above), 1.0F);
+  std::set<std::pair<float, float>> origins;
+  for (std::size_t level = 0; level < SwardTiles::kLevels; ++level) {
+    for (const SwardTile& tile : tiles.level(level)) {
+      EXPECT_TRUE(origins.insert({tile.origin_m.x, tile.origin_m.y}).second);
+      EXPECT_GE(tile.turn, 0.0F);
+      EXPECT_LT(tile.turn, 8.0F);
+    }
+  }
+  for (float x_m = -11.0F; x_m < 11.0F; x_m += 1.0F) {
+    for (float z_m = -6.0F; z_m < 6.0F; z_m += 1.0F) {
+      const auto corner_m = [](float at_m) { return std::floor(at_m / SwardTiles::kTile_m) * SwardTiles::kTile_m; };
+      EXPECT_EQ(origins.count({corner_m(x_m), corner_m(z_m)}), 1U) << x_m << " " << z_m;
+    }
+  }
+}
+
+TEST(SwardTest, LeavesOutWhatIsBehindTheCameraAndDrawsFewerBladesFarAway) {
+  SwardTiles tiles(5000, kThinning, 60.0F);
+  tiles.choose(view_from({{0.0, 0.5, 0.0}, 0.0, 3.0, 2.0}), 1.0F);  // to the north
+  float near_by = 0.0F;
+  float far_away = 5000.0F;
+  for (std::size_t level = 0; level < SwardTiles::kLevels; ++level) {
+    for (const SwardTile& tile : tiles.level(level)) {
+      EXPECT_LT(tile.origin_m.y, 5.0F);
+      EXPECT_GE(tile.blades, 1.0F);
+      EXPECT_LE(tile.blades, 5000.0F);
+      near_by = std::max(near_by, tile.blades);
+      far_away = std::min(far_away, tile.blades);
+    }
+  }
+  EXPECT_EQ(near_by, 5000.0F);
+  EXPECT_LT(far_away, 500.0F);
+}
+
+TEST(SwardTest, RibbonsHaveTheirTrianglesOneBehindTheOther) {
+  EXPECT_EQ(ribbon_triangles(2, 1), (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(ribbon_triangles(1, 2), (std::vector<std::uint32_t>{0, 1, 2, 1, 2, 3, 2, 3, 4}));
+}
+
+class StrandTilesTest : public testing::Test {
+ protected:
+  const pose::Skeleton meadow_ = test_meadow(60, 8.0);
+  const pose::StrandSkeleton& strands_ = std::get<pose::StrandSkeleton>(meadow_);
+  StrandTiles all_{strands_, {.blades_per_m2 = 1.0F, .drawn_at_1m_per_m2 = 1e9F}};
+};
+
+TEST_F(StrandTilesTest, HoldEveryStrandOnceAndDrawAllThatAreInView) {
+  all_.choose(view_from({{0.0, 0.0, 0.0}, 0.0, 60.0, 30.0}));
+  std::size_t drawn = 0;
+  for (const StrandTiles::Level& level : all_.levels()) {
+    for (const StrandTiles::Drawn& tile : level.tiles) drawn += tile.strands;
+  }
+  EXPECT_EQ(drawn, strands_.strand_count);
+
+  // A pose that tells each strand from all others.
+  pose::StrandPose pose{std::vector<float>(strands_.padded_count()), std::vector<float>(strands_.padded_count())};
+  for (std::size_t i = 0; i < strands_.strand_count; ++i) pose.bend_east_rad[i] = static_cast<float>(i);
+  pose::StrandPose tiled{std::vector<float>(all_.skeleton().padded_count()),
+                         std::vector<float>(all_.skeleton().padded_count())};
+  all_.take(pose, tiled);
+  std::set<float> seen;
+  for (const StrandTiles::Level& level : all_.levels()) {
+    for (const StrandTiles::Drawn& tile : level.tiles) {
+      for (std::size_t slot = tile.first_slot; slot < tile.first_slot + tile.strands; ++slot) {
+        const std::size_t i = all_.blocks()[slot / 16] * std::size_t{16} + slot % 16;
+        const auto strand = static_cast<std::size_t>(tiled.bend_east_rad[i]);
+        EXPECT_TRUE(seen.insert(tiled.bend_east_rad[i]).second);
+        EXPECT_EQ(all_.blades()[i].root_x_m, strands_.root_x_m[strand]);
+        EXPECT_EQ(all_.skeleton().root_z_m[i], strands_.root_z_m[strand]);
+      }
+    }
+  }
+  EXPECT_EQ(seen.size(), strands_.strand_count);
+}
+
+TEST_F(StrandTilesTest, DrawFewerFarAwayAndNoneBehindTheCamera) {
+  StrandTiles tiles(strands_, kThinning);
+  const auto drawn = [&](const CameraPlace& place) {
+    tiles.choose(view_from(place));
+    std::size_t count = 0;
+    for (const StrandTiles::Level& level : tiles.levels()) {
+      for (const StrandTiles::Drawn& tile : level.tiles) count += tile.strands;
+    }
+    return count;
+  };
+  const std::size_t at_10m = drawn({{0.0, 0.0, 0.0}, 0.0, 60.0, 15.0});
+  const std::size_t at_40m = drawn({{0.0, 0.0, 0.0}, 0.0, 60.0, 45.0});
+  EXPECT_GT(at_40m, 0U);
+  EXPECT_LT(2 * at_40m, at_10m);
+  EXPECT_EQ(drawn({{0.0, 0.5, -30.0}, 0.0, 2.0, 5.0}), 0U);
+}
+
+TEST(GrowthMapTest, IsShortAroundThingsTallElsewhereAndTakenByWater) {
+  GrowthMap map;
+  EXPECT_EQ(map.growth_at(3.0F, 3.0F), 1.0F);
+  const std::vector<Standing> things{
+      {.kind = Standing::Kind::kOther, .bounds = {{-1.0F, 0.0F, -1.0F}, {1.0F, 2.0F, 1.0F}}},
+      {.kind = Standing::Kind::kWater, .bounds = {{20.0F, 0.0F, 20.0F}, {24.0F, 0.1F, 24.0F}}}};
+  map.make(things);
+  EXPECT_LT(map.growth_at(0.0F, 0.0F), 0.3F);
+  EXPECT_GT(map.growth_at(0.0F, 0.0F), 0.0F);
+  EXPECT_EQ(map.water_at(22.0F, 22.0F), 1.0F);
+  EXPECT_EQ(map.water_at(0.0F, 0.0F), 0.0F);
+  EXPECT_EQ(map.growth_at(-30.0F, 10.0F), 1.0F);
+  // And nowhere a step that is seen as a line: half a metre changes it by less than a third.
+  for (float x_m = 0.0F; x_m < 15.0F; x_m += 0.5F) {
+    EXPECT_LT(std::abs(map.growth_at(x_m + 0.5F, 0.0F) - map.growth_at(x_m, 0.0F)), 0.33F) << x_m;
+  }
+}
+
+TEST(GrowthMapTest, KnowsWhereStreamedBladesStand) {
+  const pose::Skeleton meadow = test_meadow(60, 8.0);
+  const std::vector<Standing> things{
+      {.kind = Standing::Kind::kGrass, .bounds = {}, .blades = &std::get<pose::StrandSkeleton>(meadow)}};
+  GrowthMap map;
+  map.make(things);
+  EXPECT_EQ(map.blades_at(0.1F, 0.1F), 1.0F);
+  EXPECT_EQ(map.blades_at(2.6F, -2.6F), 1.0F);
+  EXPECT_EQ(map.blades_at(6.0F, 0.0F), 0.0F);
+  EXPECT_EQ(map.growth_at(0.0F, 0.0F), 1.0F);
+  map.make({});
+  EXPECT_EQ(map.blades_at(0.1F, 0.1F), 0.0F);
+}
+
+TEST(BendGridTest, IsReadFromStrandsOnAGridOnly) {
+  pose::StrandSkeleton nodes;
+  nodes.strand_count = 6;
+  nodes.links_per_strand = 1;
+  nodes.root_x_m = {-2, 0, 2, -2, 0, 2};
+  nodes.root_z_m = {-1, -1, -1, 1, 1, 1};
+  EXPECT_EQ(bend_grid_of(nodes).columns, 0U);
+  nodes.columns = 3;
+  const BendGrid grid = bend_grid_of(nodes);
+  EXPECT_EQ(grid.columns, 3U);
+  EXPECT_EQ(grid.rows, 2U);
+  EXPECT_EQ(grid.first_m, glm::vec2(-2.0F, -1.0F));
+  EXPECT_EQ(grid.to_next_m, glm::vec2(2.0F, 0.0F));
+  EXPECT_EQ(grid.to_next_row_m, glm::vec2(0.0F, 2.0F));
+  nodes.root_x_m[2] = -2.0F;  // of no width
+  EXPECT_EQ(bend_grid_of(nodes).columns, 0U);
+}
+
+}  // namespace
+}  // namespace yuragi::viewer::meshes

@@ -1,0 +1,97 @@
+// What grass is, wherever it grows: shared by the blades that are streamed, by those around them and by the ground that
+// is seen between and behind them, so that none of them ends at a line.
+
+layout(std140) uniform Ground {
+  vec4 bends_place;   // x, z of the corner of the grid of bends
+  vec4 bends_axes;    // a matrix: from metres behind it to parts of the grid's sides
+  vec4 bend_mean;     // east, south, radians; z: how far its nodes differ is to be seen (0 where there is no grid); w: share of tall grass
+  vec4 growth_place;  // x, z of the low corner of the map of growth; 1 / its sides
+  vec4 stand;         // tall grass: mean length, metres; curl, radians; number of the door through which it fades; tilt, radians
+};
+uniform sampler2D noise_tile;
+uniform sampler2D bends;   // east, south, radians
+uniform sampler2D growth;  // r: 0 bare, 1 nothing keeps grass from growing; g: streamed blades stand here; b: water
+
+const float kLawnLength_m = 0.085;
+const float kTallReach_m = 60.0;  // no blade of tall grass is drawn beyond (sward.cpp)
+
+// The bend of grass at a place. Beyond the grid its pattern is repeated, calmer at its edges, where it does not fit itself.
+vec2 bend_at(vec2 at_m, float tall) {
+  vec2 uv = mat2(bends_axes.xy, bends_axes.zw) * (at_m - bends_place.xy);
+  vec2 from_edge = 0.5 - abs(fract(uv) - 0.5);
+  float sure = bend_mean.z * smoothstep(0.0, 0.09, min(from_edge.x, from_edge.y));
+  // Without a grid it is known of the streamed blades alone: the tall grass is bent as they are, on the average.
+  if (bend_mean.z == 0.0) return bend_mean.xy * tall;
+  return bend_mean.xy + (textureLod(bends, uv, 0.0).rg - bend_mean.xy) * sure;
+}
+
+vec3 growth_at(vec2 at_m) { return textureLod(growth, (at_m - growth_place.xy) * growth_place.zw, 0.0).rgb; }
+
+// The share of blades that are tall.
+float tall_share(float growth) { return clamp((growth - 0.25) / 0.70, 0.0, 1.0); }
+
+// The length of a blade at a place: of a lawn where something is in the way, tall elsewhere. Between the two each blade is one or
+// the other, by `chance`.
+float grown_m(float growth, float tall, float chance) {
+  float lawn_m = kLawnLength_m * smoothstep(0.02, 0.12, growth);
+  float is_tall = clamp((1.03 * tall_share(growth) - chance) / 0.03, 0.0, 1.0);
+  return mix(lawn_m, stand.x, tall * is_tall);
+}
+
+// Patches of moisture and soil, from -0.5 to 0.5: broad ones (x), and clumps (y).
+vec2 patches(vec2 at_m) {
+  float broad = textureLod(noise_tile, mat2(0.8, 0.6, -0.6, 0.8) * at_m * 0.0061 + 0.17, 0.0).r;
+  float clumps = textureLod(noise_tile, mat2(0.6, -0.8, 0.8, 0.6) * at_m * 0.047, 0.0).r;
+  return vec2(broad, clumps) - 0.5;
+}
+
+// The colour of a blade's upper part: from a young blue-green over fresh green to straw. `chance` from 0 to 1.
+vec3 tint_of(vec2 patch_at, float chance) {
+  float dryness = clamp(0.46 + 0.75 * patch_at.x + 0.42 * patch_at.y + 0.42 * (chance - 0.5), 0.0, 1.0);
+  vec3 lush = vec3(0.050, 0.120, 0.034);
+  vec3 fresh = vec3(0.120, 0.190, 0.040);
+  vec3 straw = vec3(0.330, 0.260, 0.105);
+  return dryness < 0.6 ? mix(lush, fresh, dryness / 0.6) : mix(fresh, straw, (dryness - 0.6) / 0.4);
+}
+
+// A direction that is turned from upright by this vector's length, toward it.
+vec3 leaning(vec2 bend) {
+  float angle = length(bend);
+  float sine = angle > 1e-4 ? sin(angle) / angle : 1.0;
+  return vec3(bend.x * sine, cos(angle), bend.y * sine);
+}
+
+// The share of blades that are drawn at a distance (Thinning::share).
+float kept_share(float thinning, float distance_m) { return min(1.0, thinning * inversesqrt(distance_m) / distance_m); }
+
+// The light of a blade at height t (0 foot, 1 tip) above its foot. `lean`: the sine of its chord; between upright blades
+// the dark ground shows, of blades that the wind has bent one sees the lit sides, and neighbours bend alike.
+vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float lean) {
+  float facing = dot(normal, to_sun.xyz);
+  float against = max(-dot(to_eye, to_sun.xyz), 0.0);
+  float deep = smoothstep(0.0, 1.0, t);  // 0 in the shade of its neighbours, 1 in the light
+  vec3 albedo = mix(vec3(0.030, 0.060, 0.012), tint, 0.12 + 0.88 * t);
+  vec3 through = vec3(1.20, 1.05, 0.40) * albedo * (0.30 + 1.5 * against * against);
+  vec3 sum = albedo * kSkyLight * (0.25 + 0.75 * deep) * (0.40 + 1.0 * max(normal.y, 0.0));
+  sum += kSunLight * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
+
+  // A sheen along it, which makes the wind's waves visible.
+  float sheen_side = dot(along, normalize(to_sun.xyz + to_eye));
+  float sheen = max(1.0 - sheen_side * sheen_side, 0.0);
+  sheen *= sheen;
+  sheen *= sheen;
+  sheen *= sheen;
+  sum += kSunLight * vec3(0.15, 0.155, 0.12) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
+  return sum * exp2(4.0 * (lean - 0.60));
+}
+
+// The light of grass as one sees it from afar: the upper parts of its blades, leaning with the wind. `tufts` from -0.5 to
+// 0.5: how a tuft differs from its neighbours.
+vec3 canopy_light(vec2 bend, vec3 to_eye, vec2 patch_at, float tufts, float tall) {
+  vec3 along = leaning(bend * mix(0.35, 0.8, tall) + vec2(0.25, 0.1) * tufts);
+  vec3 normal = normalize(vec3(to_eye.x, 0.35, to_eye.z) + vec3(along.x, 0.0, along.z) * 0.5);
+  float lean = mix(0.55, clamp(0.36 + 0.42 * length(bend) + 0.45 * tufts, 0.0, 1.0), tall);
+  vec3 light = blade_light(to_eye, along, normal, mix(0.72, 0.82, tall) + 0.3 * tufts, tint_of(patch_at, 0.5 + 0.8 * tufts), lean);
+  // From above one looks down between the blades.
+  return light * (1.0 - tall * (0.15 + 0.30 * to_eye.y * to_eye.y * (1.0 - 0.6 * min(length(bend), 1.0))));
+}

@@ -1,0 +1,105 @@
+#include "viewer/looks/ground_maps.hpp"
+
+#include <algorithm>
+
+#include <glm/mat2x2.hpp>
+#include <glm/matrix.hpp>
+
+#include "viewer/gl/noise_texture.hpp"
+
+namespace yuragi::viewer::looks {
+namespace {
+
+// Unit 0 is for what a renderer has of its own.
+constexpr GLint kNoiseUnit = 1;
+constexpr GLint kBendsUnit = 2;
+constexpr GLint kGrowthUnit = 3;
+
+void bind_texture(GLint unit, const gl::GlTexture& texture) {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, texture.name());
+}
+
+/// The mean of the first `count` bends.
+glm::vec2 mean_of(const pose::StrandPose& pose, std::size_t count) {
+  glm::dvec2 sum(0.0);
+  for (std::size_t i = 0; i < count; ++i) sum += glm::dvec2(pose.bend_east_rad[i], pose.bend_south_rad[i]);
+  return glm::vec2(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
+}
+
+bool is_same(const meshes::Standing& a, const meshes::Standing& b) {
+  return a.kind == b.kind && a.bounds.low_m == b.bounds.low_m && a.bounds.high_m == b.bounds.high_m &&
+         a.opacity == b.opacity && a.blades == b.blades;
+}
+
+}  // namespace
+
+GroundMaps::GroundMaps() : noise_(gl::make_noise_texture()) {
+  for (const gl::GlTexture* texture : {&bends_, &growth_}) {
+    glBindTexture(GL_TEXTURE_2D, texture->name());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    const GLint wrap = texture == &growth_ ? GL_CLAMP_TO_EDGE : GL_REPEAT;
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
+  }
+  constexpr float side_m = meshes::GrowthMap::kSide_m;
+  ground_.growth_place = {-0.5F * side_m, -0.5F * side_m, 1.0F / side_m, 1.0F / side_m};
+  set_standing({{.kind = meshes::Standing::Kind::kGrass, .bounds = {}, .opacity = 0.0F, .blades = nullptr}});
+  move_to({}, nullptr, nullptr);
+}
+
+void GroundMaps::set_samplers(const gl::GlProgram& program) {
+  gl::set_sampler(program, "noise_tile", kNoiseUnit);
+  gl::set_sampler(program, "bends", kBendsUnit);
+  gl::set_sampler(program, "growth", kGrowthUnit);
+}
+
+void GroundMaps::set_standing(const std::vector<meshes::Standing>& things) {
+  if (std::ranges::equal(things, standing_, is_same)) return;
+  standing_ = things;
+  map_.make(standing_);
+  glBindTexture(GL_TEXTURE_2D, growth_.name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  constexpr auto side = static_cast<GLsizei>(meshes::GrowthMap::kTexels);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, side, side, 0, GL_RGB, GL_UNSIGNED_BYTE, map_.texels().data());
+}
+
+void GroundMaps::move_to(const meshes::BendGrid& grid, const pose::StrandPose* nodes, const pose::StrandPose* near_by) {
+  const bool is_there = nodes != nullptr && grid.columns > 0;
+  const std::size_t count = is_there ? grid.columns * grid.rows : 1;
+  texels_.assign(2 * count, 0.0F);
+  glm::vec2 mean(0.0F);
+  if (is_there) {
+    for (std::size_t i = 0; i < count; ++i) {
+      texels_[2 * i] = nodes->bend_east_rad[i];
+      texels_[2 * i + 1] = nodes->bend_south_rad[i];
+    }
+    mean = mean_of(*nodes, count);
+  } else if (near_by != nullptr) {
+    mean = mean_of(*near_by, near_by->bend_east_rad.size());
+  }
+  // A node is in the middle of its texel.
+  const glm::mat2 sides_m(static_cast<float>(std::max<std::size_t>(grid.columns, 1)) * grid.to_next_m,
+                          static_cast<float>(std::max<std::size_t>(grid.rows, 1)) * grid.to_next_row_m);
+  const glm::mat2 to_parts = glm::inverse(sides_m);
+  ground_.bends_place = {grid.first_m - 0.5F * (grid.to_next_m + grid.to_next_row_m), 0.0F, 0.0F};
+  ground_.bends_axes = {to_parts[0], to_parts[1]};
+  ground_.bend_mean = {mean, is_there ? 1.0F : 0.0F, 0.0F};
+  glBindTexture(GL_TEXTURE_2D, bends_.name());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, static_cast<GLsizei>(is_there ? grid.columns : 1),
+               static_cast<GLsizei>(is_there ? grid.rows : 1), 0, GL_RG, GL_FLOAT, texels_.data());
+}
+
+void GroundMaps::bind(const meshes::Stand& stand, float tall, std::size_t door) {
+  ground_.bend_mean.w = tall;
+  ground_.stand = {stand.length_m, stand.curl_rad, static_cast<float>(door), stand.tilt_rad};
+  gl::stream_to(GL_UNIFORM_BUFFER, block_, std::span<const meshes::Ground>(&ground_, 1));
+  glBindBufferBase(GL_UNIFORM_BUFFER, gl::kGroundBinding, block_.name());
+  bind_texture(kNoiseUnit, noise_);
+  bind_texture(kBendsUnit, bends_);
+  bind_texture(kGrowthUnit, growth_);
+  glActiveTexture(GL_TEXTURE0);
+}
+
+}  // namespace yuragi::viewer::looks

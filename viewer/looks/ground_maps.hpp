@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "engine/pose/skeleton.hpp"
+#include "viewer/gl/gl.hpp"
+#include "viewer/meshes/ground_map.hpp"
+
+namespace yuragi::viewer::looks {
+
+/// What the shaders know of the ground: the uniform block Ground, the grid of bends, the map of growth and a noise, on
+/// texture units of their own. Needs a current context.
+class GroundMaps {
+ public:
+  GroundMaps();
+
+  /// Tells a program where its samplers find them.
+  static void set_samplers(const gl::GlProgram& program);
+
+  /// What stands on the ground. The map is made anew where that has changed.
+  void set_standing(const std::vector<meshes::Standing>& things);
+  /// The bends of the picture. `grid`: of the nodes of the ground; null: `near_by` is the mean of its bends instead,
+  /// which may be null, too.
+  void move_to(const meshes::BendGrid& grid, const pose::StrandPose* nodes, const pose::StrandPose* near_by);
+  /// Binds all of it, with this stand of tall grass, of which the share `tall` is to be seen, through the door of this
+  /// number.
+  void bind(const meshes::Stand& stand, float tall, std::size_t door);
+
+ private:
+  gl::GlTexture noise_, bends_, growth_;
+  gl::GlBuffer block_;
+  meshes::Ground ground_;
+  meshes::GrowthMap map_;
+  std::vector<meshes::Standing> standing_;
+  std::vector<float> texels_;
+};
+
+}  // namespace yuragi::viewer::looks

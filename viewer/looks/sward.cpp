@@ -1,0 +1,107 @@
+#include "viewer/looks/sward.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "viewer/gl/shaders.hpp"
+#include "viewer/looks/ground_maps.hpp"
+
+namespace yuragi::viewer::looks {
+namespace {
+
+constexpr float kTallReach_m = 60.0F;
+constexpr float kLawnReach_m = 24.0F;
+constexpr float kLawnHeight_m = 0.2F;
+constexpr float kLawnBlades_per_m2 = 700.0F;
+constexpr float kHighest = 2.2F;           // of the mean length
+constexpr float kWidthPerSpacing = 0.26F;  // as of streamed blades (blades.cpp)
+constexpr float kLawnWidth_m = 0.008F;
+
+constexpr GLint kBladeUnit = 4;
+constexpr GLint kTileUnit = 5;
+
+meshes::Thinning thinning_of(Sward::Kind kind, const meshes::Stand& stand, float drawn_at_1m_per_m2) {
+  return {.blades_per_m2 = kind == Sward::Kind::kTall ? stand.blades_per_m2 : kLawnBlades_per_m2,
+          .drawn_at_1m_per_m2 = drawn_at_1m_per_m2};
+}
+
+float width_m_of(Sward::Kind kind, const meshes::Stand& stand) {
+  if (kind == Sward::Kind::kLawn) return kLawnWidth_m;
+  return std::clamp(kWidthPerSpacing / std::sqrt(stand.blades_per_m2), 0.012F * stand.length_m,
+                    0.055F * stand.length_m);
+}
+
+std::size_t blades_a_tile(const meshes::Thinning& thinning) {
+  return static_cast<std::size_t>(thinning.blades_per_m2 * meshes::SwardTiles::kTile_m * meshes::SwardTiles::kTile_m);
+}
+
+}  // namespace
+
+Sward::Sward(Kind kind, const meshes::Stand& stand, float drawn_at_1m_per_m2)
+    : kind_(kind),
+      height_m_(kind == Kind::kTall ? kHighest * stand.length_m : kLawnHeight_m),
+      blades_per_tile_(blades_a_tile(thinning_of(kind, stand, drawn_at_1m_per_m2))),
+      thinning_(thinning_of(kind, stand, drawn_at_1m_per_m2)),
+      tiles_(blades_per_tile_, thinning_, kind == Kind::kTall ? kTallReach_m : kLawnReach_m),
+      program_(gl::link_program(
+          "sward", std::string(gl::shaders::kSwardPart).append(gl::shaders::kBladePart).append(gl::shaders::kSwardVert),
+          gl::shaders::kShadeFrag)) {
+  GroundMaps::set_samplers(program_);
+  gl::set_sampler(program_, "blades", kBladeUnit);
+  gl::set_sampler(program_, "tiles", kTileUnit);
+  const auto place = [this](const char* name) { return glGetUniformLocation(program_.name(), name); };
+  glUniform1i(place("blades_per_tile"), static_cast<GLint>(blades_per_tile_));
+  glUniform1f(place("thinning"), thinning_.factor());
+  glUniform1f(place("tile_m"), meshes::SwardTiles::kTile_m);
+  glUniform1f(place("reach_m"), kind == Kind::kTall ? kTallReach_m : kLawnReach_m);
+  glUniform1f(place("width_m"), width_m_of(kind, stand));
+  glUniform1f(place("tall"), kind == Kind::kTall ? 1.0F : 0.0F);
+
+  const std::vector<meshes::SwardBlade> blades = meshes::sward_blades(blades_per_tile_);
+  glBindBuffer(GL_TEXTURE_BUFFER, blade_buffer_.name());
+  glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::span(blades).size_bytes()), blades.data(),
+               GL_STATIC_DRAW);
+  glBindBuffer(GL_TEXTURE_BUFFER, tile_buffer_.name());
+  glBindVertexArray(array_.name());
+  for (std::size_t level = 0; level < triangles_.size(); ++level) {
+    const std::vector<std::uint32_t> triangles =
+        meshes::ribbon_triangles(blades_per_tile_, meshes::SwardTiles::kRings[level]);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_[level].name());
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(std::span(triangles).size_bytes()), triangles.data(),
+                 GL_STATIC_DRAW);
+  }
+}
+
+void Sward::draw(const meshes::View& view) {
+  tiles_.choose(view, height_m_);
+  glUseProgram(program_.name());
+  glBindVertexArray(array_.name());
+  glActiveTexture(GL_TEXTURE0 + kBladeUnit);
+  glBindTexture(GL_TEXTURE_BUFFER, blade_texture_.name());
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, blade_buffer_.name());
+  glActiveTexture(GL_TEXTURE0 + kTileUnit);
+  glBindTexture(GL_TEXTURE_BUFFER, tile_texture_.name());
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, tile_buffer_.name());
+  glActiveTexture(GL_TEXTURE0);
+  for (std::size_t level = 0; level < triangles_.size(); ++level) {
+    const std::span<const meshes::SwardTile> tiles = tiles_.level(level);
+    if (tiles.empty()) continue;
+    const std::size_t rings = meshes::SwardTiles::kRings[level];
+    gl::stream_to(GL_TEXTURE_BUFFER, tile_buffer_, tiles);
+    counts_.clear();
+    first_corners_.clear();
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      counts_.push_back(static_cast<GLsizei>(static_cast<std::size_t>(tiles[i].blades) * 3 * (2 * rings - 1)));
+      first_corners_.push_back(static_cast<GLint>(i * blades_per_tile_ * (2 * rings + 1)));
+    }
+    offsets_.assign(tiles.size(), nullptr);
+    glUniform1i(glGetUniformLocation(program_.name(), "rings"), static_cast<GLint>(rings));
+    glUniform1i(glGetUniformLocation(program_.name(), "is_far"), level + 1 == triangles_.size() ? 1 : 0);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_[level].name());
+    glMultiDrawElementsBaseVertex(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
+                                  static_cast<GLsizei>(tiles.size()), first_corners_.data());
+  }
+}
+
+}  // namespace yuragi::viewer::looks

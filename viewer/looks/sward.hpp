@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "viewer/gl/gl.hpp"
+#include "viewer/meshes/ground_map.hpp"
+#include "viewer/meshes/sward.hpp"
+
+namespace yuragi::viewer::looks {
+
+/// Blades of grass around the eye as far as they can be told apart, drawn from static buffers: tall grass around a
+/// stand of streamed blades, as dense, or a lawn. The View and the GroundMaps are bound. Needs a current context.
+class Sward {
+ public:
+  enum class Kind : std::uint8_t { kTall, kLawn };
+  Sward(Kind kind, const meshes::Stand& stand, float drawn_at_1m_per_m2);
+
+  void draw(const meshes::View& view);
+
+ private:
+  Kind kind_;
+  float height_m_;
+  std::size_t blades_per_tile_;
+  meshes::Thinning thinning_;
+  meshes::SwardTiles tiles_;
+  gl::GlProgram program_;
+  gl::GlVertexArray array_;
+  gl::GlBuffer blade_buffer_, tile_buffer_;
+  gl::GlTexture blade_texture_, tile_texture_;
+  std::array<gl::GlBuffer, meshes::SwardTiles::kLevels> triangles_;
+  std::vector<GLsizei> counts_;
+  std::vector<const void*> offsets_;
+  std::vector<GLint> first_corners_;
+};
+
+}  // namespace yuragi::viewer::looks

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+
+#include "engine/pose/skeleton.hpp"
+#include "viewer/meshes/bounds.hpp"
+
+namespace yuragi::viewer::meshes {
+
+/// The uniform block Ground of viewer/gl/shaders/sward.part.glsl, in its layout (std140).
+struct Ground {
+  glm::vec4 bends_place{0.0F};  ///< x, z of the corner of the grid of bends, metres; of no use
+  glm::vec4 bends_axes{
+      0.0F};  ///< a matrix, column by column: from metres behind that corner to parts of the grid's sides
+  glm::vec4 bend_mean{
+      0.0F};  ///< east, south, radians; z: 1 where there is a grid, 0: bend_mean everywhere; w: share of tall grass
+  glm::vec4 growth_place{0.0F};              ///< x, z of the low corner of the map of growth, metres; 1 / its sides
+  glm::vec4 stand{0.6F, 0.6F, 0.0F, 0.14F};  ///< tall grass: mean length, metres; curl, radians; number of the
+                                             ///< ScreenDoor through which it fades; tilt, radians
+};
+
+/// What a stand of streamed blades is like.
+struct Stand {
+  float length_m = 0.6F;  ///< mean
+  float curl_rad = 0.6F;  ///< mean, from foot to tip, at rest
+  float tilt_rad = 0.14F;
+  float blades_per_m2 = 200.0F;
+};
+Stand stand_of(const pose::StrandSkeleton& skeleton);
+
+/// A grid of bends over the ground: strands in rows of `columns`, with even spacings.
+struct BendGrid {
+  std::size_t columns = 0, rows = 0;  ///< 0: there is none
+  glm::vec2 first_m{0.0F};            ///< x, z of the first node
+  glm::vec2 to_next_m{1.0F, 0.0F};    ///< from a node to the next one in its row
+  glm::vec2 to_next_row_m{0.0F, 1.0F};
+};
+/// The grid that the strands stand on; none where they stand on none.
+BendGrid bend_grid_of(const pose::StrandSkeleton& skeleton);
+
+/// What stands on the ground, with how much of it is to be seen (0 to 1).
+struct Standing {
+  enum class Kind : std::uint8_t { kGrass, kWater, kOther };
+  Kind kind = Kind::kOther;
+  Bounds bounds;
+  float opacity = 1.0F;
+  const pose::StrandSkeleton* blades = nullptr;  ///< of grass
+};
+
+/// How tall grass grows, and where the ground is taken, by streamed blades: a square map around the middle of the
+/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things. Where there is
+/// water no blade of the viewer's own stands, either. Beyond the map it is as on its edge.
+class GrowthMap {
+ public:
+  static constexpr std::size_t kTexels = 256;  ///< a side
+  static constexpr float kSide_m = 128.0F;
+
+  GrowthMap();
+  void make(std::span<const Standing> things);
+  std::span<const std::uint8_t> texels() const { return texels_; }
+  /// 0 to 1, at the texel of a place on the map.
+  float growth_at(float x_m, float z_m) const;
+  float blades_at(float x_m, float z_m) const;
+  float water_at(float x_m, float z_m) const;
+
+ private:
+  std::vector<std::uint8_t> texels_;
+  std::vector<float> growth_, blades_, water_;
+};
+
+}  // namespace yuragi::viewer::meshes
