@@ -117,8 +117,10 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
   glDetachShader(program.name(), vertex_shader.name);
   glDetachShader(program.name(), fragment_shader.name);
 
-  const GLuint view_block = glGetUniformBlockIndex(program.name(), "View");
-  if (view_block != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), view_block, kViewBinding);
+  for (const auto& [block, binding] : {std::pair{"View", kViewBinding}, std::pair{"Light", kLightBinding}}) {
+    const GLuint place = glGetUniformBlockIndex(program.name(), block);
+    if (place != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), place, binding);
+  }
   return program;
 }
 

@@ -66,9 +66,12 @@ using GlProgram = GlObject<GlProgramKind>;
 
 /// Where a program finds the block of uniforms that all renderers share (view.hpp).
 inline constexpr GLuint kViewBinding = 0;
+/// And the block of the light (viewer/light/light.hpp).
+inline constexpr GLuint kLightBinding = 1;
 
 /// Compiles and links. Each stage begins with #version and shaders/common.glsl. On an error throws std::runtime_error
-/// with `name` and the compiler's message. The uniform block View is bound to kViewBinding.
+/// with `name` and the compiler's message. The uniform blocks View and Light are bound to
+/// kViewBinding and kLightBinding.
 GlProgram link_program(const std::string& name, std::string_view vertex, std::string_view fragment);
 
 /// Sets a sampler of `program` to a texture unit. Unknown names are ignored, since the compiler drops uniforms that are

@@ -9,6 +9,7 @@ namespace yuragi::viewer::looks {
 namespace {
 
 constexpr meshes::Bounds kNoField{glm::vec3(1e6F), glm::vec3(-1e6F)};
+constexpr float kLowestSun = 0.02F;  // the sine of its height: below it shadows have no end
 
 }  // namespace
 
@@ -84,8 +85,11 @@ meshes::Bounds Stage::field(const stream::PoseMoment& moment) const {
 
 void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target) {
   const meshes::View view = meshes::view_of(camera, target.width_px(), target.height_px(), field(moment));
-  const meshes::View flat = meshes::laid_flat(view);
+  const glm::vec3 to_sun(light_.to_sun);
+  const bool has_shadows = to_sun.y > kLowestSun;
+  const meshes::View flat = has_shadows ? meshes::laid_flat(view, to_sun) : view;
   view_buffer_.set(view);
+  view_buffer_.set(light_);
   target.begin();
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
@@ -103,7 +107,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
     door_.begin_mark(gl::kHole);
     renderer.draw_hole();
     door_.end_mark();
-    if (renderer.casts_shadow()) {
+    if (has_shadows && renderer.casts_shadow()) {
       view_buffer_.set(flat);
       door_.begin_mark(gl::kShadow);
       renderer.draw(flat);

@@ -8,6 +8,7 @@
 #include "viewer/gl/render_target.hpp"
 #include "viewer/gl/screen_door.hpp"
 #include "viewer/gl/view_buffer.hpp"
+#include "viewer/light/sky_keeper.hpp"
 #include "viewer/looks/landscape.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/meshes/view.hpp"
@@ -34,6 +35,9 @@ class Stage {
   /// How many joints move in all scenes.
   std::size_t node_count() const;
 
+  /// The light of the next pictures; at first the evening's.
+  void set_light(const light::Light& light) { light_ = light; }
+
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
@@ -53,6 +57,7 @@ class Stage {
   std::vector<std::unique_ptr<SceneView>> views_;  // a renderer refers to its scene, which may not move
   std::vector<const wire::SceneModel*> scenes_;    // of views_
   std::optional<std::string> only_;
+  light::Light light_ = light::light_of({}, 0.0);
   Landscape landscape_;
   gl::ScreenDoor door_;
   gl::ViewBuffer view_buffer_;

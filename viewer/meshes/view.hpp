@@ -1,6 +1,7 @@
 #pragma once
 
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
 #include "viewer/meshes/orbit_camera.hpp"
@@ -15,14 +16,14 @@ struct View {
   glm::vec4 right{0.0F};  ///< unit vectors of the camera; w: tangent of half the field of view, horizontally
   glm::vec4 up{0.0F};     ///< w: the same, vertically
   glm::vec4 forward{0.0F};
-  glm::vec4 to_sun{0.0F};  ///< unit vector
-  glm::vec4 field{0.0F};   ///< x and z of the low and of the high corner of the field that covers the ground
+  glm::vec4 field{0.0F};  ///< x and z of the low and of the high corner of the field that covers the ground
 };
 
-/// For a picture of so many pixels. The sun is low in the south-west.
+/// For a picture of so many pixels.
 View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bounds& field);
 
-/// The same view of everything projected onto the ground along the sun's rays: of its shadows.
-View laid_flat(const View& view);
+/// The same view of everything projected onto the ground along the rays from `to_sun`, which is above the horizon: of
+/// its shadows.
+View laid_flat(const View& view, const glm::vec3& to_sun);
 
 }  // namespace yuragi::viewer::meshes

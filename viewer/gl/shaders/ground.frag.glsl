@@ -27,5 +27,5 @@ void main() {
   vec3 sun = kSunLight * sunlight;
   vec3 light = mix(turf * (kSkyLight * 0.8 + sun * (0.30 + 0.55 * against * against)),
                    under * (kSkyLight * 0.8 + sun * 0.10), in_field);
-  color = vec4(finish(mix(light, air_light(vec3(direction.x, 0.02, direction.z)), haze(distance_m))), 1.0);
+  color = vec4(dithered(seen(light, place_m), gl_FragCoord.xy), 1.0);
 }
