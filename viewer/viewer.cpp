@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 
 #include "engine/base/address.hpp"
@@ -11,6 +12,7 @@
 #include "viewer/looks/stage.hpp"
 #include "viewer/overlay.hpp"
 #include "viewer/picture_file.hpp"
+#include "viewer/quality.hpp"
 #include "viewer/stream/scene_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
 #include "viewer/viewer_exit.hpp"
@@ -133,6 +135,14 @@ class Viewer::Show {
     return *look::edited(daemons, options_.look);
   }
 
+  /// Says a change in the log, too.
+  void use_quality(look::Quality quality) {
+    if (quality == quality_) return;
+    quality_ = quality;
+    stage_->set_quality(quality);
+    std::fprintf(stderr, "yuragi-viewer: %s\n", quality_text(quality).c_str());
+  }
+
   void frame_camera() {
     meshes::CameraPlace place = stage_->home(static_cast<double>(options_.width_px) / options_.height_px);
     if (options_.camera.size() == 3) {
@@ -187,6 +197,7 @@ class Viewer::Show {
     }
     const wind::WindVector& wind = moment_->wind.wind;
     stage_->set_light(sky_.advance(utc_s_, passed_s, {wind.u_m_s, -wind.v_m_s}));
+    use_quality(quality_for(sky_.look().quality, gl::is_software_renderer()));
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
   }
 
@@ -203,6 +214,7 @@ class Viewer::Show {
     stage_->draw(*moment_, camera_, *target_);
     dimmer_->draw(static_cast<float>(brightness_));
     if (!has_overlay_) return;
+    const light::Sky sky = light::sky_of(sky_.look(), utc_s_);
     overlay_->draw({.wind = moment_->wind,
                     .playback = timeline_.playback(),
                     .stream = connection_.status(),
@@ -211,6 +223,8 @@ class Viewer::Show {
                     .nodes = stage_->node_count(),
                     .scenes = stage_->scenes(),
                     .opacities = moment_->opacities,
+                    .sky = &sky,
+                    .quality = quality_,
                     .heading_deg = camera_.place().heading_deg});
   }
 
@@ -232,6 +246,7 @@ class Viewer::Show {
   meshes::OrbitCamera camera_;
   bool has_framed_ = false;
   light::SkyKeeper sky_;
+  look::Quality quality_ = look::Quality::kAuto;
   double utc_s_ = 0.0;  // the daemon's clock: of the newest frame
   stream::SceneTimeline timeline_;
   const stream::PoseMoment* moment_ = nullptr;

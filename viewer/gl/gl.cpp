@@ -63,6 +63,15 @@ void GlTextureKind::unmake(GLuint name) {
   glDeleteTextures(1, &name);
 }
 
+GLuint GlSamplerKind::make() {
+  GLuint name = 0;
+  glGenSamplers(1, &name);
+  return name;
+}
+void GlSamplerKind::unmake(GLuint name) {
+  glDeleteSamplers(1, &name);
+}
+
 GLuint GlVertexArrayKind::make() {
   GLuint name = 0;
   glGenVertexArrays(1, &name);
@@ -121,6 +130,9 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
     const GLuint place = glGetUniformBlockIndex(program.name(), block);
     if (place != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), place, binding);
   }
+  // Also where nothing is looked up: no two kinds of sampler may have one unit.
+  set_sampler(program, "shadow_map", kShadowUnit);
+  set_sampler(program, "shadow_depth", kShadowDepthUnit);
   return program;
 }
 

@@ -20,6 +20,7 @@ constexpr SkyPlace kEveningSun{8.5, 239.0};
 constexpr double kEveningExposure = 0.545;
 constexpr double kEveningBrightness = 1.65;
 constexpr double kFollowing = 0.62;
+constexpr double kFollowingInTheDark = 0.74;  // but a night is to be seen
 constexpr double kAdapting_s = 12.0;
 
 // Clouds are carried by a wind that is about twice as fast as the one at the ground.
@@ -46,7 +47,8 @@ double at_solar_time_s(double hour, double utc_s, double longitude_deg) {
 
 double exposure_log_for(const Light& light) {
   const double brightness = std::max(1e-4, static_cast<double>(brightness_of(light)));
-  return std::log(kEveningExposure) - kFollowing * std::log(brightness / kEveningBrightness);
+  const double log_ratio = std::log(brightness / kEveningBrightness);
+  return std::log(kEveningExposure) - (log_ratio < 0.0 ? kFollowingInTheDark : kFollowing) * log_ratio;
 }
 
 double share_of(double passed_s, double time_s) {

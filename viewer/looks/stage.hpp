@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/look/look.hpp"
 #include "viewer/gl/render_target.hpp"
 #include "viewer/gl/screen_door.hpp"
+#include "viewer/gl/shadow_map.hpp"
 #include "viewer/gl/view_buffer.hpp"
 #include "viewer/light/sky_keeper.hpp"
 #include "viewer/looks/landscape.hpp"
@@ -38,6 +40,9 @@ class Stage {
   /// The light of the next pictures; at first the evening's.
   void set_light(const light::Light& light) { light_ = light; }
 
+  /// How much work the next pictures are; at first little. kLow has hard shadows, on the ground only; kAuto is kHigh.
+  void set_quality(look::Quality quality);
+
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
@@ -52,6 +57,7 @@ class Stage {
   template <class IsChosen>
   std::optional<meshes::Bounds> around(IsChosen&& is_chosen) const;
   bool is_seen(const stream::PoseMoment& moment, std::size_t scene) const;
+  void draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view);
   meshes::Bounds field(const stream::PoseMoment& moment) const;
 
   std::vector<std::unique_ptr<SceneView>> views_;  // a renderer refers to its scene, which may not move
@@ -61,6 +67,7 @@ class Stage {
   Landscape landscape_;
   gl::ScreenDoor door_;
   gl::ViewBuffer view_buffer_;
+  std::optional<gl::ShadowMap> shadow_map_;  // nothing: hard shadows
 };
 
 }  // namespace yuragi::viewer::looks

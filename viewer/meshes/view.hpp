@@ -16,6 +16,9 @@ struct View {
   glm::vec4 right{0.0F};  ///< unit vectors of the camera; w: tangent of half the field of view, horizontally
   glm::vec4 up{0.0F};     ///< w: the same, vertically
   glm::vec4 forward{0.0F};
+  glm::mat4 to_shadow{1.0F};  ///< to the shadow map: place and depth, 0 to 1
+  glm::vec4 shadow{
+      0.0F};              ///< a texel of the map (0: there is none); how a penumbra grows, across and upright; depth, m
   glm::vec4 field{0.0F};  ///< x and z of the low and of the high corner of the field that covers the ground
 };
 

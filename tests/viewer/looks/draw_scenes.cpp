@@ -75,7 +75,9 @@ int draw_scenes(std::vector<std::string> words) {
   const viewer::Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
   viewer::gl::report_gl_errors();
   viewer::looks::Stage stage;
-  stage.set_light(viewer::light::light_of(look::edited({}, edits).value(), kDay_s));
+  const look::Look look = look::edited({}, edits).value();
+  stage.set_light(viewer::light::light_of(look, kDay_s));
+  stage.set_quality(look.quality);
   viewer::gl::RenderTarget target(width_px, height_px, 4);
   for (const std::string& kind : kinds) {
     for (const auto& [name, speed_m_s] : {Weather{"calm", 0.0}, Weather{"breeze", 4.0}, Weather{"storm", 18.0}}) {

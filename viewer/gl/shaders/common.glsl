@@ -7,6 +7,8 @@ layout(std140) uniform View {
   vec4 right;    // w: tangent of half the field of view, horizontally
   vec4 up;       // w: the same, vertically
   vec4 forward;
+  mat4 to_shadow;  // to the shadow map
+  vec4 shadow;     // a texel of it, 0: there is none; how a penumbra grows in it, across and upright; its depth, metres
   vec4 field;    // x, z of the low and the high corner of the field
 };
 
@@ -68,11 +70,11 @@ vec3 finish(vec3 light) {
   return screen_value(clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0));
 }
 
-// A screen's value, changed at random by half a step of 8 bits, so that no bands show in what changes slowly:
-// interleaved gradient noise (J. Jimenez 2014) of the pixel.
-vec3 dithered(vec3 value, vec2 pixel) {
-  return value + (fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))) - 0.5) / 255.0;
-}
+// A number from 0 to 1 for each pixel, evenly spread: interleaved gradient noise (J. Jimenez 2014).
+float pixel_chance(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
+
+// A screen's value, changed at random by half a step of 8 bits, so that no bands show in what changes slowly.
+vec3 dithered(vec3 value, vec2 pixel) { return value + (pixel_chance(pixel) - 0.5) / 255.0; }
 
 // The screen's value of a thing at a place that emits or reflects this light, seen through the air.
 vec3 seen(vec3 light, vec3 place_m) {
@@ -86,6 +88,47 @@ vec3 seen(vec3 light, vec3 place_m) {
 // The light of the sky, and of the sky reflected by the turf, on a surface with this normal.
 vec3 soft_light(vec3 normal) {
   return sky_light.rgb * (0.60 + 0.40 * normal.y) + turf_light.rgb * (0.5 - 0.5 * normal.y);
+}
+
+// The share of the sun's light that comes to a place, and is not held back by what stands between: 0 to 1. One look at the
+// shadow map: for things that are small or many.
+uniform sampler2DShadow shadow_map;
+uniform sampler2D shadow_depth;
+
+float sunlight_near(vec3 place_m) {
+  if (shadow.x == 0.0) return 1.0;
+  vec3 at = (to_shadow * vec4(place_m, 1.0)).xyz;
+  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+  return textureLod(shadow_map, at, 0.0);
+}
+
+// The same with a penumbra that grows with the distance from what casts the shadow (R. Fernando 2005, "Percentage-closer
+// soft shadows"). `chance`, 0 to 1, turns its samples, another way at each pixel.
+float sunlight_at(vec3 place_m, float chance) {
+  if (shadow.x == 0.0) return 1.0;
+  vec3 at = (to_shadow * vec4(place_m, 1.0)).xyz;
+  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
+  // Behind the map's end things still cast shadows.
+  float depth = min(at.z, 1.0);
+  float angle = 6.2831853 * chance;
+  vec2 turn = vec2(cos(angle), sin(angle));
+  mat2 turned = mat2(turn.x, turn.y, -turn.y, turn.x);
+  const vec2 kSpiral[8] = vec2[8](vec2(0.25, 0.0), vec2(-0.32, 0.29), vec2(0.05, -0.56), vec2(0.40, 0.53),
+                                  vec2(-0.74, -0.13), vec2(0.70, -0.45), vec2(-0.23, 0.84), vec2(-0.37, -0.92));
+  vec2 widest = max(shadow.yz * 0.6, vec2(2.0 * shadow.x));
+  float near = 0.0;
+  float blocked = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    float before = textureLod(shadow_depth, at.xy + turned * kSpiral[i] * widest, 0.0).r;
+    float blocks = step(before, depth - 0.0005);
+    near += before * blocks;
+    blocked += blocks;
+  }
+  if (blocked == 0.0) return 1.0;
+  vec2 wide = max(shadow.yz * (at.z - near / blocked), vec2(1.2 * shadow.x));
+  float lit = 0.0;
+  for (int i = 0; i < 8; ++i) lit += textureLod(shadow_map, vec3(at.xy + turned * kSpiral[i] * wide, depth), 0.0);
+  return lit / 8.0;
 }
 
 // Joints of strands as the forward kinematics writes them, in blocks of 16 strands.

@@ -46,14 +46,15 @@ void main() {
   vec3 albedo = mix(vec3(0.030, 0.060, 0.012), tint_facing.rgb, 0.12 + 0.88 * t);
   vec3 through = vec3(1.20, 1.05, 0.40) * albedo * (0.30 + 1.5 * against * against);
   vec3 sum = albedo * kSkyLight * (0.25 + 0.75 * deep) * (0.40 + 1.0 * max(normal.y, 0.0));
-  sum += kSunLight * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
+  float open = mix(0.16, 1.0, sunlight_near(place));
+  sum += kSunLight * open * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
   float sheen_side = dot(along, normalize(to_sun.xyz + to_eye));
   float sheen = sqrt(max(1.0 - sheen_side * sheen_side, 0.0));
   sheen *= sheen;
   sheen *= sheen;
   sheen *= sheen;
   sheen *= sheen;
-  sum += kSunLight * vec3(0.15, 0.155, 0.12) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
+  sum += kSunLight * open * vec3(0.15, 0.155, 0.12) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
 
   // Between upright blades the dark ground shows; of blades that the wind has bent one sees the lit sides. Measured by
   // this blade's own bend (the sine of its chord), since its neighbours bend alike.

@@ -4,6 +4,8 @@ uniform float sunlight;  // 1, and less in a shadow
 in vec3 place_m;
 out vec4 color;
 
+const float kSunInShadow = 0.16;  // leaves, threads and the air let some through
+
 void main() {
   vec3 from_eye = place_m - eye_m.xyz;
   float distance_m = length(from_eye);
@@ -24,7 +26,7 @@ void main() {
   // Toward the low sun the light shines through the turf's blades.
   vec3 direction = from_eye / distance_m;
   float against = max(dot(direction, to_sun.xyz), 0.0);
-  vec3 sun = kSunLight * sunlight;
+  vec3 sun = kSunLight * sunlight * mix(kSunInShadow, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
   vec3 light = mix(turf * (kSkyLight * 0.8 + sun * (0.30 + 0.55 * against * against)),
                    under * (kSkyLight * 0.8 + sun * 0.10), in_field);
   color = vec4(dithered(seen(light, place_m), gl_FragCoord.xy), 1.0);
