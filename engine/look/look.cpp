@@ -17,7 +17,7 @@ constexpr Look kDefault{};
 const std::array<Parameter, 10> kParameters{{
     {.name = "sun",
      .unit = "",
-     .default_value = std::string(),
+     .default_value = std::string("evening"),
      .help =
          "\"evening\": always low in the south-west; \"time\": where sun and moon are at a place and time; \"fixed\": "
          "where sun_height and sun_azimuth say",

@@ -35,9 +35,9 @@ void main() {
   float cloud = smoothstep(0.0, 0.40, thick) * smoothstep(0.02, 0.20, height);
 
   // A cloud is darker where it is thick; its thin edges let the sun's light through.
-  vec3 light = mix(clear, mix(sunlit, shaded * (1.05 - 0.35 * smoothstep(0.25, 0.75, thick)), smoothstep(0.10, 0.55, thick)), cloud);
+  vec3 value = mix(clear, mix(sunlit, shaded * (1.02 - 0.15 * smoothstep(0.25, 0.75, thick)), smoothstep(0.10, 0.55, thick)), cloud);
 
-  if (air.w > 0.0 && height > 0.0) light += star_light(direction) * (0.11 * air.w * (1.0 - cloud) * smoothstep(0.0, 0.25, height));
+  if (air.w > 0.0 && height > 0.0) value += star_light(direction) * (0.75 * air.w * (1.0 - cloud) * smoothstep(0.0, 0.25, height));
 
   // The moon, twice as large as it is, with the side lit that faces the sun.
   float to_moon = dot(direction, moon_disc.xyz);
@@ -50,10 +50,11 @@ void main() {
     float edge = eye_m.w / kRadius;
     float inside = 1.0 - smoothstep(1.0 - edge, 1.0 + edge, sqrt(out_2));
     float spots = texture(noise_tile, off.xy * 0.07 + 0.2).r;
-    vec3 glow = sun_light.rgb * (0.6 * exp(-0.25 * out_2) + 0.12 * exp(-0.02 * out_2)) * step(sun_disc.y, 0.0);
-    light += (glow + vec3(1.0, 0.97, 0.90) * (0.32 * lit * inside * (0.7 + 0.4 * spots))) * (moon_disc.w * (1.0 - 0.85 * cloud));
+    float glow = (0.16 * exp(-0.25 * out_2) + 0.05 * exp(-0.02 * out_2)) * step(sun_disc.y, 0.0);
+    vec3 moon = vec3(0.66, 0.70, 0.80) * glow + vec3(0.98, 0.96, 0.90) * (lit * inside * (0.70 + 0.40 * spots));
+    value += (1.0 - value) * moon * (moon_disc.w * (1.0 - 0.85 * cloud));
   }
 
   float sun = smoothstep(0.99962, 0.99985, dot(direction, sun_disc.xyz)) * sun_disc.w;
-  color = vec4(dithered(mix(finish(light), vec3(1.0, 0.99, 0.93), sun), gl_FragCoord.xy), 1.0);
+  color = vec4(dithered(mix(value, vec3(1.0, 0.99, 0.93), sun), gl_FragCoord.xy), 1.0);
 }

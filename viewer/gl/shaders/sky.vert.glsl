@@ -4,7 +4,7 @@ const int kColumns = 40;
 const int kRows = 24;  // one instance each
 
 out vec3 ray;
-out vec3 clear;    // the light of the clear air
+out vec3 clear;    // the screen's value of the clear air
 out vec3 shaded;   // of a cloud, away from the sun and toward it
 out vec3 sunlit;
 
@@ -14,10 +14,12 @@ void main() {
   ray = forward.xyz + right.xyz * (at.x * right.w) + up.xyz * (at.y * up.w);
 
   vec3 direction = normalize(ray);
-  clear = air_light(direction);
+  vec3 air = air_light(direction);
   float near_sun = max(dot(direction, sun_disc.xyz), 0.0);
   float near_2 = near_sun * near_sun;
   float far = exp(-14.0 * max(direction.y, 0.0));  // through more and more air toward the horizon
-  shaded = mix(mix(clear, cloud_light.rgb, 0.85), clear, far);
-  sunlit = shaded + cloud_glow.rgb * (0.12 + 0.85 * near_2 * near_2 * near_2) * (1.0 - far);
+  vec3 cloud = mix(mix(air, cloud_light.rgb, 0.85), air, far);
+  clear = finish(air);
+  shaded = finish(cloud);
+  sunlit = finish(cloud + cloud_glow.rgb * (0.12 + 0.85 * near_2 * near_2 * near_2) * (1.0 - far));
 }
