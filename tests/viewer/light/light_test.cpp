@@ -18,12 +18,14 @@ float sum(const glm::vec4& light) {
 }
 
 TEST(Daylight, GrowsWithTheSunsHeight) {
-  for (double height_deg = -1.0; height_deg < 90.0; height_deg += 0.25) {
+  for (int quarter = -4; quarter < 360; ++quarter) {
+    const double height_deg = 0.25 * quarter;
     const glm::vec3 low = sunlight_at(height_deg);
     const glm::vec3 high = sunlight_at(height_deg + 0.25);
     for (int channel = 0; channel < 3; ++channel) ASSERT_GE(high[channel], low[channel]) << height_deg;
   }
-  for (double height_deg = -30.0; height_deg < 90.0; height_deg += 0.25) {
+  for (int quarter = -120; quarter < 360; ++quarter) {
+    const double height_deg = 0.25 * quarter;
     const float low = sum(daylight({.sun = {height_deg, 200.0}}).sky_light);
     const float high = sum(daylight({.sun = {height_deg + 0.25, 200.0}}).sky_light);
     ASSERT_GE(high, low) << height_deg;
@@ -73,7 +75,7 @@ TEST(SkyKeeper, FollowsADayWithoutAJump) {
   SkyKeeper keeper;
   keeper.start({.sun = look::SunChoice::kTime, .clouds = 0.0});
   Light before = keeper.advance(kDay_s, 0.0, {});
-  for (double passed_s = 1.0; passed_s < 86400.0; passed_s += 1.0) {
+  for (int passed_s = 1; passed_s < 86400; ++passed_s) {
     const Light now = keeper.advance(kDay_s + passed_s, 1.0, {});
     ASSERT_NEAR(std::log(now.air.x / before.air.x), 0.0, 0.02) << "exposure after " << passed_s << " s";
     ASSERT_NEAR(sum(now.zenith), sum(before.zenith), 0.01F * sum(before.zenith) + 1e-6F) << passed_s;
@@ -90,7 +92,8 @@ TEST(SkyKeeper, FadesToAnotherLookWithoutAJump) {
   Light before = keeper.advance(kDay_s, 0.0, {});
   keeper.set_look({.sun = look::SunChoice::kFixed, .sun_height_deg = 20.0, .sun_azimuth_deg = 270.0, .clouds = 0.9});
   constexpr double kStep_s = 1.0 / 60.0;
-  for (double passed_s = 0.0; passed_s < SkyKeeper::kFade_s + 1.0; passed_s += kStep_s) {
+  for (int step = 0; kStep_s * step < SkyKeeper::kFade_s + 1.0; ++step) {
+    const double passed_s = kStep_s * step;
     const Light now = keeper.advance(kDay_s, kStep_s, {});
     ASSERT_NEAR(now.air.x, before.air.x, 0.03F * before.air.x) << passed_s;
     ASSERT_NEAR(sum(now.sky_light), sum(before.sky_light), 0.02F * sum(before.sky_light)) << passed_s;

@@ -43,7 +43,8 @@ TEST(SkyPlaces, AreSeenInTheirDirection) {
 }
 
 TEST(SkyPlaces, MoveWithoutAJump) {
-  for (double utc_s = 1.79e9; utc_s < 1.79e9 + 2.0 * 86400.0; utc_s += 60.0) {
+  for (int minute = 0; minute < 2 * 1440; ++minute) {
+    const double utc_s = 1.79e9 + 60.0 * minute;
     for (const auto& place : {sun_place, moon_place}) {
       const SkyPlace before = place(utc_s, 35.68, 139.77);
       const SkyPlace after = place(utc_s + 60.0, 35.68, 139.77);

@@ -17,8 +17,10 @@ glm::vec3 place_in_map(const glm::vec3& to_sun, const glm::vec3& place_m) {
 }
 
 TEST(ShadowView, HoldsTheWholeBoxFromEverySide) {
-  for (float height = 0.03F; height <= 1.0F; height += 0.0485F) {
-    for (float turn = 0.0F; turn < 6.28F; turn += 0.5F) {
+  for (int rise = 1; rise <= 20; ++rise) {
+    const float height = 0.05F * static_cast<float>(rise) - 0.02F;
+    for (int half_radian = 0; half_radian < 13; ++half_radian) {
+      const float turn = 0.5F * static_cast<float>(half_radian);
       const float level = std::sqrt(1.0F - height * height);
       const glm::vec3 to_sun(level * std::sin(turn), height, level * std::cos(turn));
       for (int corner = 0; corner < 8; ++corner) {
