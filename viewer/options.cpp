@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "engine/base/duration.hpp"
+#include "engine/look/look.hpp"
 #include "viewer/picture_file.hpp"
 
 namespace yuragi::viewer {
@@ -48,6 +49,14 @@ void add_options(CLI::App& app, ViewerOptions& options) {
   app.add_option("--monitor", options.monitor, "Which screen to use, counted from 0")->check(CLI::NonNegativeNumber);
   app.add_flag("--turn", options.is_turning, "Turn the camera slowly");
   app.add_option("--scene", options.scene, "Show only the scene of this name");
+  app.add_option(
+         "--look", options.look,
+         "KEY=VALUE: another light or weather than the daemon's [look], such as time=06:30 or clouds=1; repeatable")
+      ->allow_extra_args(false)
+      ->check([](const std::string& edit) {
+        const auto look = look::edited({}, std::span(&edit, 1));
+        return look ? std::string() : look.error().name + " " + look.error().message;
+      });
   app.add_option("--camera", options.camera,
                  "HEADING,PITCH,DISTANCE: direction of view (degrees, 0 north, 90 east), angle downward (degrees) and "
                  "distance (metres); default: chosen to suit the scene")

@@ -20,9 +20,10 @@ struct ViewerOptions {
   std::optional<int> monitor;
   bool is_turning = false;
   bool is_dark_when_closed = false;
-  std::string scene;           ///< the only one to show; empty: all
-  std::vector<double> camera;  ///< heading_deg, pitch_deg, distance_m; empty: chosen
-  std::string screenshot;      ///< a file; empty: a window
+  std::vector<std::string> look;  ///< "time=06:30": over the daemon's look
+  std::string scene;              ///< the only one to show; empty: all
+  std::vector<double> camera;     ///< heading_deg, pitch_deg, distance_m; empty: chosen
+  std::string screenshot;         ///< a file; empty: a window
   int frames = 30;
   std::optional<double> at_s;
   double wait_s = 10.0;

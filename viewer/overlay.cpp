@@ -12,6 +12,7 @@
 
 #include "engine/base/compass.hpp"
 #include "engine/base/units.hpp"
+#include "viewer/quality.hpp"
 #include "viewer/wind_place_text.hpp"
 
 namespace yuragi::viewer {
@@ -160,6 +161,19 @@ void write_shaping(const OverlayFacts& facts) {
   }
 }
 
+/// Where the sun is, the weather, and what the quality leaves out.
+void write_look(const OverlayFacts& facts) {
+  if (facts.sky == nullptr) return;
+  const light::SkyPlace& sun = facts.sky->sun;
+  std::string text = sun.height_deg < -0.5
+                         ? fmt::format("sun {:.0f}\u00b0 below the horizon", -sun.height_deg)
+                         : fmt::format("sun {:.0f}\u00b0 high in the {}", std::max(0.0, sun.height_deg),
+                                       nearest_compass_point(sun.azimuth_deg));
+  text += fmt::format(", clouds {:.0f} %, haze {:.0f} %", 100.0 * facts.sky->clouds, 100.0 * facts.sky->haze);
+  write(kQuiet, text);
+  write(kQuiet, quality_text(facts.quality));
+}
+
 void write_stream(const OverlayFacts& facts) {
   switch (facts.playback) {
     case stream::Playback::kReplaying:
@@ -240,6 +254,7 @@ void Overlay::draw(const PixelSize& size, const OverlayFacts& facts) {
   }
   write_shaping(facts);
   write_scenes(facts);
+  write_look(facts);
   write_stream(facts);
   ImGui::End();
 

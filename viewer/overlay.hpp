@@ -3,6 +3,8 @@
 #include <optional>
 #include <span>
 
+#include "engine/look/look.hpp"
+#include "viewer/light/daylight.hpp"
 #include "viewer/stream/pose_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
 #include "viewer/window.hpp"
@@ -18,8 +20,10 @@ struct OverlayFacts {
   double pictures_per_s = 0.0;
   std::size_t nodes = 0;
   std::span<const wire::SceneModel* const> scenes;
-  std::span<const float> opacities;  ///< one a scene
-  double heading_deg = 0.0;          ///< of the camera: up on the compass
+  std::span<const float> opacities;              ///< one a scene
+  const light::Sky* sky = nullptr;               ///< null: not known
+  look::Quality quality = look::Quality::kHigh;  ///< in which it is drawn
+  double heading_deg = 0.0;                      ///< of the camera: up on the compass
 };
 
 /// Small texts over the picture: wind, sensors, stream. It takes no input. One at a time; needs a current context.

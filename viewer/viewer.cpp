@@ -3,15 +3,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <stdexcept>
 
 #include "engine/base/address.hpp"
 #include "viewer/gl/dimmer.hpp"
 #include "viewer/gl/headless_context.hpp"
+#include "viewer/light/sky_keeper.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/overlay.hpp"
 #include "viewer/picture_file.hpp"
+#include "viewer/quality.hpp"
 #include "viewer/stream/scene_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
 #include "viewer/viewer_exit.hpp"
@@ -21,6 +24,7 @@ namespace yuragi::viewer {
 namespace {
 
 constexpr double kIdleWait_s = 0.1;  // while there is nothing to draw on
+constexpr double kLookWait_s = 1.0;  // for the daemon's first status, which has its look
 constexpr int kOverlayPictures = 2;  // the overlay's size is known after the first
 constexpr int kSamples = 4;          // a pixel
 constexpr double kRateSmoothing = 0.05;
@@ -79,6 +83,7 @@ class Viewer::Show {
     samples_ = options.samples.value_or(is_slow ? 1 : kSamples);
     stage_.emplace();
     dimmer_.emplace();
+    sky_.start(look_for({}));
     if (!options.scene.empty()) stage_->show_only(options.scene);
     window_ ? overlay_.emplace(window_->handle(), window_->content_scale()) : overlay_.emplace(nullptr, 1.0);
     camera_.set_turning(options.is_turning);
@@ -115,6 +120,7 @@ class Viewer::Show {
         continue;
       }
       if (first_pose_s == 0.0) first_pose_s = last_s_;
+      if (!sensors_ && last_s_ - first_pose_s < kLookWait_s) continue;
       if (options_.at_s && last_s_ - first_pose_s < *options_.at_s) continue;
       draw(size);
       ++drawn;
@@ -142,6 +148,19 @@ class Viewer::Show {
     }
     throw ViewerExit(EX_USAGE,
                      "--scene: " + options_.connect + " has no scene '" + options_.scene + "'; it has: " + names);
+  }
+
+  /// What the command line says, over the daemon's look.
+  look::Look look_for(const look::Look& daemons) const {
+    return *look::edited(daemons, options_.look);
+  }
+
+  /// Says a change in the log, too.
+  void use_quality(look::Quality quality) {
+    if (quality == quality_) return;
+    quality_ = quality;
+    stage_->set_quality(quality);
+    std::fprintf(stderr, "yuragi-viewer: %s\n", quality_text(quality).c_str());
   }
 
   void frame_camera() {
@@ -172,10 +191,15 @@ class Viewer::Show {
   void advance() {
     stream::Inbox inbox = connection_.take();
     if (inbox.scenes) timeline_.set_scenes(std::move(*inbox.scenes));
-    for (stream::TimedFrame& timed : inbox.frames)
+    for (stream::TimedFrame& timed : inbox.frames) {
+      utc_s_ = 1e-9 * static_cast<double>(timed.frame.info.utc_ns);
       timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
+    }
     const bool is_first_status = inbox.sensors && !sensors_;
-    if (inbox.sensors) sensors_ = std::move(inbox.sensors);
+    if (inbox.sensors) {
+      sensors_ = std::move(inbox.sensors);
+      is_first_status ? sky_.start(look_for(sensors_->look)) : sky_.set_look(look_for(sensors_->look));
+    }
 
     const double now = now_s();
     const double passed_s = now - last_s_;
@@ -191,6 +215,9 @@ class Viewer::Show {
       }
       has_framed_ = true;
     }
+    const wind::WindVector& wind = moment_->wind.wind;
+    stage_->set_light(sky_.advance(utc_s_, passed_s, {wind.u_m_s, -wind.v_m_s}));
+    use_quality(quality_for(sky_.look().quality, gl::is_software_renderer()));
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
   }
 
@@ -207,6 +234,7 @@ class Viewer::Show {
     stage_->draw(*moment_, camera_, *target_);
     dimmer_->draw(static_cast<float>(brightness_));
     if (!has_overlay_) return;
+    const light::Sky sky = light::sky_of(sky_.look(), utc_s_);
     overlay_->draw(size, {.wind = moment_->wind,
                           .playback = timeline_.playback(),
                           .stream = connection_.status(),
@@ -215,6 +243,8 @@ class Viewer::Show {
                           .nodes = stage_->node_count(),
                           .scenes = stage_->scenes(),
                           .opacities = moment_->opacities,
+                          .sky = &sky,
+                          .quality = quality_,
                           .heading_deg = camera_.place().heading_deg});
   }
 
@@ -236,6 +266,9 @@ class Viewer::Show {
 
   meshes::OrbitCamera camera_;
   bool has_framed_ = false;
+  light::SkyKeeper sky_;
+  look::Quality quality_ = look::Quality::kAuto;
+  double utc_s_ = 0.0;  // the daemon's clock: of the newest frame
   stream::SceneTimeline timeline_;
   const stream::PoseMoment* moment_ = nullptr;
   std::optional<wire::Sensors> sensors_;

@@ -64,6 +64,7 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
   json["animation"] = json_of(config.by_name.animation);
   json["wind"] = json_of(config.by_name.wind);
   json["shaping"] = json_of(config.by_name.shaping);
+  json["look"] = json_of(config.by_name.look);
   json["log"] = json_of(config.by_name.log);
   return json;
 }

@@ -78,6 +78,7 @@ class Service::Io {
         stream_(io_, config.stream.listen, stream_settings(config)),
         hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0),
         shaper_(config, gusts_),
+        look_(config.look),
         players_(config.stream.control, hub_.players()),
         folders_(config, options.record),
         control_(config.stream.control),
@@ -230,6 +231,7 @@ class Service::Io {
     const settings::Config& next = plan.next;
     hub_.change(next);
     if (plan.changes_shaping) shaper_.change(next.shaping);
+    look_ = next.look;
     control_ = next.stream.control;
     director_.allow(control_);
     players_.allow(control_);
@@ -312,6 +314,7 @@ class Service::Io {
     status.sensors = hub_.status();
     status.wind = hub_.wind();
     status.shaping = shaper_.status();
+    status.look = look_;
     status.late_ticks = loop_ ? loop_->counters().skipped_ticks.load(std::memory_order_relaxed) : 0;
     status.clients = static_cast<std::uint32_t>(stream_.client_count());
     const stream::ClientCounts& counts = stream_.counts();
@@ -383,6 +386,7 @@ class Service::Io {
   stream::TcpStream stream_;
   sensing::SensorHub hub_;
   shaping::WindShaper shaper_;
+  look::Look look_;  // for the viewers
   sensing::PlayerDirector players_;
   sensing::RecordingFolders folders_;
   Latest<wind::ground::DrivingWind> wind_;

@@ -74,6 +74,8 @@ class ConfigReader {
     if (config.wind.fallback) config.wind.fallback->origin = place(root["wind"]["fallback_recording"].node()->source());
     config.by_name.shaping = read_table(root, "", "shaping", shaping_parameters());
     config.shaping = typed(root, "", "shaping", shaping_config_of(config.by_name.shaping, config.wind));
+    config.by_name.look = read_table(root, "", "look", look::look_parameters());
+    config.look = typed(root, "", "look", look::look_of(config.by_name.look));
     config.by_name.log = read_table(root, "", "log", log_parameters());
     config.log = log_config_of(config.by_name.log);
 
@@ -132,7 +134,8 @@ class ConfigReader {
       for (const ConfigTable& table : config_tables()) known = known || table.name == key.str();
       if (!known) {
         mistake(key.source(), std::string(key.str()),
-                "is not known here; allowed: seed, [stream], [recording], [animation], [wind], [shaping], [log], "
+                "is not known here; allowed: seed, [stream], [recording], [animation], [wind], [shaping], [look], "
+                "[log], "
                 "[[sensor]], [[scene]]");
       } else if (is_array && !(node.is_array_of_tables() || (node.is_array() && node.as_array()->empty()))) {
         mistake(key.source(), std::string(key.str()),
@@ -445,6 +448,7 @@ std::string to_toml(const Config& config) {
   root.insert("animation", to_table(config.by_name.animation));
   root.insert("wind", to_table(config.by_name.wind));
   root.insert("shaping", to_table(config.by_name.shaping));
+  root.insert("look", to_table(config.by_name.look));
   root.insert("log", to_table(config.by_name.log));
 
   const auto append = [&root](const char* list, const char* kind_key, std::string_view kind, const std::string& name,

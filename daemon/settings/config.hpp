@@ -21,6 +21,7 @@
 #include "daemon/settings/wind_config.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "engine/base/parameter.hpp"
+#include "engine/look/look.hpp"
 
 namespace yuragi::daemon::settings {
 
@@ -37,13 +38,14 @@ struct Config {
   AnimationConfig animation;
   WindConfig wind;
   ShapingConfig shaping;
+  look::Look look;
   LogConfig log;
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
 
   /// The values of the tables by key, from which the members above were made. For to_toml() and plan_reload() only.
   struct ByName {
-    ParameterValues stream, recording, animation, wind, shaping, log;
+    ParameterValues stream, recording, animation, wind, shaping, look, log;
   } by_name;
 };
 

@@ -9,6 +9,7 @@
 #include "daemon/settings/recording_config.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
 #include "drivers/sensor/speed_unit.hpp"
+#include "engine/look/look.hpp"
 #include "engine/wind/wind_reading.hpp"
 
 namespace yuragi::daemon::settings {
@@ -327,6 +328,7 @@ const std::array kConfigTables = {
     ConfigTable{"wind", "the wind without a live sensor, and the transition from one wind to another", kWindParameters},
     ConfigTable{"shaping", "days without wind, storms, opening hours: from the real wind to the scenes'",
                 shaping_parameters()},
+    ConfigTable{"look", "light and weather of the picture; viewers follow it at once", look::look_parameters()},
     ConfigTable{"log", "what the daemon writes to standard error", kLogParameters},
 };
 

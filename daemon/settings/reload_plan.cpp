@@ -68,6 +68,17 @@ constexpr std::array kKeyRules = {
     KeyRule{"shaping", "closed", kApplied},
     KeyRule{"shaping", "fade", kApplied},
 
+    KeyRule{"look", "sun", kApplied},
+    KeyRule{"look", "latitude", kApplied},
+    KeyRule{"look", "longitude", kApplied},
+    KeyRule{"look", "time", kApplied},
+    KeyRule{"look", "sun_height", kApplied},
+    KeyRule{"look", "sun_azimuth", kApplied},
+    KeyRule{"look", "clouds", kApplied},
+    KeyRule{"look", "haze", kApplied},
+    KeyRule{"look", "exposure", kApplied},
+    KeyRule{"look", "quality", kApplied},
+
     KeyRule{"log", "level", kApplied},
 
     KeyRule{"sensor.calibration", "unit", kApplied},
@@ -129,7 +140,8 @@ class Comparison {
     (change == kApplied ? plan_.applied : plan_.takes_restart).push_back(std::move(what));
   }
 
-  /// The running values of a table with those of the others that are applied. `where`: what stands before a key.
+  /// The running values of a table with those of the others that are applied. `where`: what stands before a key. A
+  /// key that is given in only one of them is noted, and stays as it is.
   template <class ChangeOf>
   ParameterValues merged(const std::string& where, const ParameterValues& running, const ParameterValues& wanted,
                          const ChangeOf& change_of_key) {
@@ -139,7 +151,7 @@ class Comparison {
       std::string what = where + key;
       what.append(": ").append(shown(running.all(), key)).append(" -> ").append(shown(wanted.all(), key));
       note(change, std::move(what));
-      if (change == kApplied) next.set(key, wanted.all().at(key));
+      if (change == kApplied && next.has(key) && wanted.has(key)) next.set(key, wanted.all().at(key));
     }
     return next;
   }
@@ -256,6 +268,9 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
   merged_table("shaping", next.by_name.shaping, wanted.by_name.shaping);
   next.shaping = *shaping_config_of(next.by_name.shaping, next.wind);
   plan.changes_shaping = plan.applied.size() > applied_before;
+  merged_table("look", next.by_name.look, wanted.by_name.look);
+  next.by_name.look = wanted.by_name.look;  // all of it is applied, also that a key is left out
+  next.look = *look::look_of(next.by_name.look);
   merged_table("log", next.by_name.log, wanted.by_name.log);
   next.log = log_config_of(next.by_name.log);
 

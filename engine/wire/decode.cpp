@@ -166,6 +166,22 @@ bool read(const fb::Recorder* from, std::optional<RecorderStatus>& to) {
   return read_text(from->error(), to->error);
 }
 
+/// Never refuses: what is out of range is brought into it, so that a picture is shown.
+void read(const fb::Look* from, look::Look& to) {
+  if (from == nullptr) return;
+  look::Look look{.sun = static_cast<look::SunChoice>(from->sun()),
+                  .latitude_deg = from->latitude_deg(),
+                  .longitude_deg = from->longitude_deg(),
+                  .sun_height_deg = from->sun_height_deg(),
+                  .sun_azimuth_deg = from->sun_azimuth_deg(),
+                  .clouds = from->clouds(),
+                  .haze = from->haze(),
+                  .exposure_ev = from->exposure_ev(),
+                  .quality = static_cast<look::Quality>(from->quality())};
+  if (const auto hour = from->solar_time_h()) look.solar_time_h = *hour;
+  to = look::within_limits(look);
+}
+
 bool read(const fb::Sensors& from, Sensors& to) {
   const std::size_t count = from.sensors() == nullptr ? 0 : from.sensors()->size();
   if (count > kMaxSensors || !read(from.wind(), to.wind) || !read(from.wind_place(), to.wind)) return false;
@@ -176,6 +192,7 @@ bool read(const fb::Sensors& from, Sensors& to) {
   to.refused_clients = from.refused_clients();
   to.stuck_clients = from.stuck_clients();
   to.idle_clients = from.idle_clients();
+  read(from.look(), to.look);
   return read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
          read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder);
 }

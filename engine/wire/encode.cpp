@@ -176,6 +176,21 @@ flatbuffers::Offset<fb::Shaping> add_shaping(Builder& builder, const Shaping& sh
   return table.Finish();
 }
 
+flatbuffers::Offset<fb::Look> add_look(Builder& builder, const look::Look& look) {
+  fb::LookBuilder table(builder);
+  table.add_sun(static_cast<fb::SunChoice>(look.sun));
+  table.add_latitude_deg(look.latitude_deg);
+  table.add_longitude_deg(look.longitude_deg);
+  if (look.solar_time_h) table.add_solar_time_h(*look.solar_time_h);
+  table.add_sun_height_deg(look.sun_height_deg);
+  table.add_sun_azimuth_deg(look.sun_azimuth_deg);
+  table.add_clouds(look.clouds);
+  table.add_haze(look.haze);
+  table.add_exposure_ev(look.exposure_ev);
+  table.add_quality(static_cast<fb::Quality>(look.quality));
+  return table.Finish();
+}
+
 /// The first kMaxReloadItems of them.
 flatbuffers::Offset<flatbuffers::Vector<Text>> add_texts(Builder& builder, const std::vector<std::string>& texts) {
   std::vector<Text> added;
@@ -279,6 +294,7 @@ Bytes encode(const Sensors& sensors) {
   const auto tick_lateness = to_schema(sensors.tick_lateness);
   const auto recorder =
       sensors.recorder ? add_recorder(builder, *sensors.recorder) : flatbuffers::Offset<fb::Recorder>();
+  const auto look = add_look(builder, sensors.look);
   fb::SensorsBuilder table(builder);
   table.add_sensors(vector);
   table.add_wind(&wind);
@@ -292,6 +308,7 @@ Bytes encode(const Sensors& sensors) {
   if (io_lateness) table.add_io_lateness(&*io_lateness);
   if (tick_lateness) table.add_tick_lateness(&*tick_lateness);
   if (sensors.recorder) table.add_recorder(recorder);
+  table.add_look(look);
   return finish(builder, fb::Body_Sensors, table.Finish());
 }
 

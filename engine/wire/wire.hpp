@@ -14,6 +14,7 @@
 
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
+#include "engine/look/look.hpp"
 #include "engine/pose/skeleton.hpp"
 #include "engine/wind/judging/sensor_state.hpp"
 #include "engine/wind/link_state.hpp"
@@ -167,6 +168,7 @@ struct Sensors {
   std::optional<Lateness> io_lateness = std::nullopt;     ///< of the I/O thread's steps
   std::optional<Lateness> tick_lateness = std::nullopt;   ///< of the animation's ticks
   std::optional<RecorderStatus> recorder = std::nullopt;  ///< nothing: nothing is recorded, or it is not known
+  look::Look look = {};                                   ///< within_limits(), whatever was sent
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };

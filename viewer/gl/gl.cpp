@@ -74,6 +74,15 @@ void GlTextureKind::unmake(GLuint name) {
   glDeleteTextures(1, &name);
 }
 
+GLuint GlSamplerKind::make() {
+  GLuint name = 0;
+  glGenSamplers(1, &name);
+  return name;
+}
+void GlSamplerKind::unmake(GLuint name) {
+  glDeleteSamplers(1, &name);
+}
+
 GLuint GlVertexArrayKind::make() {
   GLuint name = 0;
   glGenVertexArrays(1, &name);
@@ -128,10 +137,14 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
   glDetachShader(program.name(), vertex_shader.name);
   glDetachShader(program.name(), fragment_shader.name);
 
-  for (const auto& [block_name, binding] : {std::pair{"View", kViewBinding}, std::pair{"Ground", kGroundBinding}}) {
-    const GLuint block = glGetUniformBlockIndex(program.name(), block_name);
-    if (block != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), block, binding);
+  for (const auto& [block, binding] :
+       {std::pair{"View", kViewBinding}, std::pair{"Light", kLightBinding}, std::pair{"Ground", kGroundBinding}}) {
+    const GLuint place = glGetUniformBlockIndex(program.name(), block);
+    if (place != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), place, binding);
   }
+  // Also where nothing is looked up: no two kinds of sampler may have one unit.
+  set_sampler(program, "shadow_map", kShadowUnit);
+  set_sampler(program, "shadow_depth", kShadowDepthUnit);
   return program;
 }
 

@@ -40,6 +40,10 @@ struct GlTextureKind {
   static GLuint make();
   static void unmake(GLuint name);
 };
+struct GlSamplerKind {
+  static GLuint make();
+  static void unmake(GLuint name);
+};
 struct GlVertexArrayKind {
   static GLuint make();
   static void unmake(GLuint name);
@@ -59,6 +63,7 @@ struct GlProgramKind {
 
 using GlBuffer = GlObject<GlBufferKind>;
 using GlTexture = GlObject<GlTextureKind>;
+using GlSampler = GlObject<GlSamplerKind>;
 using GlVertexArray = GlObject<GlVertexArrayKind>;
 using GlFramebuffer = GlObject<GlFramebufferKind>;
 using GlRenderbuffer = GlObject<GlRenderbufferKind>;
@@ -66,12 +71,16 @@ using GlProgram = GlObject<GlProgramKind>;
 
 /// Where a program finds the block of uniforms that all renderers share (view.hpp).
 inline constexpr GLuint kViewBinding = 0;
+/// And the block of the light (viewer/light/light.hpp).
+inline constexpr GLuint kLightBinding = 1;
 /// And the block Ground, of those that draw grass (shaders/sward.part.glsl).
-inline constexpr GLuint kGroundBinding = 1;
+inline constexpr GLuint kGroundBinding = 2;
+/// The texture units of the shadow map, in every program: compared with a depth, and as depths.
+inline constexpr GLuint kShadowUnit = 6;
+inline constexpr GLuint kShadowDepthUnit = 7;
 
 /// Compiles and links. Each stage begins with #version and shaders/common.glsl. On an error throws std::runtime_error
-/// with `name` and the compiler's message. The uniform blocks View and Ground are
-/// bound to kViewBinding and kGroundBinding.
+/// with `name` and the compiler's message. The uniform blocks and the samplers of shadows are bound as above.
 GlProgram link_program(const std::string& name, std::string_view vertex, std::string_view fragment);
 
 /// Sets a sampler of `program` to a texture unit. Unknown names are ignored, since the compiler drops uniforms that are

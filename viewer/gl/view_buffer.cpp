@@ -5,8 +5,13 @@
 namespace yuragi::viewer::gl {
 
 void ViewBuffer::set(const meshes::View& view) {
-  stream_to(GL_UNIFORM_BUFFER, buffer_, std::span(&view, 1));
-  glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, buffer_.name());
+  stream_to(GL_UNIFORM_BUFFER, view_, std::span(&view, 1));
+  glBindBufferBase(GL_UNIFORM_BUFFER, kViewBinding, view_.name());
+}
+
+void ViewBuffer::set(const light::Light& light) {
+  stream_to(GL_UNIFORM_BUFFER, light_, std::span(&light, 1));
+  glBindBufferBase(GL_UNIFORM_BUFFER, kLightBinding, light_.name());
 }
 
 }  // namespace yuragi::viewer::gl

@@ -1,17 +1,20 @@
 #pragma once
 
 #include "viewer/gl/gl.hpp"
+#include "viewer/light/light.hpp"
 #include "viewer/meshes/view.hpp"
 
 namespace yuragi::viewer::gl {
 
-/// The uniform buffer that holds a View. Needs a current context.
+/// The uniform buffers that hold a View and a Light. Needs a current context.
 class ViewBuffer {
  public:
   void set(const meshes::View& view);
+  void set(const light::Light& light);
 
  private:
-  GlBuffer buffer_;
+  GlBuffer view_;
+  GlBuffer light_;
 };
 
 }  // namespace yuragi::viewer::gl

@@ -4,12 +4,16 @@
 #include <utility>
 
 #include "engine/pose/pose_arrays.hpp"
+#include "viewer/meshes/shadow_view.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
 
 constexpr meshes::Bounds kNoField{glm::vec3(1e6F), glm::vec3(-1e6F)};
 constexpr meshes::Bounds kPartOfGround{glm::vec3(-4.0F, 0.0F, -4.0F), glm::vec3(4.0F, 0.8F, 4.0F)};
+constexpr int kMediumTexels = 1024;
+constexpr int kHighTexels = 2048;
+constexpr float kLowestSun = 0.02F;  // the sine of its height: below it shadows have no end
 
 float blades_at_1m_per_m2() {
   return gl::is_software_renderer() ? meshes::kFewBladesAt1m_per_m2 : meshes::kManyBladesAt1m_per_m2;
@@ -168,11 +172,53 @@ void Stage::draw_sward(const meshes::View& view) {
   }
 }
 
+void Stage::set_quality(look::Quality quality) {
+  const int texels =
+      quality == look::Quality::kLow ? 0 : (quality == look::Quality::kMedium ? kMediumTexels : kHighTexels);
+  if (texels == (shadow_map_ ? shadow_map_->texels() : 0)) return;
+  shadow_map_.reset();
+  if (texels > 0) shadow_map_.emplace(texels);
+}
+
+/// Draws what the sun sees of everything that casts a shadow, for `view` to look it up.
+void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view) {
+  const auto casts = [&](std::size_t scene) {
+    return is_seen(moment, scene) && views_[scene]->renderer->casts_shadow();
+  };
+  const std::optional<meshes::Bounds> casters = around(casts);
+  if (!casters) return;
+  const meshes::View shadows = meshes::shadow_view(*casters, to_sun, shadow_map_->texels());
+  view_buffer_.set(shadows);
+  view_buffer_.set(light_);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_SCISSOR_TEST);
+  shadow_map_->begin();
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    if (!casts(scene)) continue;
+    door_.open(moment.opacities[scene], scene);
+    views_[scene]->renderer->draw(shadows);
+    door_.close();
+  }
+  shadow_map_->end();
+  meshes::add_shadows(view, shadows, shadow_map_->texels());
+}
+
 void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target) {
-  const meshes::View view = meshes::view_of(camera, target.width_px(), target.height_px(), field(moment));
-  const meshes::View flat = meshes::laid_flat(view);
+  meshes::View view = meshes::view_of(camera, target.width_px(), target.height_px(), field(moment));
   if (clock_ != nullptr) clock_->begin();
+  const glm::vec3 to_sun(light_.to_sun);
+  const bool has_shadows = to_sun.y > kLowestSun;
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    if (is_seen(moment, scene)) views_[scene]->renderer->move_to(moment.poses[scene]);
+  }
+  if (has_shadows && shadow_map_) draw_shadows(moment, to_sun, view);
+  const bool has_flat_shadows = has_shadows && !shadow_map_;
+  const meshes::View flat = has_flat_shadows ? meshes::laid_flat(view, to_sun) : view;
   view_buffer_.set(view);
+  view_buffer_.set(light_);
   target.begin();
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
@@ -185,14 +231,13 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
     SceneRenderer& renderer = *views_[scene]->renderer;
-    renderer.move_to(moment.poses[scene]);
     door_.open(moment.opacities[scene], scene);
     renderer.draw(view);
     door_.begin_mark(gl::kHole);
     renderer.draw_hole();
     door_.end_mark();
     mark_pass(scenes_[scene]->kind);
-    if (renderer.casts_shadow()) {
+    if (has_flat_shadows && renderer.casts_shadow()) {
       view_buffer_.set(flat);
       door_.begin_mark(gl::kShadow);
       renderer.draw(flat);

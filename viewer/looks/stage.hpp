@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "engine/look/look.hpp"
 #include "viewer/gl/pass_clock.hpp"
 #include "viewer/gl/render_target.hpp"
 #include "viewer/gl/screen_door.hpp"
+#include "viewer/gl/shadow_map.hpp"
 #include "viewer/gl/view_buffer.hpp"
+#include "viewer/light/sky_keeper.hpp"
 #include "viewer/looks/ground_maps.hpp"
 #include "viewer/looks/landscape.hpp"
 #include "viewer/looks/scene_renderer.hpp"
@@ -37,6 +40,12 @@ class Stage {
   /// How many joints move in all scenes.
   std::size_t node_count() const;
 
+  /// The light of the next pictures; at first the evening's.
+  void set_light(const light::Light& light) { light_ = light; }
+
+  /// How much work the next pictures are; at first little. kLow has hard shadows, on the ground only; kAuto is kHigh.
+  void set_quality(look::Quality quality);
+
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
@@ -57,6 +66,7 @@ class Stage {
   template <class IsChosen>
   std::optional<meshes::Bounds> around(IsChosen&& is_chosen) const;
   bool is_seen(const stream::PoseMoment& moment, std::size_t scene) const;
+  void draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view);
   meshes::Bounds field(const stream::PoseMoment& moment) const;
   void mark_pass(std::string_view name) {
     if (clock_ != nullptr) clock_->mark(name);
@@ -67,6 +77,7 @@ class Stage {
   std::vector<std::unique_ptr<SceneView>> views_;  // a renderer refers to its scene, which may not move
   std::vector<const wire::SceneModel*> scenes_;    // of views_
   std::optional<std::string> only_;
+  light::Light light_ = light::light_of({}, 0.0);
   Landscape landscape_;
   GroundMaps ground_;
   std::vector<meshes::Standing> standing_;
@@ -77,6 +88,7 @@ class Stage {
   std::optional<meshes::Stand> meadow_stand_;
   gl::ScreenDoor door_;
   gl::ViewBuffer view_buffer_;
+  std::optional<gl::ShadowMap> shadow_map_;  // nothing: hard shadows
   gl::PassClock* clock_ = nullptr;
 };
 

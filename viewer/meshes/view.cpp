@@ -3,23 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
 namespace yuragi::viewer::meshes {
-namespace {
-
-constexpr float kSunHeading_deg = 239.0F;
-constexpr float kSunHeight_deg = 8.5F;
-
-glm::vec4 sun_direction() {
-  const float heading = glm::radians(kSunHeading_deg);
-  const float height = glm::radians(kSunHeight_deg);
-  return {std::sin(heading) * std::cos(height), std::sin(height), -std::cos(heading) * std::cos(height), 0.0F};
-}
-
-}  // namespace
-
 View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bounds& field) {
   const float aspect = static_cast<float>(width_px) / static_cast<float>(height_px);
   const float tan_up = std::tan(glm::radians(static_cast<float>(OrbitCamera::kFieldOfView_deg) / 2.0F));
@@ -32,7 +18,6 @@ View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bound
   view.right = {to_camera[0][0], to_camera[1][0], to_camera[2][0], tan_up * aspect};
   view.up = {to_camera[0][1], to_camera[1][1], to_camera[2][1], tan_up};
   view.forward = {-to_camera[0][2], -to_camera[1][2], -to_camera[2][2], 0.0F};
-  view.to_sun = sun_direction();
   view.field = {field.low_m.x, field.low_m.z, field.high_m.x, field.high_m.z};
   return view;
 }
@@ -55,10 +40,10 @@ bool is_in_view(const std::array<glm::vec4, 5>& planes, const glm::vec3& low_m, 
   });
 }
 
-View laid_flat(const View& view) {
+View laid_flat(const View& view, const glm::vec3& to_sun) {
   // Each point moves along the ray until its height is 0.
   glm::mat4 flatten(1.0F);
-  flatten[1] = {-view.to_sun.x / view.to_sun.y, 0.0F, -view.to_sun.z / view.to_sun.y, 0.0F};
+  flatten[1] = {-to_sun.x / to_sun.y, 0.0F, -to_sun.z / to_sun.y, 0.0F};
   View flat = view;
   flat.to_clip = view.to_clip * flatten;
   return flat;

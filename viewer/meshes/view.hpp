@@ -18,11 +18,13 @@ struct View {
   glm::vec4 right{0.0F};  ///< unit vectors of the camera; w: tangent of half the field of view, horizontally
   glm::vec4 up{0.0F};     ///< w: the same, vertically
   glm::vec4 forward{0.0F};
-  glm::vec4 to_sun{0.0F};  ///< unit vector
-  glm::vec4 field{0.0F};   ///< x and z of the low and of the high corner of the field that covers the ground
+  glm::mat4 to_shadow{1.0F};  ///< to the shadow map: place and depth, 0 to 1
+  glm::vec4 shadow{
+      0.0F};              ///< a texel of the map (0: there is none); how a penumbra grows, across and upright; depth, m
+  glm::vec4 field{0.0F};  ///< x and z of the low and of the high corner of the field that covers the ground
 };
 
-/// For a picture of so many pixels. The sun is low in the south-west.
+/// For a picture of so many pixels.
 View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bounds& field);
 
 /// The planes of the picture's sides and of its near side: dot(plane, (x, y, z, 1)) is a point's distance inside,
@@ -33,7 +35,8 @@ std::array<glm::vec4, 5> side_planes(const View& view);
 /// May a box be in view, as far as these planes say?
 bool is_in_view(const std::array<glm::vec4, 5>& planes, const glm::vec3& low_m, const glm::vec3& high_m);
 
-/// The same view of everything projected onto the ground along the sun's rays: of its shadows.
-View laid_flat(const View& view);
+/// The same view of everything projected onto the ground along the rays from `to_sun`, which is above the horizon: of
+/// its shadows.
+View laid_flat(const View& view, const glm::vec3& to_sun);
 
 }  // namespace yuragi::viewer::meshes

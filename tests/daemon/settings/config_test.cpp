@@ -38,6 +38,17 @@ std::string mistakes_of(std::string_view text) {
   return "no mistake was found";
 }
 
+TEST(Config, HasTheLookWithTheLineOfAMistake) {
+  EXPECT_EQ(parse_config("[look]\nlatitude = 52.5\n", "wall.toml").look.sun, look::SunChoice::kTime);
+  try {
+    parse_config("[look]\nclouds = 0.5\ntime = \"noon\"\n", "wall.toml");
+    FAIL() << "noon is no time of the day";
+  } catch (const ConfigError& error) {
+    EXPECT_STREQ(error.what(),
+                 "wall.toml:3:8: look.time: is \"noon\"; allowed: \"now\", or a time of the day such as \"06:30\"");
+  }
+}
+
 TEST(Config, AnEmptyFileIsTheDefaultInstallation) {
   const Config config = parse_config("", "empty.toml");
   ASSERT_EQ(config.sensors.size(), 1U);

@@ -90,6 +90,16 @@ TEST(ReloadPlan, NotesEachKeyOnceAndTakesOverWhatIsApplied) {
   expect_each_key_to_follow_its_class("log", log_parameters(), &Config::ByName::log);
 }
 
+TEST(ReloadPlan, AppliesTheLookAlsoWhereAKeyComesOrGoes) {
+  const Config evening = wall();
+  const Config morning = wall("[look]\ntime = \"06:30\"\nclouds = 0.5\n");
+  const ReloadPlan plan = plan_reload(evening, morning, true);
+  EXPECT_THAT(plan.applied, ElementsAre("[look] clouds: 0.3 -> 0.5", "[look] time: left out -> \"06:30\""));
+  EXPECT_EQ(plan.next.look, morning.look);
+  EXPECT_EQ(plan.next.look.solar_time_h, 6.5);
+  EXPECT_EQ(plan_reload(morning, evening, true).next.look, evening.look);
+}
+
 TEST(ReloadPlan, OfTheSameConfigurationIsEmpty) {
   const Config config = wall(kTwoSensors);
   const ReloadPlan plan = plan_reload(config, wall(kTwoSensors), true);

@@ -346,6 +346,21 @@ TEST(WireRoundTrip, EveryStateOfASensorComesBack) {
   }
 }
 
+TEST(RoundTrip, KeepsTheLook) {
+  EXPECT_EQ(decoded<Sensors>(encode(samples::sensors())).look, samples::sensors().look);
+  EXPECT_EQ(decoded<Sensors>(encode(Sensors{})).look, look::Look{});
+}
+
+TEST(RoundTrip, BringsAHostileLookWithinItsLimits) {
+  Sensors sensors;
+  sensors.look = {.sun = static_cast<look::SunChoice>(200),
+                  .latitude_deg = std::nan(""),
+                  .solar_time_h = -1e300,
+                  .clouds = 1e9,
+                  .quality = static_cast<look::Quality>(99)};
+  EXPECT_EQ(decoded<Sensors>(encode(sensors)).look, (look::Look{.solar_time_h = 0.0, .clouds = 1.0}));
+}
+
 TEST(WireRoundTrip, WhatShapesTheWindComesBack) {
   const Shaping shaping = decoded<Sensors>(encode(samples::sensors())).shaping;
   EXPECT_EQ(shaping.site_gain, 1.75);

@@ -331,7 +331,17 @@ inline wire::Sensors sensors() {
                                            .waiting = 10,
                                            .lost = 11,
                                            .free_bytes = 0,
-                                           .error = "wall.windlog: the disk is full"}};
+                                           .error = "wall.windlog: the disk is full"},
+          .look = look::Look{.sun = look::SunChoice::kTime,
+                             .latitude_deg = -33.5,
+                             .longitude_deg = 18.25,
+                             .solar_time_h = 6.5,
+                             .sun_height_deg = 12.0,
+                             .sun_azimuth_deg = 80.0,
+                             .clouds = 0.75,
+                             .haze = 0.5,
+                             .exposure_ev = -1.5,
+                             .quality = look::Quality::kMedium}};
 }
 
 inline wire::RawTrace raw_trace() {

@@ -1,6 +1,6 @@
 // Pictures of every scene of the engine, alone: calm, in a breeze, in a storm; without a daemon.
 //
-//   draw_scenes FOLDER [WIDTHxHEIGHT [KIND[,PARAMETER=VALUE...]...]]
+//   draw_scenes [--look=KEY=VALUE...] FOLDER [WIDTHxHEIGHT [KIND[,PARAMETER=VALUE...]...]]
 
 #include <algorithm>
 #include <cstdio>
@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/look/look.hpp"
 #include "engine/scenes/scene.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
@@ -21,6 +22,7 @@ using namespace yuragi;
 constexpr double kTick_s = 1.0 / 60.0;
 constexpr int kSettlingTicks = 1500;
 constexpr double kWindFrom_deg = 250.0;
+constexpr double kDay_s = 1790208000.0;  // 2026-09-24: day and night are equally long
 
 struct Weather {
   const char* name;
@@ -53,7 +55,13 @@ std::unique_ptr<scenes::Scene> made(const std::string& words) {
 }
 
 /// Draws what the command line asks for. Returns the exit code.
-int draw_scenes(const std::vector<std::string>& words) {
+int draw_scenes(std::vector<std::string> words) {
+  std::vector<std::string> edits;
+  while (!words.empty() && words.front().starts_with("--look=")) {
+    edits.push_back(words.front().substr(7));
+    words.erase(words.begin());
+  }
+
   if (words.empty()) return 64;
   int width_px = 960;
   int height_px = 540;
@@ -67,6 +75,9 @@ int draw_scenes(const std::vector<std::string>& words) {
   const viewer::gl::HeadlessContext context({.has_messages = true});
   viewer::gl::report_gl_errors();
   viewer::looks::Stage stage;
+  const look::Look look = look::edited({}, edits).value();
+  stage.set_light(viewer::light::light_of(look, kDay_s));
+  stage.set_quality(look.quality);
   viewer::gl::RenderTarget target(width_px, height_px, 4);
   for (const std::string& kind : kinds) {
     for (const auto& [name, speed_m_s] : {Weather{"calm", 0.0}, Weather{"breeze", 4.0}, Weather{"storm", 18.0}}) {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -283,13 +284,29 @@ TEST_F(StageTest, ThrowsShadowsOnTheGround) {
   // Toward the north-east of a tree, seen from above, the ground is darker.
   show({test_model("tree")});
   camera_.frame({{2.5, 0.0, -1.5}, 239.0, 60.0, 3.0});
-  const Pixels with = draw(0.0, 1.0F);
-  const Pixels without = draw(0.0, 0.0F);
-  std::size_t darker = 0;
-  for (std::size_t i = 0; i + 2 < with.size(); i += 3) {
-    if (with[i + 1] + 8 < without[i + 1]) ++darker;
+  for (const look::Quality quality : {look::Quality::kLow, look::Quality::kMedium, look::Quality::kHigh}) {
+    stage_->set_quality(quality);
+    const Pixels with = draw(0.0, 1.0F);
+    const Pixels without = draw(0.0, 0.0F);
+    std::size_t darker = 0;
+    for (std::size_t i = 0; i + 2 < with.size(); i += 3) {
+      if (with[i + 1] + 8 < without[i + 1]) ++darker;
+    }
+    EXPECT_GT(darker, 500U) << name_of(quality);
   }
-  EXPECT_GT(darker, 500U);
+}
+
+TEST_F(StageTest, IsDarkerByNightThanAtNoonAndShowsBoth) {
+  show({test_model("tree")});
+  const auto brightness = [&](double sun_height_deg) {
+    stage_->set_light(light::light_of({.sun = look::SunChoice::kFixed, .sun_height_deg = sun_height_deg}, 0.0));
+    const Pixels picture = draw(0.0, 1.0F);
+    return std::accumulate(picture.begin(), picture.end(), 0.0) / static_cast<double>(picture.size());
+  };
+  const double noon = brightness(60.0);
+  const double night = brightness(-25.0);
+  EXPECT_LT(night, 0.5 * noon);
+  EXPECT_GT(night, 8.0) << "something is seen";
 }
 
 /// Nodes of the ground, all bent alike toward the east.
@@ -372,6 +389,7 @@ TEST_F(StageTest, HasNoTroubleWithModelsOfNothing) {
         {"e", "tree", no_branches},
         {"f", "ripple", pose::SurfaceSkeleton{}},
         {"g", "flame", no_flame}});
+  stage_->set_quality(look::Quality::kHigh);
   EXPECT_TRUE(std::isfinite(stage_->home(1.5).distance_m));
   stage_->draw(stream::rest_moment(models_), camera_, *target_);
 }

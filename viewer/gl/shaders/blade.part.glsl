@@ -44,8 +44,9 @@ void put_vertex(vec3 place, vec3 along, float t, float side, float width_m, floa
   place += across * (side * half_width_m);
   gl_Position = to_clip * vec4(place, 1.0);
 
+  float sunlight = mix(kSunInShadow, 1.0, sunlight_near(place));
   // Far away it takes on the light of the grass as a whole, as the ground behind it has it.
-  vec3 canopy = canopy_light(bend, to_eye, patch_at, (t - 0.55) * 0.6 + 0.35 * (fract(chance * 61.0) - 0.5), tall);
+  vec3 canopy = canopy_light(bend, to_eye, patch_at, (t - 0.55) * 0.6 + 0.35 * (fract(chance * 61.0) - 0.5), tall, sunlight);
   if (is_far) {
     shade = seen(canopy, place);
     return;
@@ -54,6 +55,6 @@ void put_vertex(vec3 place, vec3 along, float t, float side, float width_m, floa
   vec3 normal = normalize(cross(across, along));
   normal *= dot(normal, to_eye) < 0.0 ? -1.0 : 1.0;
   normal = normalize(normal + across * (side * 0.55));
-  vec3 light = blade_light(to_eye, along, normal, t, tint, lean);
+  vec3 light = blade_light(to_eye, along, normal, t, tint, lean, sunlight);
   shade = seen(mix(light, canopy, smoothstep(kFarFrom_m, kFar_m, distance_m)), place);
 }

@@ -7,36 +7,74 @@ layout(std140) uniform View {
   vec4 right;    // w: tangent of half the field of view, horizontally
   vec4 up;       // w: the same, vertically
   vec4 forward;
-  vec4 to_sun;
+  mat4 to_shadow;  // to the shadow map
+  vec4 shadow;     // a texel of it, 0: there is none; how a penumbra grows in it, across and upright; its depth, metres
   vec4 field;    // x, z of the low and the high corner of the field
 };
 
-const vec3 kSunLight = vec3(3.9, 2.55, 1.30);
-const vec3 kSkyLight = vec3(0.46, 0.55, 0.74);
+// The light of the picture (viewer/light/light.hpp says more of each).
+layout(std140) uniform Light {
+  vec4 to_sun;        // toward the sun or, by night, the moon
+  vec4 sun_light;     // its light
+  vec4 sky_light;
+  vec4 turf_light;
+  vec4 zenith;        // the clear sky: overhead, at the horizon on the sun's side, and on the other
+  vec4 horizon_near;
+  vec4 horizon_far;
+  vec4 glow_wide;     // around the sun
+  vec4 glow_narrow;
+  vec4 glow_disc;
+  vec4 cloud_light;
+  vec4 cloud_glow;
+  vec4 sun_disc;      // w: how much of it is seen
+  vec4 moon_disc;
+  vec4 air;           // exposure; haze, per metre; where clouds begin; stars
+  vec4 drift;         // of the clouds
+};
 
-// The light of the air along a unit direction, without clouds and hills: warm at the horizon, blue above, a glow around
-// the sun.
+#define kSunLight sun_light.rgb
+#define kSkyLight sky_light.rgb
+
+// The light of the air along a unit direction, without clouds and hills: another at the horizon than above, and a glow
+// around the sun.
 vec3 air_light(vec3 direction) {
   float height = max(direction.y, 0.0);
-  vec3 light = mix(vec3(0.66, 0.49, 0.36), vec3(0.10, 0.22, 0.47), 1.0 - exp(-6.0 * height));
-  float near_sun = max(dot(direction, to_sun.xyz), 0.0);
+  float side = 0.5 + 0.5 * dot(direction.xz, sun_disc.xz);
+  vec3 light = mix(mix(horizon_far.rgb, horizon_near.rgb, side * side), zenith.rgb, 1.0 - exp(-6.0 * height));
+  float near_sun = max(dot(direction, sun_disc.xyz), 0.0);
   float near_2 = near_sun * near_sun;
   float near_8 = near_2 * near_2 * near_2 * near_2;
   float near_32 = near_8 * near_8 * near_8 * near_8;
   float near_96 = near_32 * near_32 * near_32;
   float near_400 = near_96 * near_96 * near_96 * near_96;
-  return light + vec3(0.44, 0.20, 0.04) * near_8 + vec3(0.55, 0.36, 0.15) * near_96 + vec3(1.1, 0.85, 0.5) * near_400;
+  return light + glow_wide.rgb * near_8 + glow_narrow.rgb * near_96 + glow_disc.rgb * near_400;
 }
 
 // The share of a thing's light that the air replaces at a distance; 0 near the eye.
-float haze(float distance_m) { return 1.0 - exp(-max(distance_m - 3.0, 0.0) * 0.0075); }
+float haze(float distance_m) { return 1.0 - exp(-max(distance_m - 3.0, 0.0) * air.y); }
 
-// Linear light to the screen's values: a filmic tone curve (K. Narkowicz 2015, "ACES filmic tone mapping curve"), then
-// the screen's transfer curve, approximated by a square root.
-vec3 finish(vec3 light) {
-  vec3 x = light * 0.62;
-  return sqrt(clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0));
+// The transfer curve of screens (IEC 61966-2-1, sRGB) of values from 0 to 1, to a hundredth, by square roots (I. Taylor
+// 2012, "Approximating sRGB").
+vec3 screen_value(vec3 light) {
+  vec3 root_2 = sqrt(light);
+  vec3 root_4 = sqrt(root_2);
+  vec3 root_8 = sqrt(root_4);
+  vec3 curve = 0.662002687 * root_2 + 0.684122060 * root_4 - 0.323583601 * root_8 - 0.0225411470 * light;
+  return mix(curve, 12.92 * light, lessThan(light, vec3(0.0031308)));
 }
+
+// Linear light to the screen's values: exposure, a filmic tone curve (K. Narkowicz 2015, "ACES filmic tone mapping
+// curve"), and the screen's transfer curve.
+vec3 finish(vec3 light) {
+  vec3 x = light * air.x;
+  return screen_value(clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0));
+}
+
+// A number from 0 to 1 for each pixel, evenly spread: interleaved gradient noise (J. Jimenez 2014).
+float pixel_chance(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
+
+// A screen's value, changed at random by half a step of 8 bits, so that no bands show in what changes slowly.
+vec3 dithered(vec3 value, vec2 pixel) { return value + (pixel_chance(pixel) - 0.5) / 255.0; }
 
 // The screen's value of a thing at a place that emits or reflects this light, seen through the air.
 vec3 seen(vec3 light, vec3 place_m) {
@@ -49,7 +87,48 @@ vec3 seen(vec3 light, vec3 place_m) {
 
 // The light of the sky, and of the sky reflected by the turf, on a surface with this normal.
 vec3 soft_light(vec3 normal) {
-  return kSkyLight * (0.60 + 0.40 * normal.y) + vec3(0.16, 0.15, 0.05) * (0.5 - 0.5 * normal.y);
+  return sky_light.rgb * (0.60 + 0.40 * normal.y) + turf_light.rgb * (0.5 - 0.5 * normal.y);
+}
+
+// The share of the sun's light that comes to a place, and is not held back by what stands between: 0 to 1. One look at the
+// shadow map: for things that are small or many.
+uniform sampler2DShadow shadow_map;
+uniform sampler2D shadow_depth;
+
+float sunlight_near(vec3 place_m) {
+  if (shadow.x == 0.0) return 1.0;
+  vec3 at = (to_shadow * vec4(place_m, 1.0)).xyz;
+  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+  return textureLod(shadow_map, at, 0.0);
+}
+
+// The same with a penumbra that grows with the distance from what casts the shadow (R. Fernando 2005, "Percentage-closer
+// soft shadows"). `chance`, 0 to 1, turns its samples, another way at each pixel.
+float sunlight_at(vec3 place_m, float chance) {
+  if (shadow.x == 0.0) return 1.0;
+  vec3 at = (to_shadow * vec4(place_m, 1.0)).xyz;
+  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
+  // Behind the map's end things still cast shadows.
+  float depth = min(at.z, 1.0);
+  float angle = 6.2831853 * chance;
+  vec2 turn = vec2(cos(angle), sin(angle));
+  mat2 turned = mat2(turn.x, turn.y, -turn.y, turn.x);
+  const vec2 kSpiral[8] = vec2[8](vec2(0.25, 0.0), vec2(-0.32, 0.29), vec2(0.05, -0.56), vec2(0.40, 0.53),
+                                  vec2(-0.74, -0.13), vec2(0.70, -0.45), vec2(-0.23, 0.84), vec2(-0.37, -0.92));
+  vec2 widest = max(shadow.yz * 0.6, vec2(2.0 * shadow.x));
+  float near = 0.0;
+  float blocked = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    float before = textureLod(shadow_depth, at.xy + turned * kSpiral[i] * widest, 0.0).r;
+    float blocks = step(before, depth - 0.0005);
+    near += before * blocks;
+    blocked += blocks;
+  }
+  if (blocked == 0.0) return 1.0;
+  vec2 wide = max(shadow.yz * (at.z - near / blocked), vec2(1.2 * shadow.x));
+  float lit = 0.0;
+  for (int i = 0; i < 8; ++i) lit += textureLod(shadow_map, vec3(at.xy + turned * kSpiral[i] * wide, depth), 0.0);
+  return lit / 8.0;
 }
 
 // Joints of strands as the forward kinematics writes them, in blocks of 16 strands.

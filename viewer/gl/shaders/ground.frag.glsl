@@ -1,5 +1,5 @@
 // The ground between the blades near by, and the grass itself where blades would be smaller than pixels.
-uniform float sunlight;  // 1, and less in a shadow
+uniform float sunlight;  // 1, and less in a hard shadow
 in vec3 place_m;
 out vec4 color;
 
@@ -25,16 +25,16 @@ void main() {
   float coarse = textureLod(noise_tile, turned_m, blur - 1.0).r - textureLod(noise_tile, turned_m, max(blur - 1.0, 4.0)).r;
   float tufts = clamp(2.6 * mix(fine, coarse, next), -0.5, 0.5);
 
-  vec3 canopy = canopy_light(bend_at(at_m, tall), to_eye, patch_at, tufts, tall);
-  canopy *= sunlight < 1.0 ? 0.4 : 1.0;
+  float lit = sunlight * mix(kSunInShadow, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
+  vec3 canopy = canopy_light(bend_at(at_m, tall), to_eye, patch_at, tufts, tall, lit);
 
   // Shaded earth and stems.
   vec3 under = mix(vec3(0.040, 0.056, 0.016), vec3(0.100, 0.118, 0.034), 0.5 + tufts);
   vec3 lawn_floor = 0.55 * tint_of(patch_at, 0.4 + tufts);
-  vec3 below = mix(lawn_floor * (kSkyLight * 0.7 + kSunLight * (0.25 * sunlight)), under * (kSkyLight * 0.8 + kSunLight * (0.13 * sunlight)), tall);
+  vec3 below = mix(lawn_floor * (kSkyLight * 0.7 + kSunLight * (0.25 * lit)), under * (kSkyLight * 0.8 + kSunLight * (0.13 * lit)), tall);
 
   float far = mix(smoothstep(1.0, 14.0, distance_m), smoothstep(3.0, 32.0, distance_m), tall);
   vec3 light = mix(below, canopy, far);
-  light = mix(vec3(0.07, 0.05, 0.03) * (kSkyLight + kSunLight * (0.3 * sunlight)), light, smoothstep(0.0, 0.1, growth_here));
-  color = vec4(seen(light, place_m), 1.0);
+  light = mix(vec3(0.07, 0.05, 0.03) * (kSkyLight + kSunLight * (0.3 * lit)), light, smoothstep(0.0, 0.1, growth_here));
+  color = vec4(dithered(seen(light, place_m), gl_FragCoord.xy), 1.0);
 }

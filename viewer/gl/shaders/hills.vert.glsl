@@ -26,6 +26,7 @@ void main() {
 
   // Less green with distance; mist at the foot.
   vec3 air = air_light(normalize(vec3(direction.x, 0.015, direction.z)));
-  vec3 hill = mix(air, mix(vec3(0.13, 0.17, 0.30), vec3(0.035, 0.070, 0.050), nearness), 0.42 + 0.36 * nearness);
+  vec3 paint = mix(vec3(0.28, 0.31, 0.40), vec3(0.076, 0.127, 0.068), nearness);
+  vec3 hill = mix(air, paint * sky_light.rgb, 0.42 + 0.36 * nearness);
   shade = finish(is_top ? hill : mix(hill, air, 0.75));
 }

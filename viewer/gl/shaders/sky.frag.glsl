@@ -1,19 +1,60 @@
-// The evening sky: air, a veil of high cloud, the sun.
+// The sky: air, clouds that drift, sun, moon and stars.
 uniform sampler2D noise_tile;
 in vec3 ray;
-in float ray_length;
 in vec3 clear;
-in vec3 clouded;
+in vec3 shaded;
+in vec3 sunlit;
 out vec4 color;
 
-void main() {
-  // Streaks of cloud on a level plane high above, fading at the horizon.
-  float height = max(ray.y / ray_length, 0.0);
-  vec2 ceiling = ray.xz / (ray_length * (height + 0.12));
-  float broad = texture(noise_tile, ceiling * vec2(0.050, 0.085)).r;
-  float fine = texture(noise_tile, ceiling * vec2(0.21, 0.33) + 0.37).r;
-  float cloud = smoothstep(0.46, 0.86, broad * 0.70 + fine * 0.30) * smoothstep(0.02, 0.20, height);
+// How much cloud there is at a place of a level plane high above, measured in its height.
+float cloud_at(vec2 place) {
+  float broad = texture(noise_tile, place * vec2(0.050, 0.085)).r;
+  float fine = texture(noise_tile, place * vec2(0.21, 0.33) + 0.37).r;
+  return broad * 0.70 + fine * 0.30;
+}
 
-  float sun = smoothstep(0.99962, 0.99985, dot(normalize(ray), to_sun.xyz));
-  color = vec4(mix(mix(clear, clouded, cloud), vec3(1.0, 0.99, 0.93), sun), 1.0);
+// Stars: one in some of the cells of a grid on a cube around the eye; brighter ones are rarer.
+vec3 star_light(vec3 direction) {
+  vec3 size = abs(direction);
+  vec3 face = size.x > size.y && size.x > size.z ? direction.yzx : (size.y > size.z ? direction.xzy : direction.xyz);
+  vec2 at = face.xy / abs(face.z) * 110.0;
+  vec2 cell = floor(at);
+  vec3 chance = fract(sin(vec3(dot(cell, vec2(12.9898, 78.233)), dot(cell, vec2(39.346, 11.135)), dot(cell, vec2(73.156, 52.235))) +
+                          sign(face.z)) * 43758.5453);
+  vec2 off = (at - cell - 0.25 - 0.5 * chance.yz) / 110.0 / eye_m.w;  // in pixels
+  float bright = max(chance.x - 0.86, 0.0) * 7.0;
+  bright *= bright * bright;
+  return mix(vec3(1.0, 0.86, 0.70), vec3(0.75, 0.86, 1.0), chance.y) * (bright * max(1.0 - 0.55 * dot(off, off), 0.0));
+}
+
+void main() {
+  vec3 direction = normalize(ray);
+  float height = max(direction.y, 0.0);
+  vec2 ceiling = direction.xz / (height + 0.12);
+  float thick = cloud_at(ceiling - drift.xy) - air.z;
+  float cloud = smoothstep(0.0, 0.40, thick) * smoothstep(0.02, 0.20, height);
+
+  // A cloud is darker where it is thick; its thin edges let the sun's light through.
+  vec3 value = mix(clear, mix(sunlit, shaded * (1.02 - 0.15 * smoothstep(0.25, 0.75, thick)), smoothstep(0.10, 0.55, thick)), cloud);
+
+  if (air.w > 0.0 && height > 0.0) value += star_light(direction) * (0.75 * air.w * (1.0 - cloud) * smoothstep(0.0, 0.25, height));
+
+  // The moon, twice as large as it is, with the side lit that faces the sun.
+  float to_moon = dot(direction, moon_disc.xyz);
+  if (moon_disc.w > 0.0 && to_moon > 0.98) {
+    const float kRadius = 0.0090;
+    vec3 off = (direction - moon_disc.xyz * to_moon) / kRadius;
+    float out_2 = dot(off, off);
+    vec3 bulge = off - moon_disc.xyz * sqrt(max(1.0 - out_2, 0.0));
+    float lit = smoothstep(-0.05, 0.25, dot(bulge, sun_disc.xyz));
+    float edge = eye_m.w / kRadius;
+    float inside = 1.0 - smoothstep(1.0 - edge, 1.0 + edge, sqrt(out_2));
+    float spots = texture(noise_tile, off.xy * 0.07 + 0.2).r;
+    float glow = (0.16 * exp(-0.25 * out_2) + 0.05 * exp(-0.02 * out_2)) * step(sun_disc.y, 0.0);
+    vec3 moon = vec3(0.66, 0.70, 0.80) * glow + vec3(0.98, 0.96, 0.90) * (lit * inside * (0.70 + 0.40 * spots));
+    value += (1.0 - value) * moon * (moon_disc.w * (1.0 - 0.85 * cloud));
+  }
+
+  float sun = smoothstep(0.99962, 0.99985, dot(direction, sun_disc.xyz)) * sun_disc.w;
+  color = vec4(dithered(mix(value, vec3(1.0, 0.99, 0.93), sun), gl_FragCoord.xy), 1.0);
 }

@@ -4,20 +4,22 @@ const int kColumns = 40;
 const int kRows = 24;  // one instance each
 
 out vec3 ray;
-out float ray_length;
-out vec3 clear;   // the screen's value of the clear air, and of a cloud
-out vec3 clouded;
+out vec3 clear;    // the screen's value of the clear air
+out vec3 shaded;   // of a cloud, away from the sun and toward it
+out vec3 sunlit;
 
 void main() {
   vec2 at = vec2(gl_VertexID >> 1, gl_InstanceID + (gl_VertexID & 1)) / vec2(kColumns, kRows) * 2.0 - 1.0;
   gl_Position = vec4(at, 1.0, 1.0);
   ray = forward.xyz + right.xyz * (at.x * right.w) + up.xyz * (at.y * up.w);
-  ray_length = length(ray);
 
-  vec3 direction = ray / ray_length;
+  vec3 direction = normalize(ray);
   vec3 air = air_light(direction);
-  float near_sun = max(dot(direction, to_sun.xyz), 0.0);
+  float near_sun = max(dot(direction, sun_disc.xyz), 0.0);
   float near_2 = near_sun * near_sun;
+  float far = exp(-14.0 * max(direction.y, 0.0));  // through more and more air toward the horizon
+  vec3 cloud = mix(mix(air, cloud_light.rgb, 0.85), air, far);
   clear = finish(air);
-  clouded = finish(mix(air, vec3(0.72, 0.56, 0.53) + vec3(1.1, 0.52, 0.16) * near_2 * near_2 * near_2, 0.85));
+  shaded = finish(cloud);
+  sunlit = finish(cloud + cloud_glow.rgb * (0.12 + 0.85 * near_2 * near_2 * near_2) * (1.0 - far));
 }

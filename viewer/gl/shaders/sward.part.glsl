@@ -64,16 +64,20 @@ vec3 leaning(vec2 bend) {
 // The share of blades that are drawn at a distance (Thinning::share).
 float kept_share(float thinning, float distance_m) { return min(1.0, thinning * inversesqrt(distance_m) / distance_m); }
 
-// The light of a blade at height t (0 foot, 1 tip) above its foot. `lean`: the sine of its chord; between upright blades
-// the dark ground shows, of blades that the wind has bent one sees the lit sides, and neighbours bend alike.
-vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float lean) {
+const float kSunInShadow = 0.16;  // leaves, threads and the air let some through
+
+// The light of a blade at height t (0 foot, 1 tip) above its foot, where this share of the sunlight comes. `lean`: the
+// sine of its chord; between upright blades the dark ground shows, of blades that the wind has bent one sees the lit
+// sides, and neighbours bend alike.
+vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float lean, float sunlight) {
+  vec3 sun = kSunLight * sunlight;
   float facing = dot(normal, to_sun.xyz);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
   float deep = smoothstep(0.0, 1.0, t);  // 0 in the shade of its neighbours, 1 in the light
   vec3 albedo = mix(vec3(0.030, 0.060, 0.012), tint, 0.12 + 0.88 * t);
   vec3 through = vec3(1.20, 1.05, 0.40) * albedo * (0.30 + 1.5 * against * against);
   vec3 sum = albedo * kSkyLight * (0.25 + 0.75 * deep) * (0.40 + 1.0 * max(normal.y, 0.0));
-  sum += kSunLight * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
+  sum += sun * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
 
   // A sheen along it, which makes the wind's waves visible.
   float sheen_side = dot(along, normalize(to_sun.xyz + to_eye));
@@ -81,17 +85,17 @@ vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float
   sheen *= sheen;
   sheen *= sheen;
   sheen *= sheen;
-  sum += kSunLight * vec3(0.15, 0.155, 0.12) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
+  sum += sun * vec3(0.15, 0.155, 0.12) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
   return sum * exp2(4.0 * (lean - 0.60));
 }
 
 // The light of grass as one sees it from afar: the upper parts of its blades, leaning with the wind. `tufts` from -0.5 to
 // 0.5: how a tuft differs from its neighbours.
-vec3 canopy_light(vec2 bend, vec3 to_eye, vec2 patch_at, float tufts, float tall) {
+vec3 canopy_light(vec2 bend, vec3 to_eye, vec2 patch_at, float tufts, float tall, float sunlight) {
   vec3 along = leaning(bend * mix(0.35, 0.8, tall) + vec2(0.25, 0.1) * tufts);
   vec3 normal = normalize(vec3(to_eye.x, 0.35, to_eye.z) + vec3(along.x, 0.0, along.z) * 0.5);
   float lean = mix(0.55, clamp(0.36 + 0.42 * length(bend) + 0.45 * tufts, 0.0, 1.0), tall);
-  vec3 light = blade_light(to_eye, along, normal, mix(0.72, 0.82, tall) + 0.3 * tufts, tint_of(patch_at, 0.5 + 0.8 * tufts), lean);
+  vec3 light = blade_light(to_eye, along, normal, mix(0.72, 0.82, tall) + 0.3 * tufts, tint_of(patch_at, 0.5 + 0.8 * tufts), lean, sunlight);
   // From above one looks down between the blades.
   return light * (1.0 - tall * (0.15 + 0.30 * to_eye.y * to_eye.y * (1.0 - 0.6 * min(length(bend), 1.0))));
 }

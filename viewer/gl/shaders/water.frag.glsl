@@ -16,7 +16,7 @@ void main() {
   vec3 up_ray = reflect(from_eye, up_facing);
   up_ray.y = abs(up_ray.y);
   vec3 sky = air_light(up_ray);
-  vec3 hills = mix(air_light(normalize(vec3(up_ray.x, 0.02, up_ray.z))), vec3(0.040, 0.062, 0.055), 0.70);
+  vec3 hills = mix(air_light(normalize(vec3(up_ray.x, 0.02, up_ray.z))), vec3(0.087, 0.113, 0.074) * sky_light.rgb, 0.70);
   sky = mix(hills, sky, smoothstep(0.0, 0.11, up_ray.y));
   float glint = max(dot(up_ray, to_sun.xyz), 0.0);
   glint = pow(glint, 200.0);
@@ -24,7 +24,7 @@ void main() {
   // Light scattered in the water: more where a wave's slope faces the sun.
   float sun = max(dot(up_facing, to_sun.xyz), 0.0);
   float against = max(dot(from_eye, to_sun.xyz), 0.0);
-  vec3 within = vec3(0.010, 0.040, 0.042) + vec3(0.012, 0.050, 0.034) * (sun + 0.7 * against * missing);
+  vec3 within = vec3(0.022, 0.073, 0.057) * sky_light.rgb + vec3(0.003, 0.020, 0.026) * kSunLight * (sun + 0.7 * against * missing);
   vec3 light = mix(within, sky, mirrored) + kSunLight * 1.3 * glint;
   color = vec4(seen(light, place_m), 1.0);
 }

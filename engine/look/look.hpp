@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "engine/base/parameter.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi::look {
+
+/// Where the sun and the moon are.
+enum class SunChoice : std::uint8_t {
+  kEvening,  ///< always the same low sun in the south-west
+  kTime,     ///< by the place on the earth, the date and the time
+  kFixed,    ///< where height and azimuth say
+};
+
+/// How much work a picture is.
+enum class Quality : std::uint8_t { kAuto, kLow, kMedium, kHigh };
+
+std::string_view name_of(SunChoice sun);
+std::string_view name_of(Quality quality);
+
+/// The light and the weather of the picture: the values of [look].
+struct Look {
+  SunChoice sun = SunChoice::kEvening;
+  double latitude_deg = 35.68;    ///< for kTime; north is above 0
+  double longitude_deg = 139.77;  ///< east is above 0
+  /// For kTime: the hour at which the day stands still, by the sun (12: it is highest); nothing: the day goes on
+  std::optional<double> solar_time_h = std::nullopt;
+  double sun_height_deg = 30.0;    ///< for kFixed
+  double sun_azimuth_deg = 220.0;  ///< for kFixed: 0 north, 90 east
+  double clouds = 0.3;             ///< 0: a clear sky, 1: overcast
+  double haze = 0.15;              ///< 0: very clear air, 1: fog
+  double exposure_ev = 0.0;        ///< brighter by so many doublings
+  Quality quality = Quality::kAuto;
+
+  friend bool operator==(const Look&, const Look&) = default;
+};
+
+/// What the table [look] may hold, and `--look KEY=VALUE` of the viewer.
+std::span<const Parameter> look_parameters();
+
+/// From values of look_parameters(). Where they do not say which sun it is, a place or a time means kTime, a height or
+/// an azimuth kFixed.
+Result<Look, ParameterError> look_of(const ParameterValues& values);
+
+/// `look`, changed by texts such as "time=06:30" and "clouds=1". Keys and values as in look_parameters().
+Result<Look, ParameterError> edited(const Look& look, std::span<const std::string> edits);
+
+/// The same look with every number finite and within the limits of look_parameters(): for what came from outside.
+Look within_limits(const Look& look);
+
+}  // namespace yuragi::look

@@ -1,0 +1,126 @@
+#include "viewer/light/light.hpp"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "viewer/light/daylight.hpp"
+#include "viewer/light/sky_keeper.hpp"
+
+namespace yuragi::viewer::light {
+namespace {
+
+constexpr double kDay_s = 1'790'208'000.0;
+
+float sum(const glm::vec4& light) {
+  return light.r + light.g + light.b;
+}
+
+TEST(Daylight, GrowsWithTheSunsHeight) {
+  for (int quarter = -4; quarter < 360; ++quarter) {
+    const double height_deg = 0.25 * quarter;
+    const glm::vec3 low = sunlight_at(height_deg);
+    const glm::vec3 high = sunlight_at(height_deg + 0.25);
+    for (int channel = 0; channel < 3; ++channel) ASSERT_GE(high[channel], low[channel]) << height_deg;
+  }
+  for (int quarter = -120; quarter < 360; ++quarter) {
+    const double height_deg = 0.25 * quarter;
+    const float low = sum(daylight({.sun = {height_deg, 200.0}}).sky_light);
+    const float high = sum(daylight({.sun = {height_deg + 0.25, 200.0}}).sky_light);
+    ASSERT_GE(high, low) << height_deg;
+    ASSERT_LT(high, 1.25F * low) << "steps at " << height_deg;
+  }
+}
+
+TEST(Daylight, IsRedderTheLowerTheSunIs) {
+  const auto redness = [](double height_deg) { return sunlight_at(height_deg).r / sunlight_at(height_deg).b; };
+  EXPECT_GT(redness(2.0), redness(8.5));
+  EXPECT_GT(redness(8.5), redness(60.0));
+  // The evening of the first pictures.
+  EXPECT_NEAR(sunlight_at(8.5).r, 3.9F, 0.2F);
+  EXPECT_NEAR(sunlight_at(8.5).g, 2.55F, 0.2F);
+  EXPECT_NEAR(sunlight_at(8.5).b, 1.30F, 0.2F);
+}
+
+TEST(Daylight, HasNoSunUnderAnOvercastSky) {
+  const Sky clear{.sun = {50.0, 180.0}};
+  Sky overcast = clear;
+  overcast.clouds = 1.0;
+  EXPECT_LT(sum(daylight(overcast).sun_light), 0.05F * sum(daylight(clear).sun_light));
+  const glm::vec4 zenith = daylight(overcast).zenith;
+  EXPECT_LT(zenith.b / zenith.r, 1.3F) << "grey";
+  EXPECT_GT(sum(daylight(overcast).sky_light), sum(daylight(clear).sky_light)) << "it spreads the sun's light";
+}
+
+TEST(Daylight, IsTheMoonsByNight) {
+  const Sky night{.sun = {-40.0, 0.0}, .moon = {40.0, 150.0}, .moon_lit_share = 1.0};
+  const Light light = daylight(night);
+  EXPECT_GT(sum(light.sun_light), 0.0F);
+  EXPECT_NEAR(glm::dot(glm::dvec3(glm::vec3(light.to_sun)), direction_of(night.moon)), 1.0, 1e-5);
+  EXPECT_GT(light.air.w, 0.0F) << "stars";
+  EXPECT_EQ(sum(daylight({.sun = {-40.0, 0.0}}).sun_light), 0.0F) << "no moon";
+}
+
+TEST(SkyKeeper, BeginsWithTheLookAtOnce) {
+  SkyKeeper keeper;
+  keeper.start({.sun = look::SunChoice::kTime, .solar_time_h = 12.0});
+  const Light light = keeper.advance(kDay_s, 0.0, {});
+  EXPECT_GT(light.to_sun.y, 0.7F) << "it is highest at noon";
+  EXPECT_GT(light.to_sun.z, 0.0F) << "in the south";
+  EXPECT_NEAR(light.to_sun.x, 0.0F, 0.01F);
+}
+
+TEST(SkyKeeper, FollowsADayWithoutAJump) {
+  SkyKeeper keeper;
+  keeper.start({.sun = look::SunChoice::kTime, .clouds = 0.0});
+  Light before = keeper.advance(kDay_s, 0.0, {});
+  for (int passed_s = 1; passed_s < 86400; ++passed_s) {
+    const Light now = keeper.advance(kDay_s + passed_s, 1.0, {});
+    ASSERT_NEAR(std::log(now.air.x / before.air.x), 0.0, 0.02) << "exposure after " << passed_s << " s";
+    ASSERT_NEAR(sum(now.zenith), sum(before.zenith), 0.01F * sum(before.zenith) + 1e-6F) << passed_s;
+    // Sun and moon change places while neither shines.
+    const float turn = glm::distance(glm::vec3(now.to_sun), glm::vec3(before.to_sun));
+    ASSERT_LT(turn * std::max(sum(now.sun_light), sum(before.sun_light)), 0.01F) << passed_s;
+    before = now;
+  }
+}
+
+TEST(SkyKeeper, FadesToAnotherLookWithoutAJump) {
+  SkyKeeper keeper;
+  keeper.start({.sun = look::SunChoice::kFixed, .sun_height_deg = 20.0, .sun_azimuth_deg = 90.0});
+  Light before = keeper.advance(kDay_s, 0.0, {});
+  keeper.set_look({.sun = look::SunChoice::kFixed, .sun_height_deg = 20.0, .sun_azimuth_deg = 270.0, .clouds = 0.9});
+  constexpr double kStep_s = 1.0 / 60.0;
+  for (int step = 0; kStep_s * step < SkyKeeper::kFade_s + 1.0; ++step) {
+    const double passed_s = kStep_s * step;
+    const Light now = keeper.advance(kDay_s, kStep_s, {});
+    ASSERT_NEAR(now.air.x, before.air.x, 0.03F * before.air.x) << passed_s;
+    ASSERT_NEAR(sum(now.sky_light), sum(before.sky_light), 0.02F * sum(before.sky_light)) << passed_s;
+    const float turn = glm::distance(glm::vec3(now.to_sun), glm::vec3(before.to_sun));
+    ASSERT_LT(turn * sum(now.sun_light), 0.5F) << "a shadow swings after " << passed_s << " s";
+    before = now;
+  }
+  EXPECT_LT(before.to_sun.x, -0.5F) << "it has arrived";
+}
+
+TEST(SkyKeeper, LetsCloudsDriftWithTheWindAndNotTooFast) {
+  SkyKeeper keeper;
+  keeper.start({});
+  keeper.advance(kDay_s, 0.0, {4.0, -2.0});
+  const Light light = keeper.advance(kDay_s, 5.0, {4.0, -2.0});
+  EXPECT_GT(light.drift.x, 0.0F);
+  SkyKeeper stormy;
+  stormy.start({});
+  stormy.advance(kDay_s, 0.0, {1e6, 0.0});
+  EXPECT_LT(stormy.advance(kDay_s, 1.0, {1e6, 0.0}).drift.x, 0.05F);
+}
+
+TEST(SkyKeeper, TakesTheExposureAsAsked) {
+  const Light plain = light_of({}, kDay_s);
+  const Light bright = light_of({.exposure_ev = 1.0}, kDay_s);
+  EXPECT_NEAR(bright.air.x, 2.0F * plain.air.x, 1e-5F);
+}
+
+}  // namespace
+}  // namespace yuragi::viewer::light

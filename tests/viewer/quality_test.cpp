@@ -1,0 +1,20 @@
+#include "viewer/quality.hpp"
+
+#include <gtest/gtest.h>
+
+namespace yuragi::viewer {
+namespace {
+
+TEST(Quality, IsLowByItselfOnlyWithoutGraphicsHardware) {
+  EXPECT_EQ(quality_for(look::Quality::kAuto, true), look::Quality::kLow);
+  EXPECT_EQ(quality_for(look::Quality::kAuto, false), look::Quality::kHigh);
+  EXPECT_EQ(quality_for(look::Quality::kHigh, true), look::Quality::kHigh);
+}
+
+TEST(Quality, SaysWhatItLeavesOut) {
+  EXPECT_EQ(quality_text(look::Quality::kHigh), "quality high");
+  EXPECT_EQ(quality_text(look::Quality::kLow), "quality low: hard shadows, on the ground only");
+}
+
+}  // namespace
+}  // namespace yuragi::viewer

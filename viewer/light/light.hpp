@@ -1,0 +1,35 @@
+#pragma once
+
+#include <glm/vec4.hpp>
+
+namespace yuragi::viewer::light {
+
+/// The light of a picture: the uniform block Light of viewer/gl/shaders/common.glsl, in its layout (std140). Linear, in
+/// one unit for all: white paper in a light of (1, 1, 1) has the light (1, 1, 1).
+struct Light {
+  glm::vec4 to_sun{0.0F, 1.0F, 0.0F, 0.0F};     ///< unit vector toward the brighter of sun and moon
+  glm::vec4 sun_light{0.0F};                    ///< its light on a surface that faces it
+  glm::vec4 sky_light{0.0F};                    ///< the sky's on a level surface
+  glm::vec4 turf_light{0.0F};                   ///< of both, from the ground below
+  glm::vec4 zenith{0.0F};                       ///< the clear sky overhead
+  glm::vec4 horizon_near{0.0F};                 ///< at the horizon, on the sun's side
+  glm::vec4 horizon_far{0.0F};                  ///< on the other
+  glm::vec4 glow_wide{0.0F};                    ///< around the sun: over some 30 degrees
+  glm::vec4 glow_narrow{0.0F};                  ///< over some 10
+  glm::vec4 glow_disc{0.0F};                    ///< over some 5
+  glm::vec4 cloud_light{0.0F};                  ///< a cloud's side that the sun does not light
+  glm::vec4 cloud_glow{0.0F};                   ///< what the sun adds to it
+  glm::vec4 sun_disc{0.0F, 1.0F, 0.0F, 0.0F};   ///< unit vector toward the sun, set or not; w: how much of it is seen
+  glm::vec4 moon_disc{0.0F, 1.0F, 0.0F, 0.0F};  ///< the same of the moon
+  glm::vec4 air{0.0F};    ///< exposure; haze, per metre; where clouds begin (of the noise); how bright the stars are
+  glm::vec4 drift{0.0F};  ///< x, y: how far the clouds have drifted, east and south, in heights of theirs
+};
+
+/// From `a` (share 0) to `b` (share 1). Where their suns stand far apart, the one's light ends before the other's
+/// begins, so that no shadow swings around.
+Light mixed(const Light& a, const Light& b, float share);
+
+/// How bright a grey surface is that lies in this light: what the exposure goes by.
+float brightness_of(const Light& light);
+
+}  // namespace yuragi::viewer::light

@@ -1,0 +1,17 @@
+#include "viewer/quality.hpp"
+
+namespace yuragi::viewer {
+
+look::Quality quality_for(look::Quality wanted, bool is_software_renderer) {
+  if (wanted != look::Quality::kAuto) return wanted;
+  return is_software_renderer ? look::Quality::kLow : look::Quality::kHigh;
+}
+
+std::string quality_text(look::Quality quality) {
+  std::string text = "quality " + std::string(name_of(quality));
+  if (quality == look::Quality::kLow) text += ": hard shadows, on the ground only";
+  if (quality == look::Quality::kMedium) text += ": coarser shadows";
+  return text;
+}
+
+}  // namespace yuragi::viewer
