@@ -26,7 +26,7 @@ struct LeafTints {
 LeafTints tints_of(pose::FoliageColor foliage) {
   switch (foliage) {
     case pose::FoliageColor::kBlossom:
-      return {{0.52F, 0.27F, 0.31F}, {0.80F, 0.60F, 0.60F}};
+      return {{0.66F, 0.47F, 0.53F}, {0.84F, 0.73F, 0.77F}};
     case pose::FoliageColor::kAutumn:
       return {{0.36F, 0.045F, 0.012F}, {0.62F, 0.26F, 0.030F}};
     case pose::FoliageColor::kGreen:
@@ -86,7 +86,8 @@ std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t lev
     part.root_m = {strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]};
     part.strand = static_cast<std::uint32_t>(i);
     part.base_radius_m = from.base_radius_m[i];
-    part.tip_radius_m = from.is_leaves ? 0.0F : from.tip_radius_m[i];
+    part.tip_radius_m =
+        from.is_leaves ? strands.link_length_m[i] * static_cast<float>(strands.links_per_strand) : from.tip_radius_m[i];
     if (level > 0) {
       // The layout of JointPositions: blocks of strands, links, axes, lanes.
       const std::size_t links = tree.levels[from.parent_level].strands.links_per_strand;
