@@ -85,7 +85,8 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree)
       levels_(tree.levels.size()),
       spray_shape_(meshes::spray_shape(tree)),
       bark_(gl::link_program("bark", gl::shaders::kBarkVert, gl::shaders::kBarkFrag)),
-      leaf_(gl::link_program("leaf", gl::shaders::kLeafVert, gl::shaders::kShadeFrag)) {
+      leaf_(gl::link_program("leaf", gl::shaders::kLeafVert, gl::shaders::kShadeFrag)),
+      contact_(gl::link_program("contact", gl::shaders::kContactVert, gl::shaders::kContactFrag)) {
   for (std::size_t i = 0; i < levels_.size(); ++i) {
     Level& level = levels_[i];
     fill(GL_ARRAY_BUFFER, level.part_buffer, meshes::tree_parts(tree, i));
@@ -147,6 +148,21 @@ void TreeRenderer::draw(const meshes::View& view) {
       draw_branches(i, meshes::tree_rings(tree_->levels[i], bounds_, view));
     }
   }
+}
+
+void TreeRenderer::draw_light() {
+  if (levels_.empty() || tree_->levels[0].is_leaves) return;
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_DST_COLOR, GL_ZERO);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_POLYGON_OFFSET_FILL);  // in front of the ground
+  glPolygonOffset(-2.0F, -2.0F);
+  glUseProgram(contact_.name());
+  glBindVertexArray(levels_[0].array.name());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(tree_->levels[0].strands.strand_count));
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
 }
 
 void TreeRenderer::draw_branches(std::size_t level, std::size_t rings) {

@@ -19,6 +19,8 @@ class TreeRenderer : public SceneRenderer {
 
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
+  /// Darkens the ground around the foot of a trunk.
+  void draw_light() override;
   bool casts_shadow() const override { return true; }
 
  private:
@@ -52,6 +54,7 @@ class TreeRenderer : public SceneRenderer {
   meshes::SprayShape spray_shape_;
   gl::GlProgram bark_;
   gl::GlProgram leaf_;
+  gl::GlProgram contact_;
   gl::GlBuffer joint_buffer_;
   gl::GlTexture joint_texture_;
 };

@@ -115,14 +115,13 @@ void add_flower(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& foo
 }
 
 void add_pentagon(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& foot) {
-  const auto first = static_cast<std::uint32_t>(mesh.corners.size());
+  const auto heart = static_cast<std::uint32_t>(mesh.corners.size());
   const float radius = 0.465F * shape.leaf_length;
-  for (int petal = 0; petal < kPetals; ++petal) {
+  mesh.corners.push_back(foot);
+  for (std::uint32_t petal = 0; petal < kPetals; ++petal) {
     const float angle_rad = static_cast<float>(2.0 * kPi) * static_cast<float>(petal) / kPetals;
     mesh.corners.push_back(moved(foot, radius * std::cos(angle_rad), radius * std::sin(angle_rad), 1.0F));
-  }
-  for (std::uint32_t i = 1; i + 1 < kPetals; ++i) {
-    mesh.triangles.insert(mesh.triangles.end(), {first, first + i, first + i + 1});
+    mesh.triangles.insert(mesh.triangles.end(), {heart, heart + 1 + petal, heart + 1 + (petal + 1) % kPetals});
   }
 }
 

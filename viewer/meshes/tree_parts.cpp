@@ -12,8 +12,8 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-const glm::vec3 kBark(0.085F, 0.062F, 0.045F);
-const glm::vec3 kTwig(0.095F, 0.066F, 0.040F);
+const glm::vec3 kBark(0.080F, 0.068F, 0.056F);
+const glm::vec3 kTwig(0.085F, 0.065F, 0.048F);
 
 constexpr double kLeafTilt_rad = 0.75;  // about the largest angle between a leaf's upper side and the sky
 constexpr float kOutward = 0.8F;        // how much it is turned out of the crown, toward the light, against that
@@ -26,7 +26,7 @@ struct LeafTints {
 LeafTints tints_of(pose::FoliageColor foliage) {
   switch (foliage) {
     case pose::FoliageColor::kBlossom:
-      return {{0.66F, 0.47F, 0.53F}, {0.84F, 0.73F, 0.77F}};
+      return {{0.64F, 0.41F, 0.47F}, {0.84F, 0.68F, 0.72F}};
     case pose::FoliageColor::kAutumn:
       return {{0.36F, 0.045F, 0.012F}, {0.62F, 0.26F, 0.030F}};
     case pose::FoliageColor::kGreen:
