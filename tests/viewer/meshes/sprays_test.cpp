@@ -73,8 +73,8 @@ TEST_F(SpraysTest, MeshesAreWholeAndCoverTheSameNearAndFar) {
         EXPECT_EQ(mesh->triangles.size(), mesh->stalk_indices + shape.leaves * mesh->leaf_indices);
         for (const std::uint32_t corner : mesh->triangles) ASSERT_LT(corner, mesh->corners.size());
         for (std::size_t i = mesh->stalk_indices; i < mesh->triangles.size(); ++i) {
-          const auto leaf = static_cast<float>((i - mesh->stalk_indices) / mesh->leaf_indices);
-          EXPECT_EQ(mesh->corners[mesh->triangles[i]].leaf, leaf);
+          const std::size_t leaf = (i - mesh->stalk_indices) / mesh->leaf_indices;
+          EXPECT_EQ(mesh->corners[mesh->triangles[i]].leaf, static_cast<float>(leaf));
         }
       }
       EXPECT_NEAR(area(far) / area(near), 1.0F, 0.2F) << width_m;
@@ -101,7 +101,8 @@ TEST_F(SpraysTest, FartherOnesAreFewerAndLargerLeavesThatCoverTheSame) {
   const SprayShape shape = spray_shape(tree_of(0.19F, 0.095F));
   const auto all = static_cast<float>(shape.leaves);
   float before = all;
-  for (double distance_m = 3.0; distance_m < 190.0; distance_m *= 1.02) {
+  for (int step = 0; step < 200; ++step) {
+    const double distance_m = 3.0 * std::pow(1.02, step);
     const SprayLevel level = spray_level(shape, 0.19F, crown_, view_from(distance_m));
     EXPECT_LE(level.leaves, before);
     EXPECT_GT(level.leaves, before - 0.09F * all) << "they go smoothly";
