@@ -24,7 +24,7 @@ constexpr std::array kSpecies = {
                   .leaf_length_m = 0.19,
                   .leaf_width_share = 0.5,
                   .leaf_droop_deg = 50}},
-    // A vase: a fan of steep limbs from a short trunk, which arch outward at their tips.
+    // A vase: limbs leave the upper half of the trunk one above the other, at an open angle, and curve up.
     TreeSpecies{
         .name = "zelkova",
         .sway_deg = {1.05, 3.7, 9.9},
@@ -34,8 +34,8 @@ constexpr std::array kSpecies = {
         .flutter = 0.57,
         .flutter_speed_m_s = 4.5,
         .habit = {.height_m = 11.0,
-                  .trunk_share = 0.36,
-                  .limb = {.first_at = 0.55, .angle_deg = {42, 10}, .length_share = {0.62, 0.66}, .lift_deg = -25},
+                  .trunk_share = 0.46,
+                  .limb = {.first_at = 0.4, .angle_deg = {50, 18}, .length_share = {0.64, 0.50}, .lift_deg = 24},
                   .twig = {.first_at = 0.35, .angle_deg = {45, 30}, .length_share = {0.17, 0.11}, .lift_deg = -20},
                   .leaf_angle_deg = 55,
                   .leaf_length_m = 0.19,

@@ -12,6 +12,8 @@ extern const std::string_view kBarkVert;
 extern const std::string_view kBarkFrag;
 extern const std::string_view kClothVert;
 extern const std::string_view kClothFrag;
+extern const std::string_view kContactVert;
+extern const std::string_view kContactFrag;
 extern const std::string_view kDimFrag;
 extern const std::string_view kDoorVert;
 extern const std::string_view kDoorFrag;

@@ -12,8 +12,8 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-const glm::vec3 kBark(0.085F, 0.062F, 0.045F);
-const glm::vec3 kTwig(0.095F, 0.066F, 0.040F);
+const glm::vec3 kBark(0.080F, 0.068F, 0.056F);
+const glm::vec3 kTwig(0.085F, 0.065F, 0.048F);
 
 constexpr double kLeafTilt_rad = 0.75;  // about the largest angle between a leaf's upper side and the sky
 constexpr float kOutward = 0.8F;        // how much it is turned out of the crown, toward the light, against that
@@ -26,7 +26,7 @@ struct LeafTints {
 LeafTints tints_of(pose::FoliageColor foliage) {
   switch (foliage) {
     case pose::FoliageColor::kBlossom:
-      return {{0.52F, 0.27F, 0.31F}, {0.80F, 0.60F, 0.60F}};
+      return {{0.64F, 0.41F, 0.47F}, {0.84F, 0.68F, 0.72F}};
     case pose::FoliageColor::kAutumn:
       return {{0.36F, 0.045F, 0.012F}, {0.62F, 0.26F, 0.030F}};
     case pose::FoliageColor::kGreen:
@@ -86,7 +86,8 @@ std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t lev
     part.root_m = {strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]};
     part.strand = static_cast<std::uint32_t>(i);
     part.base_radius_m = from.base_radius_m[i];
-    part.tip_radius_m = from.is_leaves ? 0.0F : from.tip_radius_m[i];
+    part.tip_radius_m =
+        from.is_leaves ? strands.link_length_m[i] * static_cast<float>(strands.links_per_strand) : from.tip_radius_m[i];
     if (level > 0) {
       // The layout of JointPositions: blocks of strands, links, axes, lanes.
       const std::size_t links = tree.levels[from.parent_level].strands.links_per_strand;

@@ -18,7 +18,7 @@ struct TreePart {
   std::array<float, 3> root_m{};  ///< position at rest
   float base_radius_m = 0.0F;     ///< of a leaf: half its width
   std::array<float, 3> tint{};    ///< linear light
-  float tip_radius_m = 0.0F;
+  float tip_radius_m = 0.0F;      ///< of a leaf: its strand's length
   std::array<float, 3> facing{};  ///< of a leaf: the normal of its upper side; of a branch: a direction across it
   std::array<float, 3> rest{};    ///< of a leaf: unit vector from foot to tip at rest
   std::uint32_t strand = 0;

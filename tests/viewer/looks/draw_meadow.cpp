@@ -1,6 +1,6 @@
 // The meadow from many places, in calm, a breeze and a storm with gusts; and what a picture of it costs.
 //
-//   xvfb-run -a draw_meadow FOLDER [WIDTHxHEIGHT [GRASS_PARAMETER=VALUE,... [PLACE,... [WEATHER,...]]]]
+//   draw_meadow FOLDER [WIDTHxHEIGHT [GRASS_PARAMETER=VALUE,... [PLACE,... [WEATHER,...]]]]
 
 #include <cstdio>
 #include <ctime>
@@ -11,9 +11,9 @@
 
 #include "engine/scenes/scene.hpp"
 #include "tests/answer/test_wind.hpp"
+#include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/picture_file.hpp"
-#include "viewer/window.hpp"
 
 namespace {
 
@@ -115,7 +115,7 @@ int draw_meadow(const std::vector<std::string>& words) {
   if (words.size() > 1) std::sscanf(words[1].c_str(), "%dx%d", &width_px, &height_px);
   const ParameterValues::Map given = values_of(words.size() > 2 ? words[2] : std::string());
 
-  const viewer::Window window({.width_px = 64, .height_px = 64, .is_visible = false, .monitor = {}});
+  const viewer::gl::HeadlessContext context({.has_messages = true});
   viewer::gl::report_gl_errors();
   viewer::looks::Stage stage;
   viewer::gl::RenderTarget target(width_px, height_px, viewer::gl::is_software_renderer() ? 1 : 4);

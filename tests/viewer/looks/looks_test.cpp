@@ -374,6 +374,18 @@ TEST_F(StageTest, TheNodesOfTheGroundBendTheGrassAroundAndAreNoThing) {
   EXPECT_GT(changed(calm, target_->read_rgb()), 5000U);
 }
 
+TEST_F(StageTest, ATrunkDarkensTheGroundAtItsFootOnTheSunnySideToo) {
+  show({test_model("tree")});
+  camera_.frame({{-0.40, 0.0, 0.25}, 0.0, 89.0, 0.6});
+  const Pixels with = draw(0.0, 1.0F);
+  const Pixels without = draw(0.0, 0.0F);
+  std::size_t darker = 0;
+  for (std::size_t i = 0; i + 2 < with.size(); i += 3) {
+    if (with[i + 1] + 4 < without[i + 1]) ++darker;
+  }
+  EXPECT_GT(darker, kWidth_px * kHeight_px / 4U);
+}
+
 TEST_F(StageTest, HasNoTroubleWithModelsOfNothing) {
   pose::StrandSkeleton no_strands;
   no_strands.links_per_strand = 1;

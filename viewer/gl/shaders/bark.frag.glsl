@@ -1,4 +1,4 @@
-// Bark, furrowed along the branch; darker inside the crown.
+// Bark: plates between furrows that run along the branch and meet; darker inside the crown.
 uniform vec3 crown_middle_m;
 uniform vec3 crown_radius_m;
 
@@ -8,15 +8,35 @@ in vec3 tint;
 in vec2 bark_m;
 out vec4 color;
 
+float lattice(ivec2 at) {
+  uint v = uint(at.x) * 1597334677u ^ uint(at.y) * 3812015801u;
+  v = (v ^ (v >> 15u)) * 2246822519u;
+  return float(v >> 8u) / 16777216.0;
+}
+
+// Noise from 0 to 1 between the points of a grid.
+float grain(vec2 at) {
+  ivec2 cell = ivec2(floor(at));
+  vec2 part = fract(at);
+  part *= part * (3.0 - 2.0 * part);
+  float low = mix(lattice(cell), lattice(cell + ivec2(1, 0)), part.x);
+  return mix(low, mix(lattice(cell + ivec2(0, 1)), lattice(cell + 1), part.x), part.y);
+}
+
 void main() {
   vec3 from_eye = normalize(place_m - eye_m.xyz);
   vec3 facing = normalize(normal);
   facing *= dot(facing, from_eye) > 0.0 ? -1.0 : 1.0;
 
-  float wander = 0.012 * sin(9.0 * bark_m.y) + 0.006 * sin(31.0 * bark_m.y + 40.0 * bark_m.x);
-  float furrow = sin((bark_m.x + wander) * 150.0) * 0.6 + sin((bark_m.x - 1.7 * wander) * 67.0 + 2.0) * 0.4;
-  float fine = clamp(1.5 - fwidth(bark_m.x) * 60.0, 0.0, 1.0);
-  vec3 paint = tint * (1.0 + 0.40 * furrow * fine);
+  // What is finer than a pixel fades out.
+  float pixel_m = fwidth(bark_m.x) + fwidth(bark_m.y);
+  vec2 drawn_out = vec2(1.0, 0.11) * bark_m;
+  float plates = abs(grain(drawn_out * 38.0) + 0.6 * grain(drawn_out * 97.0 + 7.0) - 0.8);
+  float furrow = mix(0.55, smoothstep(-0.05, 0.42, plates), clamp(1.4 - pixel_m * 25.0, 0.0, 1.0));
+  float fine = mix(0.5, grain(bark_m * vec2(260.0, 90.0)), clamp(1.4 - pixel_m * 150.0, 0.0, 1.0));
+  float patches = grain(bark_m * vec2(5.0, 2.2));
+  vec3 paint = tint * (0.40 + 0.80 * furrow) * (0.75 + 0.5 * fine) * (0.75 + 0.5 * patches);
+  paint += vec3(0.020, 0.024, 0.016) * smoothstep(0.62, 0.85, patches) * furrow;  // lichen
 
   vec3 in_crown = (place_m - crown_middle_m) / crown_radius_m;
   float open = smoothstep(0.35, 1.15, length(in_crown));

@@ -27,10 +27,16 @@ void main() {
   vec3 across = normalize(cross(along, aside));
   normal = cos(turn) * across + sin(turn) * cross(along, across);
 
-  // A trunk widens at the ground.
+  // A trunk widens into its roots at the ground; a branch into a collar where it leaves its parent.
   float t = float(link) / float(links);
   float radius = mix(root_base.w, tint_tip.w, t);
-  if (root_at < 0) radius *= 1.0 + 0.55 * exp(-22.0 * t) * (1.0 + 0.25 * sin(5.0 * turn));
+  float from_root = distance(root, middle) / root_base.w;
+  if (root_at < 0) {
+    float roots = 1.0 + 0.26 * sin(5.0 * turn) + 0.18 * sin(3.0 * turn + 1.3);
+    radius *= 1.0 + 1.1 * exp(-0.85 * from_root) * roots;
+  } else {
+    radius *= 1.0 + 0.8 * exp(-0.22 * from_root);
+  }
   radius = max(radius, 0.35 * eye_m.w * distance(eye_m.xyz, middle));
   place_m = middle + radius * normal;
   tint = tint_tip.rgb;

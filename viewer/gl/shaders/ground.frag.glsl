@@ -11,7 +11,7 @@ void main() {
   vec2 patch_at = patches(at_m);
   float growth_here = growth_at(at_m).r;
   // While tall grass fades it is on the pixels that its door leaves open (door.frag.glsl).
-  float threshold = fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy) + 5.588238 * stand.z, vec2(0.06711056, 0.00583715))));
+  float threshold = pixel_chance(floor(gl_FragCoord.xy) + 5.588238 * stand.z);
   float tall = threshold < bend_mean.w ? tall_share(growth_here) : 0.0;
 
   // Tufts, as large as a few pixels at every distance: two sizes, of which one replaces the other. Of the noise only what

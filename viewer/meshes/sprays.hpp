@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/pose/skeleton.hpp"
+#include "viewer/meshes/bounds.hpp"
+#include "viewer/meshes/view.hpp"
+
+namespace yuragi::viewer::meshes {
+
+// A strand of a tree's leaves is drawn as a spray: a thin stalk that bears leaves at alternate sides, or flowers.
+
+/// What hangs on a tree's sprays. Lengths are shares of the spray's.
+struct SprayShape {
+  std::size_t leaves = 0;    ///< on a spray, near by
+  float leaf_length = 0.0F;  ///< of a blade; of a flower, its diameter
+  float leaf_width = 0.0F;   ///< of a blade, where it is widest, as a share of its own length
+  float widest_at = 0.0F;    ///< from a blade's foot (0) to its tip (1)
+  bool has_flowers = false;  ///< instead of leaves
+};
+
+/// The shape of a tree's sprays, by the proportions of its leaf strands at rest: narrow ones are a zelkova's, slender
+/// ones a cherry's, broad ones a poplar's.
+SprayShape spray_shape(const pose::TreeSkeleton& tree);
+
+/// A corner of a spray's mesh, in the layout that the leaves' shader reads. The mesh is bent along the strand there.
+struct SprayCorner {
+  float at = 0.0F;      ///< where its leaf grows: 0 at the strand's foot, 1 at its tip
+  float side = 0.0F;    ///< -1 or 1: at which side; 0: the leaf goes on along the strand; 2: it is of the stalk
+  float along = 0.0F;   ///< in the leaf, as a share of the spray's length. Of a flower: one of its two axes
+  float across = 0.0F;  ///< the same, to the right of its midrib. Of the stalk: -1 or 1
+  float edge = 0.0F;    ///< 0 at the midrib or in the heart of a flower, 1 at the edge
+  float leaf = 0.0F;    ///< its number; leaves with low numbers are spread over the whole spray
+};
+
+/// Triangles, leaf behind leaf.
+struct SprayMesh {
+  std::vector<SprayCorner> corners;
+  std::vector<std::uint32_t> triangles;
+  std::size_t stalk_indices = 0;  ///< of `triangles`, before the first leaf
+  std::size_t leaf_indices = 0;   ///< of each leaf
+};
+
+/// For the eye near by: curved outlines, and a stalk.
+SprayMesh near_spray(const SprayShape& shape);
+/// For all others: two triangles a leaf, folded along its midrib; a flower is a pentagon.
+SprayMesh far_spray(const SprayShape& shape);
+
+/// How finely sprays are drawn.
+struct SprayDetail {
+  float leaf_px = 5.5F;          ///< leaves smaller than this give way to fewer, larger ones
+  float shaped_leaf_px = 40.0F;  ///< those larger than this have a curved outline
+};
+
+/// How many leaves of a spray are drawn, and how much larger each is, so that together they cover as much as all of
+/// them. The count is not a whole number: the last leaf is drawn that much smaller, so that leaves come and go
+/// smoothly.
+struct SprayLevel {
+  float leaves = 0.0F;
+  float size = 1.0F;
+  bool is_near = false;
+};
+SprayLevel spray_level(const SprayShape& shape, float spray_length_m, const Bounds& bounds, const View& view,
+                       const SprayDetail& detail = {});
+
+/// The mean length of a level's strands, metres; 0 where there are none.
+float mean_length_m(const pose::StrandSkeleton& strands);
+
+}  // namespace yuragi::viewer::meshes
