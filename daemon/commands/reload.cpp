@@ -20,7 +20,8 @@ namespace {
 
 constexpr const char* kReloadFooter =
     "The daemon reads the file that it was started with, and applies what can change while it runs: scenes,\n"
-    "[sensor.calibration] except for heights, [sensor.judge], [shaping], [look], [log], who may connect and control, how much "
+    "[sensor.calibration] except for heights, [sensor.judge], [shaping], [look], [log], who may connect and control, "
+    "how much "
     "is\n"
     "recorded, and the rate of recordings that play. What else has changed is named: it takes a restart. A mistake\n"
     "changes nothing. SIGHUP does the same; then the log says what was done.\n"

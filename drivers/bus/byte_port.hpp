@@ -65,7 +65,8 @@ struct BytePortAddress {
   Nanoseconds connect_timeout = std::chrono::seconds(3);
 };
 
-/// "/dev/ttyUSB0 at 9600 8N1", "host:port", "UDP port 10110", "ws://host:port", "CAN interface can0", a path: for people.
+/// "/dev/ttyUSB0 at 9600 8N1", "host:port", "UDP port 10110", "ws://host:port", "CAN interface can0", a path: for
+/// people.
 std::string describe(const BytePortAddress& address);
 
 /// The identity of a port that cannot be open twice: a serial port's device file behind its links, a UDP port that is

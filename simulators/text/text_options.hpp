@@ -16,7 +16,7 @@ struct TextOptions {
   std::string link;
   std::string tcp;
   std::string udp;
-  std::string can;  ///< of the commands whose device has frames to say
+  std::string can;                      ///< of the commands whose device has frames to say
   WebSocketWireOptions websocket = {};  ///< its path: what clients ask for
   std::string websocket_place;          ///< HOST:PORT; empty: no WebSocket
   double rate_hz = 4.0;

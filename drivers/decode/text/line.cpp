@@ -193,7 +193,8 @@ Result<LineValues, Refusal> values_of_line(const LineOptions& options, std::stri
   if (options.format == LineFormat::kJson || (is_auto && line.front() == '{')) {
     try {
       return values_of_json(options, line);
-    } catch (const std::exception&) {  // an index that no array has, or no memory; keys are looked at before (is_json_pointer)
+    } catch (const std::exception&) {  // an index that no array has, or no memory; keys are looked at before
+                                       // (is_json_pointer)
       return Refusal::kMalformed;
     }
   }

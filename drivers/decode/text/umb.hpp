@@ -18,7 +18,8 @@ namespace yuragi::drivers::decode::text {
 // checksum. One reply contains one channel. Wind speed: 400 actual, 420 least, 440 greatest (a gust), 460 mean, 480
 // vector mean; +5 is the same in km/h, +10 in mph, +15 in knots: the same range, so the same m/s. Direction, 0 to 359.9
 // degrees: 500 actual, 520 least, 540 greatest, 580 vector mean. Sources: Lufft V200A-UMB manual V25 20.5.4 (NMEA
-// mode), WS501-UMB manual 18.4.3 (ASCII mode), WS manual 6.8 and 6.9 (channels). Their binary mode: drivers/decode/lufft.
+// mode), WS501-UMB manual 18.4.3 (ASCII mode), WS manual 6.8 and 6.9 (channels). Their binary mode:
+// drivers/decode/lufft.
 
 struct UmbOptions {
   WhenMissing checksum = WhenMissing::kRefuse;  ///< of NMEA mode

@@ -354,9 +354,9 @@ TEST(DecodeProgram, HelpsWithAnExampleOfEachFormat) {
   ChildProcess program({test::built_path("bin/yuragi"), "decode", "--help"});
   const std::string help = program.rest();
   EXPECT_EQ(program.wait(), 0);
-  for (const char* name :
-       {"nmea", "gill", "umb", "ft", "wxt", "line", "wmr100", "wmr300", "fineoffset", "acurite", "te923", "davis",
-        "weatherlink", "tempest", "ecowitt", "ecowitt-push", "umb-binary", "mcc1208", "labjack", "modbus:"}) {
+  for (const char* name : {"nmea",    "gill",         "umb",        "ft",      "wxt",     "line",        "wmr100",
+                           "wmr300",  "fineoffset",   "acurite",    "te923",   "davis",   "weatherlink", "tempest",
+                           "ecowitt", "ecowitt-push", "umb-binary", "mcc1208", "labjack", "modbus:"}) {
     EXPECT_THAT(help, HasSubstr(std::string("yuragi decode ") + name));
   }
 }

@@ -9,7 +9,6 @@
 
 #include "daemon/settings/config_edit.hpp"
 #include "daemon/settings/recorded_sensor.hpp"
-#include "daemon/settings/recorded_sensor.hpp"
 #include "daemon/settings/secret_exposure.hpp"
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/site_octaves.hpp"

@@ -342,8 +342,10 @@ TEST_F(StageTest, TheMeadowHasNoEdgeSeenFromAbove) {
   std::array<double, 2> counts{};
   for (int row = 0; row < kHeight_px; ++row) {
     for (int column = 0; column < kWidth_px; ++column) {
-      const double out_x_m = std::abs(column - kWidth_px / 2) / px_per_m - static_cast<double>(box.high_m.x - box.low_m.x) / 2;
-      const double out_z_m = std::abs(row - kHeight_px / 2) / px_per_m - static_cast<double>(box.high_m.z - box.low_m.z) / 2;
+      const double out_x_m =
+          std::abs(column - kWidth_px / 2) / px_per_m - static_cast<double>(box.high_m.x - box.low_m.x) / 2;
+      const double out_z_m =
+          std::abs(row - kHeight_px / 2) / px_per_m - static_cast<double>(box.high_m.z - box.low_m.z) / 2;
       const double out_m = std::max(out_x_m, out_z_m);
       if (std::abs(out_m) < 0.3 || out_m > 2.0) continue;
       const std::size_t side = out_m > 0.0 ? 1 : 0;
