@@ -13,6 +13,15 @@ import tempfile
 VALIDATOR = "glslangValidator"
 
 
+def expanded(file):
+    """A shader's text with its parts, as viewer/gl/CMakeLists.txt puts it together."""
+    text = file.read_text()
+    for line, part in enumerate(("sward", "blade"), start=2):
+        included = (file.parent / f"{part}.part.glsl").read_text()
+        text = text.replace(f'#include "{part}.part.glsl"\n', f"#line {line}0001\n{included}#line {line}\n")
+    return text
+
+
 def constant_of(file):
     """kGrassVert of grass.vert.glsl, as viewer/gl/CMakeLists.txt has it."""
     return "k" + "".join(word.capitalize() for word in re.split(r"[._]", file.name.removesuffix(".glsl")))
@@ -41,11 +50,13 @@ def check(folder):
     complaints, parts = [], {}
     with tempfile.TemporaryDirectory() as made:
         for file in sorted(shader_folder.glob("*.*.glsl")):
+            if file.name.endswith(".part.glsl"):
+                continue
             whole = pathlib.Path(made) / file.name.removesuffix(".glsl")
-            whole.write_text(f"#version 330 core\n#line 10001\n{common}\n#line 1\n{file.read_text()}")
+            whole.write_text(f"#version 330 core\n#line 10001\n{common}\n#line 1\n{expanded(file)}")
             parts[constant_of(file)] = whole
             if said := complaints_of([whole]):
-                complaints.append(f"{file} (10001 is line 1 of common.glsl):\n{said}")
+                complaints.append(f"{file} (10001 is line 1 of common.glsl, 20001 and 30001 of the parts):\n{said}")
         linked = set()
         for name, vertex, fragment in programs_in(sorted((folder / "viewer").rglob("*.cpp"))):
             linked |= {vertex, fragment}

@@ -21,8 +21,6 @@ extern const std::string_view kFlameVert;
 extern const std::string_view kFlameFrag;
 extern const std::string_view kGlowVert;
 extern const std::string_view kGlowFrag;
-extern const std::string_view kSwardPart;  ///< in front of those that draw grass, and of the ground
-extern const std::string_view kBladePart;  ///< behind it, in front of those that draw blades
 extern const std::string_view kSwardVert;
 extern const std::string_view kGrassVert;
 extern const std::string_view kGroundVert;

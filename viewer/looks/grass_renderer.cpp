@@ -1,7 +1,6 @@
 #include "viewer/looks/grass_renderer.hpp"
 
 #include <algorithm>
-#include <string>
 
 #include "engine/pose/pose_arrays.hpp"
 #include "viewer/gl/shaders.hpp"
@@ -21,9 +20,7 @@ GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands, float drawn_at
       tiles_(strands, thinning_),
       pose_{std::vector<float>(tiles_.skeleton().padded_count()), std::vector<float>(tiles_.skeleton().padded_count())},
       joints_(tiles_.skeleton()),
-      program_(gl::link_program(
-          "grass", std::string(gl::shaders::kSwardPart).append(gl::shaders::kBladePart).append(gl::shaders::kGrassVert),
-          gl::shaders::kShadeFrag)),
+      program_(gl::link_program("grass", gl::shaders::kGrassVert, gl::shaders::kShadeFrag)),
       triangles_(tiles_.levels().size()) {
   GroundMaps::set_samplers(program_);
   gl::set_sampler(program_, "joints", 0);

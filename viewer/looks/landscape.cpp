@@ -1,7 +1,5 @@
 #include "viewer/looks/landscape.hpp"
 
-#include <string>
-
 #include "viewer/gl/noise_texture.hpp"
 #include "viewer/gl/screen_door.hpp"
 #include "viewer/gl/shaders.hpp"
@@ -22,8 +20,7 @@ constexpr float kSunInShadow = 0.22F;  // leaves, threads and the air let some t
 
 Landscape::Landscape()
     : noise_(gl::make_noise_texture()),
-      ground_(gl::link_program("ground", gl::shaders::kGroundVert,
-                               std::string(gl::shaders::kSwardPart).append(gl::shaders::kGroundFrag))),
+      ground_(gl::link_program("ground", gl::shaders::kGroundVert, gl::shaders::kGroundFrag)),
       hills_(gl::link_program("hills", gl::shaders::kHillsVert, gl::shaders::kShadeFrag)),
       sky_(gl::link_program("sky", gl::shaders::kSkyVert, gl::shaders::kSkyFrag)) {
   GroundMaps::set_samplers(ground_);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "viewer/gl/shaders.hpp"
 #include "viewer/looks/ground_maps.hpp"
@@ -44,9 +43,7 @@ Sward::Sward(Kind kind, const meshes::Stand& stand, float drawn_at_1m_per_m2)
       blades_per_tile_(blades_a_tile(thinning_of(kind, stand, drawn_at_1m_per_m2))),
       thinning_(thinning_of(kind, stand, drawn_at_1m_per_m2)),
       tiles_(blades_per_tile_, thinning_, kind == Kind::kTall ? kTallReach_m : kLawnReach_m),
-      program_(gl::link_program(
-          "sward", std::string(gl::shaders::kSwardPart).append(gl::shaders::kBladePart).append(gl::shaders::kSwardVert),
-          gl::shaders::kShadeFrag)) {
+      program_(gl::link_program("sward", gl::shaders::kSwardVert, gl::shaders::kShadeFrag)) {
   GroundMaps::set_samplers(program_);
   gl::set_sampler(program_, "blades", kBladeUnit);
   gl::set_sampler(program_, "tiles", kTileUnit);

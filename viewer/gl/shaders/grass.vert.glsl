@@ -1,3 +1,5 @@
+#include "sward.part.glsl"
+#include "blade.part.glsl"
 // A streamed blade: a ribbon along a strand's joints, two vertices a joint and one at the tip. Vertex v of a blade is corner
 // v % (2 rings + 1); slots of drawn blades come in blocks of 16, as their joints do.
 uniform samplerBuffer blades;   // two texels a blade: root, width; bearing of the flat side, chance, rank, length: metres, radians

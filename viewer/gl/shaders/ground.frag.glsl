@@ -1,3 +1,4 @@
+#include "sward.part.glsl"
 // The ground between the blades near by, and the grass itself where blades would be smaller than pixels.
 uniform float sunlight;  // 1, and less in a hard shadow
 in vec3 place_m;

@@ -1,3 +1,5 @@
+#include "sward.part.glsl"
+#include "blade.part.glsl"
 // A blade of the sward around the streamed ones. Tiles repeat the same blades, each tile turned in its own way; how they
 // bend, how tall they are and what colour they have depends on where they stand.
 uniform samplerBuffer blades;   // two texels a blade of the tile: SwardBlade
