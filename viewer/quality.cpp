@@ -9,8 +9,8 @@ look::Quality quality_for(look::Quality wanted, bool is_software_renderer) {
 
 std::string quality_text(look::Quality quality) {
   std::string text = "quality " + std::string(name_of(quality));
-  if (quality == look::Quality::kLow) text += ": hard shadows, on the ground only";
-  if (quality == look::Quality::kMedium) text += ": coarser shadows";
+  if (quality == look::Quality::kLow) text += ": hard shadows, on the ground only; fewer, wider blades";
+  if (quality == look::Quality::kMedium) text += ": coarser shadows, fewer blades";
   return text;
 }
 

@@ -10,7 +10,7 @@ namespace yuragi::viewer {
 /// high with it.
 look::Quality quality_for(look::Quality wanted, bool is_software_renderer);
 
-/// For a person: "quality low: hard shadows, on the ground only". Says what is left out.
+/// For a person: "quality low: hard shadows, on the ground only; ...". Says what is left out.
 std::string quality_text(look::Quality quality);
 
 }  // namespace yuragi::viewer

@@ -13,7 +13,7 @@ TEST(Quality, IsLowByItselfOnlyWithoutGraphicsHardware) {
 
 TEST(Quality, SaysWhatItLeavesOut) {
   EXPECT_EQ(quality_text(look::Quality::kHigh), "quality high");
-  EXPECT_EQ(quality_text(look::Quality::kLow), "quality low: hard shadows, on the ground only");
+  EXPECT_EQ(quality_text(look::Quality::kLow), "quality low: hard shadows, on the ground only; fewer, wider blades");
 }
 
 }  // namespace

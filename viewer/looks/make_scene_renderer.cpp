@@ -3,10 +3,10 @@
 #include "viewer/looks/fur_renderer.hpp"
 #include "viewer/looks/grass_renderer.hpp"
 #include "viewer/looks/scene_renderer.hpp"
+#include "viewer/looks/sward.hpp"
 #include "viewer/looks/tree_renderer.hpp"
 #include "viewer/looks/water_renderer.hpp"
 #include "viewer/meshes/ground_map.hpp"
-#include "viewer/meshes/sward.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
@@ -20,27 +20,29 @@ class GroundNodes : public SceneRenderer {
   bool is_ground() const override { return true; }
 };
 
-std::unique_ptr<SceneRenderer> renderer_of(const pose::StrandSkeleton& strands, const wire::SceneModel& scene) {
+std::unique_ptr<SceneRenderer> renderer_of(const pose::StrandSkeleton& strands, const wire::SceneModel& scene,
+                                           look::Quality quality) {
   if (scene.kind == "fur") return std::make_unique<FurRenderer>(strands);
   if (meshes::bend_grid_of(strands).columns > 0) return std::make_unique<GroundNodes>();
-  return std::make_unique<GrassRenderer>(
-      strands, gl::is_software_renderer() ? meshes::kFewBladesAt1m_per_m2 : meshes::kManyBladesAt1m_per_m2);
+  return std::make_unique<GrassRenderer>(strands, blades_at_1m_per_m2(quality));
 }
-std::unique_ptr<SceneRenderer> renderer_of(const pose::GridSkeleton& cloth, const wire::SceneModel& scene) {
+std::unique_ptr<SceneRenderer> renderer_of(const pose::GridSkeleton& cloth, const wire::SceneModel& scene,
+                                           look::Quality) {
   return std::make_unique<ClothRenderer>(cloth, scene.kind);
 }
-std::unique_ptr<SceneRenderer> renderer_of(const pose::TreeSkeleton& tree, const wire::SceneModel&) {
+std::unique_ptr<SceneRenderer> renderer_of(const pose::TreeSkeleton& tree, const wire::SceneModel&, look::Quality) {
   return std::make_unique<TreeRenderer>(tree);
 }
-std::unique_ptr<SceneRenderer> renderer_of(const pose::SurfaceSkeleton& surface, const wire::SceneModel&) {
+std::unique_ptr<SceneRenderer> renderer_of(const pose::SurfaceSkeleton& surface, const wire::SceneModel&,
+                                           look::Quality) {
   if (surface.ramp_rgba.empty()) return std::make_unique<WaterRenderer>(surface);
   return std::make_unique<FlameRenderer>(surface);
 }
 
 }  // namespace
 
-std::unique_ptr<SceneRenderer> make_scene_renderer(const wire::SceneModel& scene) {
-  return std::visit([&](const auto& kind) { return renderer_of(kind, scene); }, scene.skeleton);
+std::unique_ptr<SceneRenderer> make_scene_renderer(const wire::SceneModel& scene, look::Quality quality) {
+  return std::visit([&](const auto& kind) { return renderer_of(kind, scene, quality); }, scene.skeleton);
 }
 
 }  // namespace yuragi::viewer::looks

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "engine/look/look.hpp"
 #include "engine/wire/wire.hpp"
 #include "viewer/meshes/view.hpp"
 
@@ -41,6 +42,6 @@ class SceneRenderer {
 
 /// The renderer for the scene's kind of skeleton, and for the scene's own kind where there are several. `scene` must
 /// outlive it.
-std::unique_ptr<SceneRenderer> make_scene_renderer(const wire::SceneModel& scene);
+std::unique_ptr<SceneRenderer> make_scene_renderer(const wire::SceneModel& scene, look::Quality quality);
 
 }  // namespace yuragi::viewer::looks

@@ -15,10 +15,6 @@ constexpr int kMediumTexels = 1024;
 constexpr int kHighTexels = 2048;
 constexpr float kLowestSun = 0.02F;  // the sine of its height: below it shadows have no end
 
-float blades_at_1m_per_m2() {
-  return gl::is_software_renderer() ? meshes::kFewBladesAt1m_per_m2 : meshes::kManyBladesAt1m_per_m2;
-}
-
 bool is_alike(const meshes::Stand& a, const meshes::Stand& b) {
   return a.length_m == b.length_m && a.blades_per_m2 == b.blades_per_m2;
 }
@@ -40,7 +36,7 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
       auto view = std::make_unique<SceneView>();
       view->scene = std::move(scene);
       view->bounds = meshes::bounds_of(view->scene.skeleton);
-      view->renderer = make_scene_renderer(view->scene);
+      view->renderer = make_scene_renderer(view->scene, quality_);
       if (const auto* strands = std::get_if<pose::StrandSkeleton>(&view->scene.skeleton)) {
         view->grid = meshes::bend_grid_of(*strands);
         if (view->renderer->is_field() && !view->renderer->is_ground()) view->stand = meshes::stand_of(*strands);
@@ -159,7 +155,7 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
 void Stage::draw_sward(const meshes::View& view) {
   if (tall_ > 0.0F) {
     if (!meadow_ || !meadow_stand_ || !is_alike(*meadow_stand_, stand_)) {
-      meadow_.emplace(Sward::Kind::kTall, stand_, blades_at_1m_per_m2());
+      meadow_.emplace(Sward::Kind::kTall, stand_, blades_at_1m_per_m2(quality_));
       meadow_stand_ = stand_;
     }
     door_.open(tall_, tall_door_);
@@ -167,15 +163,19 @@ void Stage::draw_sward(const meshes::View& view) {
     door_.close();
   }
   if (tall_ < 1.0F) {
-    if (!lawn_) lawn_.emplace(Sward::Kind::kLawn, stand_, blades_at_1m_per_m2());
+    if (!lawn_) lawn_.emplace(Sward::Kind::kLawn, stand_, blades_at_1m_per_m2(quality_));
     lawn_->draw(view);
   }
 }
 
 void Stage::set_quality(look::Quality quality) {
+  if (quality == quality_) return;
+  quality_ = quality;
+  for (const auto& view : views_) view->renderer = make_scene_renderer(view->scene, quality_);
+  meadow_.reset();
+  lawn_.reset();
   const int texels =
       quality == look::Quality::kLow ? 0 : (quality == look::Quality::kMedium ? kMediumTexels : kHighTexels);
-  if (texels == (shadow_map_ ? shadow_map_->texels() : 0)) return;
   shadow_map_.reset();
   if (texels > 0) shadow_map_.emplace(texels);
 }

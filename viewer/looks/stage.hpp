@@ -88,6 +88,7 @@ class Stage {
   std::optional<meshes::Stand> meadow_stand_;
   gl::ScreenDoor door_;
   gl::ViewBuffer view_buffer_;
+  look::Quality quality_ = look::Quality::kLow;
   std::optional<gl::ShadowMap> shadow_map_;  // nothing: hard shadows
   gl::PassClock* clock_ = nullptr;
 };

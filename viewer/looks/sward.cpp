@@ -37,6 +37,11 @@ std::size_t blades_a_tile(const meshes::Thinning& thinning) {
 
 }  // namespace
 
+float blades_at_1m_per_m2(look::Quality quality) {
+  if (quality == look::Quality::kLow) return meshes::kFewBladesAt1m_per_m2;
+  return quality == look::Quality::kMedium ? meshes::kSomeBladesAt1m_per_m2 : meshes::kManyBladesAt1m_per_m2;
+}
+
 Sward::Sward(Kind kind, const meshes::Stand& stand, float drawn_at_1m_per_m2)
     : kind_(kind),
       height_m_(kind == Kind::kTall ? kHighest * stand.length_m : kLawnHeight_m),

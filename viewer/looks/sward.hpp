@@ -3,11 +3,15 @@
 #include <array>
 #include <vector>
 
+#include "engine/look/look.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/meshes/ground_map.hpp"
 #include "viewer/meshes/sward.hpp"
 
 namespace yuragi::viewer::looks {
+
+/// How many blades a quality draws, streamed ones and others alike.
+float blades_at_1m_per_m2(look::Quality quality);
 
 /// Blades of grass around the eye as far as they can be told apart, drawn from static buffers: tall grass around a
 /// stand of streamed blades, as dense, or a lawn. The View and the GroundMaps are bound. Needs a current context.

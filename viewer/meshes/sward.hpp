@@ -23,9 +23,9 @@ struct Thinning {
   float share(float distance_m) const;
 };
 
-/// How many blades are drawn: on graphics hardware, and by a software renderer, which leaves out blades that are
-/// farther than some metres from the eye and draws the others wider.
+/// How many blades are drawn. The fewer, the nearer to the eye blades are left out and the others drawn wider.
 inline constexpr float kManyBladesAt1m_per_m2 = 24'000.0F;
+inline constexpr float kSomeBladesAt1m_per_m2 = 8'000.0F;
 inline constexpr float kFewBladesAt1m_per_m2 = 3'500.0F;
 
 /// A blade of the tile that the sward is laid of, as the shader reads it.
