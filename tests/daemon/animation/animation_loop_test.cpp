@@ -84,7 +84,7 @@ TEST_F(AnimationLoopTest, MakesFrameAfterFrameThatShowTheNewestWind) {
     EXPECT_GT(frame.info.tick, previous.info.tick);
     EXPECT_GT(frame.info.time_s, previous.info.time_s);
     EXPECT_FLOAT_EQ(static_cast<float>(frame.info.wind.wind.u_m_s), 7.0F);
-    ASSERT_EQ(frame.poses.size(), 1U);
+    ASSERT_EQ(frame.poses.size(), 2U);  // a meadow, and the ground around it
     previous = std::move(frame);
   }
   const auto& pose = std::get<pose::StrandPose>(previous.poses[0]);
@@ -142,7 +142,7 @@ TEST_F(AnimationLoopTest, AChangeOfTheScenesAllocatesNothingOnItsThreadAndItsFra
   // The meadow is made anew, and there is another one: the frames become three times as large, and then twice.
   next.scenes.push_back(next.scenes[0]);
   next.scenes[0].placement.x_m = 3.0;
-  next.scenes[1].name = "second";
+  next.scenes.back().name = "second";
   auto change = make_scene_change(*exchange.present(), next, 0.1);
   const int before = other_threads_allocations.load();
   ASSERT_TRUE(exchange.begin(change));
@@ -160,7 +160,7 @@ TEST_F(AnimationLoopTest, AChangeOfTheScenesAllocatesNothingOnItsThreadAndItsFra
   }
   for (int count = 0; count < 10; ++count) next_frame();
   EXPECT_EQ(other_threads_allocations.load(), before);
-  EXPECT_EQ(scenes_of_lists, (std::vector<std::size_t>{3, 2}));
+  EXPECT_EQ(scenes_of_lists, (std::vector<std::size_t>{4, 3}));
   EXPECT_FALSE(exchange.is_changing());
 }
 
