@@ -49,7 +49,7 @@ std::optional<double> value_of(std::uint8_t type, ByteSpan bytes) {
       value = static_cast<std::int32_t>(little_endian_32(bytes, 0));
       break;
     case 0x16:
-      value = std::bit_cast<float>(little_endian_32(bytes, 0));
+      value = static_cast<double>(std::bit_cast<float>(little_endian_32(bytes, 0)));
       break;
     default:
       value = std::bit_cast<double>(little_endian_32(bytes, 0) |
