@@ -9,18 +9,16 @@
 //   "LPS 2 n" LF            ACK, n packets LOOP2          one each 2 to 2.5 s
 //   "LOOP n" LF             ACK, n packets LOOP           the same, of consoles with firmware before 1.90
 #include <array>
-#include <stdexcept>
-
-#include <fmt/format.h>
 
 #include "drivers/bus/byte_port_kinds.hpp"
-#include "drivers/bus/serial_ports.hpp"
 #include "drivers/davis/vantage_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/serial_or_tcp.hpp"
 
 namespace yuragi::drivers::davis {
 namespace {
 
+constexpr std::array kDavisBauds = {1200, 2400, 4800, 9600, 19200};
 constexpr std::array<std::string_view, 2> kDavisTransports = {"serial", "tcp"};
 constexpr std::array<std::string_view, 3> kDavisPackets = {"auto", "loop", "loop2"};
 
@@ -37,8 +35,8 @@ const std::array kDavisParameters = {
     Parameter{.name = "baud",
               .unit = "bit/s",
               .default_value = std::int64_t{19200},
-              .min = 1200,
-              .max = 19200,
+              .min = kDavisBauds.front(),
+              .max = kDavisBauds.back(),
               .help = "serial: as set in the console; 8 data bits, no parity, 1 stop bit"},
     Parameter{.name = "host",
               .unit = "",
@@ -62,20 +60,7 @@ const std::array kDavisParameters = {
 
 VantageSettings vantage_settings_of(const ParameterValues& values) {
   VantageSettings settings;
-  bus::BytePortAddress& address = settings.address;
-  address.baud = static_cast<int>(values.integer("baud"));
-  address.path = values.text("device");
-  address.host = values.text("host");
-  address.port = static_cast<std::uint16_t>(values.integer("port"));
-  if (values.text("transport") == "tcp") {
-    address.kind = bus::BytePortKind::kTcpClient;
-    if (address.host.empty()) throw std::runtime_error("host: is missing; transport tcp needs a server to connect to");
-  } else {
-    if (address.path.empty())
-      throw std::runtime_error("device: is missing; transport serial needs a port, such as /dev/ttyUSB0");
-    if (std::ranges::find(bus::kBytePortBauds, address.baud) == bus::kBytePortBauds.end())
-      throw std::runtime_error(fmt::format("baud: is {}; allowed: 1200, 2400, 4800, 9600, 19200", address.baud));
-  }
+  settings.address = sensor::serial_or_tcp_address(values, kDavisBauds);
   const std::string& packets = values.text("packets");
   settings.packets = packets == "loop"    ? VantagePackets::kLoop
                      : packets == "loop2" ? VantagePackets::kLoop2
@@ -90,17 +75,6 @@ std::unique_ptr<sensor::Sensor> open_davis(const ParameterValues& values) {
   return std::make_unique<VantageSensor>(settings, bus::make_byte_port(settings.address));
 }
 
-std::vector<sensor::FoundDevice> find_davis() {
-  std::vector<sensor::FoundDevice> found;
-  for (const bus::SerialPortInfo& port : bus::find_serial_ports()) {
-    found.push_back({.what = "serial port " + port.node,
-                     .settings = fmt::format("device = \"{}\"", port.name),
-                     .trouble = port.trouble,
-                     .remedy = port.remedy});
-  }
-  return found;
-}
-
 }  // namespace
 
 extern const sensor::DriverDescription kDavisDriver;
@@ -109,9 +83,10 @@ const sensor::DriverDescription kDavisDriver{
     .summary = "Davis Vantage Pro, Vantage Pro2 and Vantage Vue, by the data logger of their console",
     .parameters = kDavisParameters,
     .open = open_davis,
-    .find = find_davis,
-    .claims = [](const ParameterValues& values) {
-      return sensor::claims_of(bus::sole_device_of(vantage_settings_of(values).address));
-    }};
+    .find = [] { return sensor::find_behind_serial_ports(); },
+    .claims =
+        [](const ParameterValues& values) {
+          return sensor::claims_of(bus::sole_device_of(vantage_settings_of(values).address));
+        }};
 
 }  // namespace yuragi::drivers::davis

@@ -5,14 +5,11 @@
 //   request                      reply                          for
 //   2Fh, number, channels        2Fh, status, the channels      the wind and what else the station measures
 #include <array>
-#include <stdexcept>
-
-#include <fmt/format.h>
 
 #include "drivers/bus/byte_port_kinds.hpp"
-#include "drivers/bus/serial_ports.hpp"
 #include "drivers/lufft/umb_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/serial_or_tcp.hpp"
 
 namespace yuragi::drivers::lufft {
 namespace {
@@ -74,42 +71,13 @@ const std::array kUmbParameters = {
 
 UmbSettings umb_settings_of(const ParameterValues& values) {
   UmbSettings settings;
-  bus::BytePortAddress& address = settings.address;
-  address.baud = static_cast<int>(values.integer("baud"));
-  address.path = values.text("device");
-  address.host = values.text("host");
-  address.port = static_cast<std::uint16_t>(values.integer("port"));
-  if (values.text("transport") == "tcp") {
-    address.kind = bus::BytePortKind::kTcpClient;
-    if (address.host.empty()) throw std::runtime_error("host: is missing; transport tcp needs a server to connect to");
-  } else {
-    if (address.path.empty())
-      throw std::runtime_error("device: is missing; transport serial needs a port, such as /dev/ttyUSB0");
-    if (std::ranges::find(bus::kBytePortBauds, address.baud) == bus::kBytePortBauds.end())
-      throw std::runtime_error(
-          fmt::format("baud: is {}; allowed: {}", address.baud, fmt::join(bus::kBytePortBauds, ", ")));
-  }
+  settings.address = sensor::serial_or_tcp_address(values);
   settings.device = decode::lufft::umb_address(static_cast<unsigned>(values.integer("class")),
                                                static_cast<std::uint8_t>(values.integer("id")));
   settings.poll_interval = from_seconds(values.number("poll_interval"));
   settings.response_timeout = from_seconds(values.number("response_timeout"));
   return settings;
 }
-
-namespace {
-
-std::vector<sensor::FoundDevice> find_umb() {
-  std::vector<sensor::FoundDevice> found;
-  for (const bus::SerialPortInfo& port : bus::find_serial_ports()) {
-    found.push_back({.what = "serial port " + port.node,
-                     .settings = fmt::format("device = \"{}\"", port.name),
-                     .trouble = port.trouble,
-                     .remedy = port.remedy});
-  }
-  return found;
-}
-
-}  // namespace
 
 extern const sensor::DriverDescription kUmbDriver;
 const sensor::DriverDescription kUmbDriver{
@@ -120,7 +88,7 @@ const sensor::DriverDescription kUmbDriver{
       const UmbSettings settings = umb_settings_of(values);
       return std::make_unique<UmbSensor>(settings, bus::make_byte_port(settings.address));
     },
-    .find = find_umb,
+    .find = [] { return sensor::find_behind_serial_ports(); },
     .claims =
         [](const ParameterValues& values) {
           return sensor::claims_of(bus::sole_device_of(umb_settings_of(values).address));

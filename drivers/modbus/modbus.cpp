@@ -9,6 +9,7 @@
 #include "drivers/bus/serial_ports.hpp"
 #include "drivers/modbus/modbus_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/serial_or_tcp.hpp"
 
 namespace yuragi::drivers::modbus {
 namespace {
@@ -208,14 +209,7 @@ std::vector<sensor::KnownDevice> known_modbus_devices() {
 
 /// Any serial port may have a Modbus line behind it: `yuragi sensors probe modbus` finds out.
 std::vector<sensor::FoundDevice> find_modbus() {
-  std::vector<sensor::FoundDevice> found;
-  for (const bus::SerialPortInfo& port : bus::find_serial_ports()) {
-    found.push_back({.what = "serial port " + port.node,
-                     .settings = "transport = \"rtu\"\ndevice = \"" + port.name + "\"",
-                     .trouble = port.trouble,
-                     .remedy = port.remedy});
-  }
-  return found;
+  return sensor::find_behind_serial_ports("transport = \"rtu\"\n");
 }
 
 }  // namespace

@@ -1,12 +1,9 @@
 #include "drivers/text/byte_port_parameters.hpp"
 
-#include <algorithm>
 #include <array>
 #include <stdexcept>
 
-#include <fmt/format.h>
-
-#include "drivers/bus/serial_ports.hpp"
+#include "drivers/sensor/serial_or_tcp.hpp"
 
 namespace yuragi::drivers::text {
 namespace {
@@ -100,6 +97,29 @@ const std::vector<Parameter>& parameters_of_every_port() {
   return kParameters;
 }
 
+/// Of a transport that is neither a serial line nor a server that has one.
+bus::BytePortAddress address_without_a_line(const ParameterValues& values, std::string_view transport) {
+  bus::BytePortAddress address;
+  address.host = values.text("host");
+  address.port = static_cast<std::uint16_t>(values.integer("port"));
+  if (transport == "websocket") {
+    address.kind = bus::BytePortKind::kWebSocket;
+    if (address.host.empty())
+      throw std::runtime_error("host: is missing; transport websocket needs a server to connect to");
+  } else if (transport == "udp") {
+    address.kind = bus::BytePortKind::kUdp;
+  } else if (transport == "can") {
+    address.kind = bus::BytePortKind::kCan;
+    address.path = values.text("interface");
+    if (address.path.empty()) throw std::runtime_error("interface: is missing; transport can needs one, such as can0");
+  } else {
+    address.kind = bus::BytePortKind::kFile;
+    address.path = values.text("file");
+    if (address.path.empty()) throw std::runtime_error("file: is missing; transport file needs its path");
+  }
+  return address;
+}
+
 }  // namespace
 
 std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, double delay_after_open_s) {
@@ -117,45 +137,15 @@ std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, dou
 }
 
 bus::BytePortAddress byte_port_address_of(const ParameterValues& values) {
-  bus::BytePortAddress address;
   const std::string& transport = values.text("transport");
-  address.baud = static_cast<int>(values.integer("baud"));
+  bus::BytePortAddress address = transport == "serial" || transport == "tcp"
+                                     ? sensor::serial_or_tcp_address(values)
+                                     : address_without_a_line(values, transport);
   address.data_bits = static_cast<int>(values.integer("data_bits"));
   address.parity = values.text("parity") == "even" ? 'E' : values.text("parity") == "odd" ? 'O' : 'N';
   address.stop_bits = static_cast<int>(values.integer("stop_bits"));
-  address.host = values.text("host");
-  address.port = static_cast<std::uint16_t>(values.integer("port"));
   address.senders = values.text("sender");
   address.is_played = values.number("play_rate") > 0.0;
-
-  if (transport == "serial") {
-    address.kind = bus::BytePortKind::kSerial;
-    address.path = values.text("device");
-    if (address.path.empty()) {
-      throw std::runtime_error("device: is missing; transport serial needs a port, such as /dev/ttyUSB0");
-    }
-    if (std::ranges::find(bus::kBytePortBauds, address.baud) == bus::kBytePortBauds.end()) {
-      throw std::runtime_error(
-          fmt::format("baud: is {}; allowed: {}", address.baud, fmt::join(bus::kBytePortBauds, ", ")));
-    }
-  } else if (transport == "tcp") {
-    address.kind = bus::BytePortKind::kTcpClient;
-    if (address.host.empty()) throw std::runtime_error("host: is missing; transport tcp needs a server to connect to");
-  } else if (transport == "websocket") {
-    address.kind = bus::BytePortKind::kWebSocket;
-    if (address.host.empty())
-      throw std::runtime_error("host: is missing; transport websocket needs a server to connect to");
-  } else if (transport == "udp") {
-    address.kind = bus::BytePortKind::kUdp;
-  } else if (transport == "can") {
-    address.kind = bus::BytePortKind::kCan;
-    address.path = values.text("interface");
-    if (address.path.empty()) throw std::runtime_error("interface: is missing; transport can needs one, such as can0");
-  } else {
-    address.kind = bus::BytePortKind::kFile;
-    address.path = values.text("file");
-    if (address.path.empty()) throw std::runtime_error("file: is missing; transport file needs its path");
-  }
 
   const bool can_be_polled =
       address.kind == bus::BytePortKind::kSerial || address.kind == bus::BytePortKind::kTcpClient;
@@ -167,17 +157,6 @@ bus::BytePortAddress byte_port_address_of(const ParameterValues& values) {
 
 std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values) {
   return sensor::claims_of(bus::sole_device_of(byte_port_address_of(values)));
-}
-
-std::vector<sensor::FoundDevice> find_behind_serial_ports(const std::string& settings) {
-  std::vector<sensor::FoundDevice> found;
-  for (const bus::SerialPortInfo& port : bus::find_serial_ports()) {
-    found.push_back({.what = "serial port " + port.node,
-                     .settings = fmt::format("transport = \"serial\"\ndevice = \"{}\"\n{}", port.name, settings),
-                     .trouble = port.trouble,
-                     .remedy = port.remedy});
-  }
-  return found;
 }
 
 }  // namespace yuragi::drivers::text

@@ -4,7 +4,6 @@
 
 #include "drivers/bus/byte_port.hpp"
 #include "drivers/sensor/device_claim.hpp"
-#include "drivers/sensor/found_device.hpp"
 #include "engine/base/parameter.hpp"
 
 namespace yuragi::drivers::text {
@@ -19,9 +18,5 @@ bus::BytePortAddress byte_port_address_of(const ParameterValues& values);
 
 /// What a sensor of such values has to itself: its serial port, or its UDP port.
 std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values);
-
-/// The serial ports that are plugged in. Whether an anemometer is behind one, and which, is not known before it is
-/// opened; `settings` are what else stands in its [[sensor]] table.
-std::vector<sensor::FoundDevice> find_behind_serial_ports(const std::string& settings);
 
 }  // namespace yuragi::drivers::text

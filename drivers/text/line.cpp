@@ -11,6 +11,7 @@
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/decode/json_pointer.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/serial_or_tcp.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/line_sensor.hpp"
@@ -183,7 +184,11 @@ const sensor::DriverDescription kLineDriver{
       const LineSensorSettings settings = line_sensor_settings_of(values);
       return std::make_unique<LineSensor>(settings, bus::make_byte_port(settings.text.address));
     },
-    .find = [] { return find_behind_serial_ports("baud = 9600  # as Serial.begin() of the sketch says"); },
+    .find =
+        [] {
+          return sensor::find_behind_serial_ports("transport = \"serial\"\n",
+                                                  "\nbaud = 9600  # as Serial.begin() of the sketch says");
+        },
     .claims = byte_port_claims};
 
 }  // namespace yuragi::drivers::text

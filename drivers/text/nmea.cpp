@@ -16,6 +16,7 @@
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/decode/text/wxt.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "drivers/sensor/serial_or_tcp.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/nmea_sensor.hpp"
 
@@ -174,7 +175,11 @@ const sensor::DriverDescription kNmeaDriver{
       const NmeaSensorSettings settings = nmea_sensor_settings_of(values);
       return std::make_unique<NmeaSensor>(settings, bus::make_byte_port(settings.text.address));
     },
-    .find = [] { return find_behind_serial_ports("baud = 4800  # or 9600, 19200: as the anemometer is set"); },
+    .find =
+        [] {
+          return sensor::find_behind_serial_ports("transport = \"serial\"\n",
+                                                  "\nbaud = 4800  # or 9600, 19200: as the anemometer is set");
+        },
     .claims = byte_port_claims};
 
 }  // namespace yuragi::drivers::text

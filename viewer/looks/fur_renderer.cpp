@@ -34,7 +34,7 @@ void set_body(const gl::GlProgram& program, const pose::StrandSkeleton& strands)
 }  // namespace
 
 FurRenderer::FurRenderer(const pose::StrandSkeleton& strands)
-    : ribbons_(strands, meshes::BladeStyle::kFur),
+    : ribbons_(strands),
       hair_(gl::link_program("hair", gl::shaders::kHairVert, gl::shaders::kShadeFrag)),
       undercoat_(gl::link_program("undercoat", gl::shaders::kUndercoatVert, gl::shaders::kShadeFrag)) {
   gl::set_sampler(hair_, "joints", 0);

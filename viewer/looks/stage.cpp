@@ -9,7 +9,6 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-constexpr meshes::Bounds kNoField{glm::vec3(1e6F), glm::vec3(-1e6F)};
 constexpr meshes::Bounds kPartOfGround{glm::vec3(-4.0F, 0.0F, -4.0F), glm::vec3(4.0F, 0.8F, 4.0F)};
 constexpr int kMediumTexels = 1024;
 constexpr int kHighTexels = 2048;
@@ -91,13 +90,6 @@ std::size_t Stage::node_count() const {
 bool Stage::is_seen(const stream::PoseMoment& moment, std::size_t scene) const {
   return is_chosen(scene) && scene < moment.poses.size() && scene < moment.opacities.size() &&
          moment.opacities[scene] > 0.0F && pose::fits(moment.poses[scene], scenes_[scene]->skeleton);
-}
-
-meshes::Bounds Stage::field(const stream::PoseMoment& moment) const {
-  const auto grows = [&](std::size_t scene) {
-    return is_seen(moment, scene) && views_[scene]->stand && moment.opacities[scene] > 0.5F;
-  };
-  return around(grows).value_or(kNoField);
 }
 
 /// What stands on the ground, and how its grass is bent.
@@ -207,7 +199,7 @@ void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_s
 }
 
 void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target) {
-  meshes::View view = meshes::view_of(camera, target.width_px(), target.height_px(), field(moment));
+  meshes::View view = meshes::view_of(camera, target.width_px(), target.height_px());
   if (clock_ != nullptr) clock_->begin();
   const glm::vec3 to_sun(light_.to_sun);
   const bool has_shadows = to_sun.y > kLowestSun;

@@ -67,7 +67,6 @@ class Stage {
   std::optional<meshes::Bounds> around(IsChosen&& is_chosen) const;
   bool is_seen(const stream::PoseMoment& moment, std::size_t scene) const;
   void draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view);
-  meshes::Bounds field(const stream::PoseMoment& moment) const;
   void mark_pass(std::string_view name) {
     if (clock_ != nullptr) clock_->mark(name);
   }

@@ -22,8 +22,8 @@ void describe_blade(const gl::GlVertexArray& array, const gl::GlBuffer& buffer) 
 
 }  // namespace
 
-StrandRibbons::StrandRibbons(const pose::StrandSkeleton& strands, meshes::BladeStyle style)
-    : strands_(&strands), sorter_(strands, style), joints_(strands) {
+StrandRibbons::StrandRibbons(const pose::StrandSkeleton& strands)
+    : strands_(&strands), sorter_(strands), joints_(strands) {
   describe_blade(blade_array_, blade_buffer_);
   glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // creates the buffer, even if no pose is ever taken
 }

@@ -15,7 +15,7 @@ namespace yuragi::viewer::looks {
 class StrandRibbons {
  public:
   /// `strands` must outlive this.
-  StrandRibbons(const pose::StrandSkeleton& strands, meshes::BladeStyle style);
+  explicit StrandRibbons(const pose::StrandSkeleton& strands);
 
   /// Computes and uploads the joints of this pose.
   void move_to(const pose::StrandPose& pose);

@@ -23,15 +23,6 @@ float patch(float x_m, float z_m) {
          0.2F * std::sin(3.1F * x_m + 1.1F);
 }
 
-/// From a young blue-green over fresh green to straw.
-glm::vec3 tint_at(float dryness) {
-  const glm::vec3 lush(0.050F, 0.120F, 0.034F);
-  const glm::vec3 fresh(0.120F, 0.190F, 0.040F);
-  const glm::vec3 straw(0.330F, 0.260F, 0.105F);
-  const float d = std::clamp(dryness, 0.0F, 1.0F);
-  return d < 0.6F ? glm::mix(lush, fresh, d / 0.6F) : glm::mix(fresh, straw, (d - 0.6F) / 0.4F);
-}
-
 /// A fox's coat, from dark russet to straw.
 glm::vec3 coat_at(float paleness) {
   const glm::vec3 dark(0.110F, 0.042F, 0.016F);
@@ -43,7 +34,7 @@ glm::vec3 coat_at(float paleness) {
 
 }  // namespace
 
-std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton, BladeStyle style) {
+std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton) {
   const Bounds bounds = bounds_of(skeleton);
   const glm::vec3 size_m = bounds.high_m - bounds.low_m;
   const float spacing_m =
@@ -67,15 +58,13 @@ std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton, BladeStyle st
     const auto spread = static_cast<float>(third - 0.5);
     const float light = static_cast<float>(0.8 + 0.4 * fourth);
     const glm::vec3 tint =
-        light * (style == BladeStyle::kFur
-                     ? coat_at(0.5F + 0.16F * patch(9.0F * blade.root_m[0], 9.0F * blade.root_m[2]) + 0.3F * spread)
-                     : tint_at(0.47F + 0.22F * patch(blade.root_m[0], blade.root_m[2]) + 0.42F * spread));
+        light * coat_at(0.5F + 0.16F * patch(9.0F * blade.root_m[0], 9.0F * blade.root_m[2]) + 0.3F * spread);
     blade.tint = {tint.r, tint.g, tint.b};
   }
   return blades;
 }
 
-BladeSorter::BladeSorter(const pose::StrandSkeleton& skeleton, BladeStyle style) : blades_(blades_of(skeleton, style)) {
+BladeSorter::BladeSorter(const pose::StrandSkeleton& skeleton) : blades_(blades_of(skeleton)) {
   const std::size_t links = skeleton.links_per_strand;
   for (std::size_t i = 0; i < blades_.size(); ++i) {
     length_m_.push_back(skeleton.link_length_m[i] * static_cast<float>(links));

@@ -13,7 +13,7 @@
 
 namespace yuragi::viewer::meshes {
 
-/// An instance for a strand, in the layout that the grass shader reads.
+/// An instance for a strand, in the layout that the shaders of hair read.
 struct Blade {
   std::array<float, 3> root_m{};
   float width_m = 0.0F;
@@ -22,12 +22,9 @@ struct Blade {
   std::uint32_t strand = 0;
 };
 
-/// What the strands are drawn as.
-enum class BladeStyle : std::uint8_t { kGrass, kFur };
-
-/// A blade (or hair) for each strand: wide enough for the strands' spacing to cover the ground, tinted by patches and
-/// at random. The same skeleton always gives the same blades.
-std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
+/// A blade (or hair) for each strand: wide enough for the strands' spacing to cover the ground, tinted as a coat is, by
+/// patches and at random (grass has its colour from its shader). The same skeleton always gives the same blades.
+std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton);
 
 /// Blades of one level of detail.
 struct DetailLevel {
@@ -42,7 +39,7 @@ class BladeSorter {
   static constexpr float kRingPx = 22.0F;      ///< a ring for each of so many pixels of a blade's height
   static constexpr std::size_t kMinRings = 3;  ///< where there are as many links
 
-  explicit BladeSorter(const pose::StrandSkeleton& skeleton, BladeStyle style = BladeStyle::kGrass);
+  explicit BladeSorter(const pose::StrandSkeleton& skeleton);
 
   void sort(const View& view);
 

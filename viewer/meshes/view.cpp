@@ -6,7 +6,7 @@
 #include <glm/trigonometric.hpp>
 
 namespace yuragi::viewer::meshes {
-View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bounds& field) {
+View view_of(const OrbitCamera& camera, int width_px, int height_px) {
   const float aspect = static_cast<float>(width_px) / static_cast<float>(height_px);
   const float tan_up = std::tan(glm::radians(static_cast<float>(OrbitCamera::kFieldOfView_deg) / 2.0F));
   const glm::mat4 to_camera = camera.view();
@@ -18,7 +18,6 @@ View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bound
   view.right = {to_camera[0][0], to_camera[1][0], to_camera[2][0], tan_up * aspect};
   view.up = {to_camera[0][1], to_camera[1][1], to_camera[2][1], tan_up};
   view.forward = {-to_camera[0][2], -to_camera[1][2], -to_camera[2][2], 0.0F};
-  view.field = {field.low_m.x, field.low_m.z, field.high_m.x, field.high_m.z};
   return view;
 }
 

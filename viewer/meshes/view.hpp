@@ -20,12 +20,11 @@ struct View {
   glm::vec4 forward{0.0F};
   glm::mat4 to_shadow{1.0F};  ///< to the shadow map: place and depth, 0 to 1
   glm::vec4 shadow{
-      0.0F};              ///< a texel of the map (0: there is none); how a penumbra grows, across and upright; depth, m
-  glm::vec4 field{0.0F};  ///< x and z of the low and of the high corner of the field that covers the ground
+      0.0F};  ///< a texel of the map (0: there is none); how a penumbra grows, across and upright; depth, m
 };
 
 /// For a picture of so many pixels.
-View view_of(const OrbitCamera& camera, int width_px, int height_px, const Bounds& field);
+View view_of(const OrbitCamera& camera, int width_px, int height_px);
 
 /// The planes of the picture's sides and of its near side: dot(plane, (x, y, z, 1)) is a point's distance inside,
 /// metres. Of the rows of the projection (Gribb and Hartmann 2001, "Fast extraction of viewing frustum planes from the

@@ -18,7 +18,7 @@ class BladesTest : public testing::Test {
   View view(const CameraPlace& place) const {
     OrbitCamera camera;
     camera.frame(place);
-    return view_of(camera, 1280, 720, bounds_of(strands_));
+    return view_of(camera, 1280, 720);
   }
 };
 
@@ -83,7 +83,7 @@ TEST(Blades, OfOneLinkAndOfNoStrandsAreNoTrouble) {
   BladeSorter none(empty);
   OrbitCamera camera;
   camera.frame(place_across(bounds_of(empty)));
-  none.sort(view_of(camera, 100, 100, bounds_of(empty)));
+  none.sort(view_of(camera, 100, 100));
   ASSERT_EQ(none.levels().size(), 1U);
   EXPECT_TRUE(none.levels()[0].blades.empty());
 }

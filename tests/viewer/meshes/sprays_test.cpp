@@ -24,7 +24,7 @@ class SpraysTest : public testing::Test {
   static View view_from(double distance_m) {
     OrbitCamera camera;
     camera.frame({{0.0, 2.0, 0.0}, 0.0, 5.0, distance_m});
-    return view_of(camera, 1280, 720, {});
+    return view_of(camera, 1280, 720);
   }
   static float area(const SprayMesh& mesh) {
     float sum = 0.0F;

@@ -17,7 +17,7 @@ constexpr Thinning kThinning{.blades_per_m2 = 200.0F, .drawn_at_1m_per_m2 = 4000
 View view_from(const CameraPlace& place) {
   OrbitCamera camera;
   camera.frame(place);
-  return view_of(camera, 1280, 720, {});
+  return view_of(camera, 1280, 720);
 }
 
 TEST(ThinningTest, ThinsOutWithTheDistanceAndNeverAtOnce) {

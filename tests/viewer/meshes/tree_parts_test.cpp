@@ -19,7 +19,7 @@ class TreePartsTest : public testing::Test {
   View view_from(double distance_m) const {
     OrbitCamera camera;
     camera.frame({{0.0, 2.0, 0.0}, 0.0, 5.0, distance_m});
-    return view_of(camera, 1280, 720, {});
+    return view_of(camera, 1280, 720);
   }
 };
 

@@ -108,13 +108,13 @@ void main() {
   float against = max(dot(from_eye, to_sun.xyz), 0.0);
   float on = max(sun, 0.0);
   float behind = max(-sun, 0.0);
-  vec3 lit = paint * kSunLight * 0.80 * on;
-  vec3 glow = paint * sqrt(max(paint, vec3(0.0))) * kSunLight * through * behind * (0.30 + 0.70 * behind) *
+  vec3 lit = paint * sun_light.rgb * 0.80 * on;
+  vec3 glow = paint * sqrt(max(paint, vec3(0.0))) * sun_light.rgb * through * behind * (0.30 + 0.70 * behind) *
               (0.42 + 0.40 * against * against);
-  vec3 light = lit + glow + paint * (soft_light(facing) * 0.85 + kSunLight * 0.035);
+  vec3 light = lit + glow + paint * (soft_light(facing) * 0.85 + sun_light.rgb * 0.035);
 
   // Threads reflect more at a grazing angle.
   float rim = 1.0 - abs(dot(facing, from_eye));
-  light += paint * (kSkyLight + 0.25 * kSunLight * max(sun, 0.0)) * 0.35 * rim * rim * rim;
+  light += paint * (sky_light.rgb + 0.25 * sun_light.rgb * max(sun, 0.0)) * 0.35 * rim * rim * rim;
   color = vec4(seen(light, place_m), 1.0);
 }

@@ -9,7 +9,6 @@ layout(std140) uniform View {
   vec4 forward;
   mat4 to_shadow;  // to the shadow map
   vec4 shadow;     // a texel of it, 0: there is none; how a penumbra grows in it, across and upright; its depth, metres
-  vec4 field;    // x, z of the low and the high corner of the field
 };
 
 // The light of the picture (viewer/light/light.hpp says more of each).
@@ -31,9 +30,6 @@ layout(std140) uniform Light {
   vec4 air;           // exposure; haze, per metre; where clouds begin; stars
   vec4 drift;         // of the clouds
 };
-
-#define kSunLight sun_light.rgb
-#define kSkyLight sky_light.rgb
 
 // The light of the air along a unit direction, without clouds and hills: another at the horizon than above, and a glow
 // around the sun.

@@ -32,10 +32,10 @@ void main() {
   // Shaded earth and stems.
   vec3 under = mix(vec3(0.040, 0.056, 0.016), vec3(0.100, 0.118, 0.034), 0.5 + tufts);
   vec3 lawn_floor = 0.55 * tint_of(patch_at, 0.4 + tufts);
-  vec3 below = mix(lawn_floor * (kSkyLight * 0.7 + kSunLight * (0.25 * lit)), under * (kSkyLight * 0.8 + kSunLight * (0.13 * lit)), tall);
+  vec3 below = mix(lawn_floor * (sky_light.rgb * 0.7 + sun_light.rgb * (0.25 * lit)), under * (sky_light.rgb * 0.8 + sun_light.rgb * (0.13 * lit)), tall);
 
   float far = mix(smoothstep(1.0, 14.0, distance_m), smoothstep(3.0, 32.0, distance_m), tall);
   vec3 light = mix(below, canopy, far);
-  light = mix(vec3(0.07, 0.05, 0.03) * (kSkyLight + kSunLight * (0.3 * lit)), light, smoothstep(0.0, 0.1, growth_here));
+  light = mix(vec3(0.07, 0.05, 0.03) * (sky_light.rgb + sun_light.rgb * (0.3 * lit)), light, smoothstep(0.0, 0.1, growth_here));
   color = vec4(dithered(seen(light, place_m), gl_FragCoord.xy), 1.0);
 }

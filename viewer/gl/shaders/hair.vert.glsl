@@ -43,10 +43,10 @@ void main() {
   shine *= shine;
   float deep = 0.25 + 0.75 * t;
   vec3 sum = albedo * soft_light(out_of_body) * 1.5 * deep;
-  sum += albedo * kSunLight * 0.75 * across_sun * lit * deep;
-  sum += kSunLight * vec3(0.10, 0.085, 0.065) * shine * shine * lit * t;
+  sum += albedo * sun_light.rgb * 0.75 * across_sun * lit * deep;
+  sum += sun_light.rgb * vec3(0.10, 0.085, 0.065) * shine * shine * lit * t;
   float rim = 1.0 - abs(dot(out_of_body, to_eye));
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
-  sum += albedo * kSunLight * 0.9 * rim * rim * against * against * t;
+  sum += albedo * sun_light.rgb * 0.9 * rim * rim * against * against * t;
   shade = seen(sum, place);
 }

@@ -8,7 +8,7 @@ void main() {
   vec3 from_eye = normalize(place_m - eye_m.xyz);
   vec3 facing = normalize(normal);
   facing *= dot(facing, from_eye) > 0.0 ? -1.0 : 1.0;
-  vec3 sun = kSunLight * mix(0.1, 1.0, sunlight_near(place_m + 0.06 * to_sun.xyz));
+  vec3 sun = sun_light.rgb * mix(0.1, 1.0, sunlight_near(place_m + 0.06 * to_sun.xyz));
   vec3 light = tint * (soft_light(facing) + 0.85 * sun * max(dot(facing, to_sun.xyz), 0.0));
   float shine = max(dot(facing, normalize(to_sun.xyz - from_eye)), 0.0);
   shine *= shine;
@@ -16,6 +16,6 @@ void main() {
   shine *= shine;
   shine *= shine;
   float rim = 1.0 - abs(dot(facing, from_eye));
-  light += (0.06 * shine * shine * sun + 0.10 * rim * rim * rim * kSkyLight) * (0.3 + tint);
+  light += (0.06 * shine * shine * sun + 0.10 * rim * rim * rim * sky_light.rgb) * (0.3 + tint);
   color = vec4(seen(light, place_m), 1.0);
 }

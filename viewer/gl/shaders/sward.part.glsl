@@ -70,13 +70,13 @@ const float kSunInShadow = 0.16;  // leaves, threads and the air let some throug
 // sine of its chord; between upright blades the dark ground shows, of blades that the wind has bent one sees the lit
 // sides, and neighbours bend alike.
 vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float lean, float sunlight) {
-  vec3 sun = kSunLight * sunlight;
+  vec3 sun = sun_light.rgb * sunlight;
   float facing = dot(normal, to_sun.xyz);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
   float deep = smoothstep(0.0, 1.0, t);  // 0 in the shade of its neighbours, 1 in the light
   vec3 albedo = mix(vec3(0.030, 0.060, 0.012), tint, 0.12 + 0.88 * t);
   vec3 through = vec3(1.20, 1.05, 0.40) * albedo * (0.30 + 1.5 * against * against);
-  vec3 sum = albedo * kSkyLight * (0.25 + 0.75 * deep) * (0.40 + 1.0 * max(normal.y, 0.0));
+  vec3 sum = albedo * sky_light.rgb * (0.25 + 0.75 * deep) * (0.40 + 1.0 * max(normal.y, 0.0));
   sum += sun * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
 
   // A sheen along it, which makes the wind's waves visible.

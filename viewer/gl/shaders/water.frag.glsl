@@ -24,7 +24,7 @@ void main() {
   // Light scattered in the water: more where a wave's slope faces the sun.
   float sun = max(dot(up_facing, to_sun.xyz), 0.0);
   float against = max(dot(from_eye, to_sun.xyz), 0.0);
-  vec3 within = vec3(0.022, 0.073, 0.057) * sky_light.rgb + vec3(0.003, 0.020, 0.026) * kSunLight * (sun + 0.7 * against * missing);
-  vec3 light = mix(within, sky, mirrored) + kSunLight * 1.3 * glint;
+  vec3 within = vec3(0.022, 0.073, 0.057) * sky_light.rgb + vec3(0.003, 0.020, 0.026) * sun_light.rgb * (sun + 0.7 * against * missing);
+  vec3 light = mix(within, sky, mirrored) + sun_light.rgb * 1.3 * glint;
   color = vec4(seen(light, place_m), 1.0);
 }
