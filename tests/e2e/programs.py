@@ -1,4 +1,5 @@
 """Runs Yuragi's programs for the end-to-end tests: each in a process of its own, on a free port, ended with the test."""
+import itertools
 import os
 import re
 import signal
@@ -9,14 +10,25 @@ import threading
 HANG_S = 60.0  # so long waits only who waits for something that hangs
 
 
+# Ports that the system does not give to whoever asks for any (32768 and above), which other tests do all the time; tests that
+# run at the same time begin at different ones.
+FIRST_PORT, PORTS, BETWEEN_PROCESSES = 12_000, 20_000, 37
+next_port = itertools.count(os.getpid() * BETWEEN_PROCESSES)
+
+
 def free_ports(kinds):
     """A port of 127.0.0.1 that nobody has for each of these socket types, all different."""
-    taken = [socket.socket(socket.AF_INET, kind) for kind in kinds]
-    for one in taken:
-        one.bind(("127.0.0.1", 0))
-    ports = [one.getsockname()[1] for one in taken]
-    for one in taken:
-        one.close()
+    ports = []
+    for kind in kinds:
+        while True:
+            port = FIRST_PORT + next(next_port) % PORTS
+            with socket.socket(socket.AF_INET, kind) as one:
+                try:
+                    one.bind(("127.0.0.1", port))
+                except OSError:
+                    continue  # somebody has it
+            ports.append(port)
+            break
     return ports
 
 
