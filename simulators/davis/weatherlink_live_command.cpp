@@ -1,10 +1,10 @@
-#include <cstdio>
 #include <memory>
 #include <string>
 
 #include "simulators/commands.hpp"
 #include "simulators/common_options.hpp"
 #include "simulators/davis/weatherlink_live.hpp"
+#include "simulators/text/text_options.hpp"
 
 namespace yuragi::simulators::davis {
 namespace {
@@ -23,8 +23,7 @@ struct LiveOptions {
     made.garbage_seed = common.synthetic.seed;
     WeatherLinkLive simulator(text::make_tcp_wire(http.host, http.port),
                               text::make_udp_wire(broadcasts.host, broadcasts.port), made, common.make_wind());
-    std::printf("%s\n", simulator.http().place().c_str());
-    std::fflush(stdout);
+    text::print_place(simulator.http());
     common.run_simulator(simulator);
   }
 };

@@ -4,20 +4,36 @@
 
 namespace yuragi::simulators::text {
 
-CLI::Option_group& TextOptions::add_to(CLI::App& command) {
+CLI::Option_group& SerialOrTcpOptions::add_to(CLI::App& command, const std::string& what_tcp_is) {
   CLI::Option_group* wire = command.add_option_group("wire", "how it is connected");
   CLI::Option* pty_flag = wire->add_flag("--pty", pty, "a serial port (a pseudo terminal)");
-  wire->add_option("--tcp", tcp, "a server at HOST:PORT; port 0 takes a free one");
-  wire->add_option("--udp", udp, "datagrams to HOST:PORT");
+  wire->add_option("--tcp", tcp, what_tcp_is + "; port 0 takes a free one");
   wire->require_option(1);
   command
       .add_option("--link", link, "with --pty: create this link to the port, which stays when the device is unplugged")
       ->needs(pty_flag);
+  return *wire;
+}
+
+std::unique_ptr<TextWire> SerialOrTcpOptions::make_wire() const {
+  if (pty) return make_pty_wire(link);
+  const Address address = address_option("--tcp", tcp);
+  return make_tcp_wire(address.host, address.port);
+}
+
+void print_place(const TextWire& wire) {
+  std::printf("%s\n", wire.place().c_str());
+  std::fflush(stdout);
+}
+
+CLI::Option_group& TextOptions::add_to(CLI::App& command) {
+  CLI::Option_group& wire = line.add_to(command);
+  wire.add_option("--udp", udp, "datagrams to HOST:PORT");
   command.add_option("--rate", rate_hz, "messages per second; 0: on request only")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   common.add_to(command);
-  return *wire;
+  return wire;
 }
 
 void TextOptions::add_websocket_to(CLI::App& command) {
@@ -28,7 +44,6 @@ void TextOptions::add_websocket_to(CLI::App& command) {
 }
 
 std::unique_ptr<TextWire> TextOptions::make_wire() const {
-  if (pty) return make_pty_wire(link);
   if (!can.empty()) return make_can_wire(can);
   if (!websocket_place.empty()) {
     const Address address = address_option("--websocket", websocket_place);
@@ -37,17 +52,16 @@ std::unique_ptr<TextWire> TextOptions::make_wire() const {
     options.port = address.port;
     return make_websocket_wire(options);
   }
-  const bool is_tcp = !tcp.empty();
-  const Address address = address_option(is_tcp ? "--tcp" : "--udp", is_tcp ? tcp : udp);
-  return is_tcp ? make_tcp_wire(address.host, address.port) : make_udp_wire(address.host, address.port);
+  if (udp.empty()) return line.make_wire();
+  const Address address = address_option("--udp", udp);
+  return make_udp_wire(address.host, address.port);
 }
 
 void TextOptions::run(std::unique_ptr<TextDevice> device) const {
   if (rate_hz <= 0.0 && !(udp.empty() && can.empty()))
     throw CLI::ValidationError("--rate", "requests cannot be received there; give a rate");
   TextSimulator simulator(std::move(device), make_wire(), rate_hz, common.make_wind(), common.synthetic.seed);
-  std::printf("%s\n", simulator.wire().place().c_str());
-  std::fflush(stdout);
+  print_place(simulator.wire());
   common.run_simulator(simulator);
 }
 

@@ -10,11 +10,24 @@
 
 namespace yuragi::simulators::text {
 
-/// The options of simulators that send text: over which transport, and how often.
-struct TextOptions {
+/// The options of a wire that is a serial port or a server of TCP.
+struct SerialOrTcpOptions {
   bool pty = false;
   std::string link;
   std::string tcp;
+
+  /// Returns the group of options of which one says how the device is connected.
+  CLI::Option_group& add_to(CLI::App& command, const std::string& what_tcp_is = "a server at HOST:PORT");
+  /// Throws CLI::ValidationError, std::runtime_error for an address that cannot be listened on.
+  std::unique_ptr<TextWire> make_wire() const;
+};
+
+/// Prints where a simulator is, for scripts that wait for that line.
+void print_place(const TextWire& wire);
+
+/// The options of simulators that send text: over which transport, and how often.
+struct TextOptions {
+  SerialOrTcpOptions line = {};
   std::string udp;
   std::string can;                      ///< of the commands whose device has frames to say
   WebSocketWireOptions websocket = {};  ///< its path: what clients ask for

@@ -15,6 +15,7 @@
 
 #include "drivers/network/http_server.hpp"
 #include "simulators/network/ecowitt_push_simulator.hpp"
+#include "tests/drivers/network/gateway_fault.hpp"
 #include "tests/support/descriptor.hpp"
 #include "tests/support/driver_named.hpp"
 #include "tests/support/free_port.hpp"
@@ -31,14 +32,11 @@ using simulators::FaultKind;
 using simulators::network::EcowittPushOptions;
 using simulators::network::EcowittPushSimulator;
 using simulators::network::PushProtocol;
-using testing::AllOf;
 using testing::Each;
 using testing::ElementsAre;
-using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-using testing::Optional;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
@@ -63,50 +61,15 @@ std::unique_ptr<EcowittPushSimulator> pushing_gateway(std::uint16_t port, PushPr
                                                 simulators::MeasuredWind(std::make_unique<StillWind>(kPushedWind)));
 }
 
-class EcowittPushFault : public testing::Test {
+class EcowittPushFault : public GatewayFault {
  protected:
   EcowittPushFault() : EcowittPushFault(free_port(SOCK_STREAM)) {}
 
-  void SetUp() override { expect_return(); }
-  /// It is well again and says the wind; what it said before is forgotten.
-  void expect_return() {
-    simulator_.set_fault({});
-    ASSERT_TRUE(live_.wait_for_readings(1)) << live_.sink.last_detail();
-    forget();
-    ASSERT_TRUE(live_.wait_for_readings(3)) << live_.sink.last_detail();
-    expect_only_the_wind();
-    EXPECT_EQ(live_.sink.last_state(), wind::LinkState::kConnected) << live_.sink.last_detail();
-    forget();
-  }
-  /// Suffers it until it is told, and says no wind meanwhile.
-  void expect_trouble(FaultKind fault, decode::Refusal why, const std::string& detail) {
-    simulator_.set_fault(fault);
-    ASSERT_TRUE(live_.wait_until([&] { return live_.sink.count(why) >= 1; })) << live_.sink.last_detail();
-    live_.sink.readings.clear();  // of a push from before
-    ASSERT_TRUE(live_.wait_until([&] {
-      return live_.sink.count(why) >= 4 && live_.sink.last_detail().find(detail) != std::string::npos;
-    })) << live_.sink.last_detail();
-    EXPECT_THAT(live_.sink.readings, IsEmpty());
-    EXPECT_EQ(live_.sink.last_state(), wind::LinkState::kConnecting);
-  }
-  void expect_only_the_wind() const {
-    EXPECT_THAT(live_.sink.readings,
-                Each(AllOf(Field(&wind::WindReading::speed_m_s, testing::DoubleNear(7.3, kPushStep_m_s)),
-                           Field(&wind::WindReading::direction_deg, Optional(123.0)))));
-  }
-  void forget() {
-    live_.sink.readings.clear();
-    live_.sink.refusals.clear();
-  }
-
  private:
   explicit EcowittPushFault(std::uint16_t port)
-      : simulator_(pushing_gateway(port, PushProtocol::kEcowitt)),
-        live_(open_push(port, {{"silence", 1.0}, {"station_key", Secret(std::string(kPasskey))}})) {}
-
- protected:
-  SimulatorThread simulator_;
-  test::LiveSensor live_;
+      : GatewayFault(pushing_gateway(port, PushProtocol::kEcowitt),
+                     open_push(port, {{"silence", 1.0}, {"station_key", Secret(std::string(kPasskey))}}),
+                     kPushStep_m_s) {}
 };
 
 TEST_F(EcowittPushFault, Silence) {
@@ -119,52 +82,40 @@ TEST_F(EcowittPushFault, Silence) {
 }
 
 TEST_F(EcowittPushFault, Freeze) {
-  simulator_.set_fault(FaultKind::kFreeze);
-  ASSERT_TRUE(live_.wait_for_readings(5)) << "the driver publishes what the gateway says; the hub judges it";
-  expect_only_the_wind();
-  expect_return();
+  expect_freeze_is_published();
 }
 
 TEST_F(EcowittPushFault, Spike) {
-  ASSERT_TRUE(live_.wait_for_readings(20)) << "by which a spike is known";
-  simulator_.set_fault(FaultKind::kSpike);
-  ASSERT_TRUE(
-      live_.wait_until([&] { return !live_.sink.readings.empty() && live_.sink.readings.back().speed_m_s > 54.9; }));
-  EXPECT_EQ(live_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
-  for (const wind::WindReading& believed : live_.sink.believed) EXPECT_NEAR(believed.speed_m_s, 7.3, kPushStep_m_s);
+  expect_spike_is_not_believed();
 }
 
 TEST_F(EcowittPushFault, Garbage) {
-  expect_trouble(FaultKind::kGarbage, decode::Refusal::kMalformed, "does not speak HTTP");
+  expect_refusals(FaultKind::kGarbage, decode::Refusal::kMalformed, "does not speak HTTP");
   expect_return();
 }
 
 TEST_F(EcowittPushFault, Split) {
-  simulator_.set_fault(FaultKind::kSplit);
-  ASSERT_TRUE(live_.wait_for_readings(5)) << live_.sink.last_detail();
-  expect_only_the_wind();
-  EXPECT_THAT(live_.sink.refusals, IsEmpty());
-  expect_return();
+  expect_pieces_are_joined();
 }
 
 TEST_F(EcowittPushFault, Partial) {
-  expect_trouble(FaultKind::kPartial, decode::Refusal::kTooShort, "ends before all of it has come");
+  expect_refusals(FaultKind::kPartial, decode::Refusal::kTooShort, "ends before all of it has come");
   expect_return();
 }
 
 TEST_F(EcowittPushFault, WrongId) {
-  expect_trouble(FaultKind::kWrongId, decode::Refusal::kNotMine, "is not the one of `station_key`");
+  expect_refusals(FaultKind::kWrongId, decode::Refusal::kNotMine, "is not the one of `station_key`");
   expect_return();
 }
 
 TEST_F(EcowittPushFault, Disconnect) {
-  expect_trouble(FaultKind::kDisconnect, decode::Refusal::kTooShort, "ends before all of it has come");
+  expect_refusals(FaultKind::kDisconnect, decode::Refusal::kTooShort, "ends before all of it has come");
   expect_return();
 }
 
 TEST_F(EcowittPushFault, Unplug) {
-  expect_trouble(FaultKind::kUnplug, decode::Refusal::kInvalid,
-                 "GW1100A_V2.4.5 at 127.0.0.1 pushes no wind: check the anemometer's battery");
+  expect_refusals(FaultKind::kUnplug, decode::Refusal::kInvalid,
+                  "GW1100A_V2.4.5 at 127.0.0.1 pushes no wind: check the anemometer's battery");
   expect_return();
 }
 

@@ -9,12 +9,11 @@
 #include <gtest/gtest.h>
 
 #include "simulators/network/ecowitt_simulator.hpp"
+#include "tests/drivers/network/gateway_fault.hpp"
 #include "tests/support/driver_named.hpp"
 #include "tests/support/free_port.hpp"
-#include "tests/support/live_sensor.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/scripted_server.hpp"
-#include "tests/support/simulator_thread.hpp"
 #include "tests/support/still_wind.hpp"
 
 namespace yuragi::drivers::network {
@@ -24,14 +23,8 @@ using namespace std::chrono_literals;
 using simulators::FaultKind;
 using simulators::network::EcowittOptions;
 using simulators::network::EcowittSimulator;
-using testing::AllOf;
-using testing::Each;
-using testing::Field;
 using testing::HasSubstr;
-using testing::Optional;
 using testing::ThrowsMessage;
-
-constexpr simulators::PlayedMoment kGatewayWind = {.speed_m_s = 7.3, .direction_deg = 123.0};
 
 /// A driver that asks the gateway at this port of this machine often.
 std::unique_ptr<sensor::Sensor> open_gateway(std::uint16_t port, ParameterValues::Map given = {}) {
@@ -42,61 +35,21 @@ std::unique_ptr<sensor::Sensor> open_gateway(std::uint16_t port, ParameterValues
   return driver_named("ecowitt").open(values_for("ecowitt", given));
 }
 
-std::unique_ptr<EcowittSimulator> gateway() {
-  EcowittOptions options;
-  options.port = 0;
-  options.interval_s = 0.2;
-  options.late_s = 1.0;
-  return std::make_unique<EcowittSimulator>(options,
-                                            simulators::MeasuredWind(std::make_unique<StillWind>(kGatewayWind)));
-}
-
-class EcowittFault : public testing::Test {
+class EcowittFault : public GatewayFault {
  protected:
-  EcowittFault() : EcowittFault(gateway()) {}
-
-  void SetUp() override { expect_return(); }
-  /// It is well again and says the wind; what it said before is forgotten.
-  void expect_return() {
-    simulator_.set_fault({});
-    // What was on its way when the fault ended comes first.
-    ASSERT_TRUE(live_.wait_for_readings(1)) << live_.sink.last_detail();
-    forget();
-    ASSERT_TRUE(live_.wait_for_readings(3)) << live_.sink.last_detail();
-    expect_only_the_wind();
-    EXPECT_EQ(live_.sink.last_state(), wind::LinkState::kConnected) << live_.sink.last_detail();
-    forget();
-  }
-  /// Suffers it until so much was refused, and says no wind meanwhile.
-  void expect_refusals(FaultKind fault, decode::Refusal why, const std::string& detail) {
-    simulator_.set_fault(fault);
-    ASSERT_TRUE(live_.wait_until([&] { return live_.sink.count(why) >= 1; })) << live_.sink.last_detail();
-    live_.sink.readings.clear();  // the reply to a request from before
-    ASSERT_TRUE(live_.wait_until([&] { return live_.sink.count(why) >= 4; })) << live_.sink.last_detail();
-    EXPECT_TRUE(live_.sink.readings.empty());
-    EXPECT_EQ(live_.sink.last_state(), wind::LinkState::kConnecting);
-    EXPECT_THAT(live_.sink.last_detail(), HasSubstr(detail));
-  }
-  void expect_only_the_wind() const {
-    EXPECT_THAT(live_.sink.readings, Each(AllOf(Field(&wind::WindReading::speed_m_s, testing::DoubleNear(7.3, 1e-9)),
-                                                Field(&wind::WindReading::direction_deg, Optional(123.0)))));
-  }
-  void forget() {
-    live_.sink.readings.clear();
-    live_.sink.refusals.clear();
-  }
+  EcowittFault() : EcowittFault(free_port(SOCK_STREAM)) {}
 
  private:
-  explicit EcowittFault(std::unique_ptr<EcowittSimulator> simulator)
-      : port_(simulator->port()),
-        simulator_(std::move(simulator)),
-        live_(open_gateway(port_, {{"response_timeout", 0.5}})) {}
+  explicit EcowittFault(std::uint16_t port)
+      : GatewayFault(gateway(port), open_gateway(port, {{"response_timeout", 0.5}}), 1e-9) {}
 
-  std::uint16_t port_;
-
- protected:
-  SimulatorThread simulator_;
-  test::LiveSensor live_;
+  static std::unique_ptr<EcowittSimulator> gateway(std::uint16_t port) {
+    EcowittOptions options;
+    options.port = port;
+    options.interval_s = 0.2;
+    options.late_s = 1.0;
+    return std::make_unique<EcowittSimulator>(options, simulators::MeasuredWind(std::make_unique<StillWind>(kWind)));
+  }
 };
 
 TEST_F(EcowittFault, Silence) {
@@ -105,19 +58,11 @@ TEST_F(EcowittFault, Silence) {
 }
 
 TEST_F(EcowittFault, Freeze) {
-  simulator_.set_fault(FaultKind::kFreeze);
-  ASSERT_TRUE(live_.wait_for_readings(5)) << "the driver publishes what the gateway says; the hub judges it";
-  expect_only_the_wind();
-  expect_return();
+  expect_freeze_is_published();
 }
 
 TEST_F(EcowittFault, Spike) {
-  ASSERT_TRUE(live_.wait_for_readings(20)) << "by which a spike is known";
-  simulator_.set_fault(FaultKind::kSpike);
-  ASSERT_TRUE(
-      live_.wait_until([&] { return !live_.sink.readings.empty() && live_.sink.readings.back().speed_m_s == 55.0; }));
-  EXPECT_EQ(live_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
-  for (const wind::WindReading& believed : live_.sink.believed) EXPECT_NEAR(believed.speed_m_s, 7.3, 1e-9);
+  expect_spike_is_not_believed();
 }
 
 TEST_F(EcowittFault, Garbage) {
@@ -126,11 +71,7 @@ TEST_F(EcowittFault, Garbage) {
 }
 
 TEST_F(EcowittFault, Split) {
-  simulator_.set_fault(FaultKind::kSplit);
-  ASSERT_TRUE(live_.wait_for_readings(5)) << live_.sink.last_detail();
-  expect_only_the_wind();
-  EXPECT_TRUE(live_.sink.refusals.empty());
-  expect_return();
+  expect_pieces_are_joined();
 }
 
 TEST_F(EcowittFault, Partial) {
