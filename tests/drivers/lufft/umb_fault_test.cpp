@@ -10,8 +10,8 @@
 #include "drivers/lufft/umb_sensor.hpp"
 #include "simulators/lufft/umb_station.hpp"
 #include "tests/support/driver_named.hpp"
+#include "tests/support/station_fault.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/support/text_bench.hpp"
 
 namespace yuragi::drivers::lufft {
 namespace {
@@ -21,8 +21,10 @@ using simulators::lufft::UmbStation;
 using simulators::lufft::UmbStationOptions;
 using testing::HasSubstr;
 
-class UmbFault : public testing::Test {
+class UmbFault : public StationFault {
  protected:
+  UmbFault() : StationFault(7.25, 1.0) {}
+
   enum class Wire { kPty, kTcp };
 
   void connect(Wire wire, const UmbStationOptions& options = {}) {
@@ -38,36 +40,10 @@ class UmbFault : public testing::Test {
       given["host"] = std::string("127.0.0.1");
       given["port"] = std::int64_t{std::stoi(place.substr(place.rfind(':') + 1))};
     }
-    auto station = std::make_unique<UmbStation>(
-        bench_.observed(std::move(carried)), options,
-        simulators::MeasuredWind(
-            std::make_unique<StillWind>(simulators::PlayedMoment{.speed_m_s = 7.25, .direction_deg = 123.0})));
+    auto station = std::make_unique<UmbStation>(bench_.observed(std::move(carried)), options, still_wind());
     const UmbSettings settings = umb_settings_of(values_for("umb", given));
     bench_.put(std::move(station), std::make_unique<UmbSensor>(settings, bench_.port(settings.address)));
   }
-
-  bool is_live(double limit_s = 40.0) {
-    bench_.sink.readings.clear();
-    return bench_.run_until(limit_s, {}, [this] {
-      return !bench_.sink.readings.empty() && bench_.sink.last_state() == wind::LinkState::kConnected;
-    });
-  }
-  void expect_only_the_wind() {
-    for (const wind::WindReading& reading : bench_.sink.readings) {
-      EXPECT_EQ(reading.speed_m_s, 7.25);
-      EXPECT_EQ(reading.direction_deg, 123.0);
-      EXPECT_EQ(reading.gust_m_s, 7.25);
-    }
-  }
-  void expect_return() {
-    ASSERT_TRUE(is_live()) << bench_.sink.last_detail();
-    bench_.run(5.0);
-    EXPECT_GE(bench_.sink.readings.size(), 4U);
-    EXPECT_TRUE(bench_.sink.refusals.empty());
-    expect_only_the_wind();
-  }
-
-  TextBench bench_;
 
  private:
   test::TemporaryFolder folder_;
@@ -83,6 +59,7 @@ TEST_F(UmbFault, WithoutAnyNothingIsLost) {
     expect_only_the_wind();
     EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("Lufft 7009h at "));
     const wind::StationQuantities& said = bench_.sink.station_quantities.back();
+    EXPECT_EQ(bench_.sink.readings.back().gust_m_s, 7.25);
     EXPECT_EQ(said.air_temperature_c, 14.5);
     EXPECT_EQ(said.relative_humidity_percent, 65.0);
     EXPECT_EQ(said.pressure_hpa, 1013.25);
@@ -114,10 +91,7 @@ TEST_F(UmbFault, Silence) {
     connect(wire);
     ASSERT_TRUE(is_live());
     bench_.run(1.0);
-    bench_.run(6.0, FaultKind::kSilence);
-    EXPECT_TRUE(bench_.sink.readings.empty());
-    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("does not reply: check its power"));
+    expect_no_wind(FaultKind::kSilence, 6.0, "does not reply: check its power");
     bench_.run(6.0, FaultKind::kSilence);
     EXPECT_GE(bench_.sink.count(decode::Refusal::kTimeout), 2);
     expect_return();
@@ -126,36 +100,20 @@ TEST_F(UmbFault, Silence) {
 
 TEST_F(UmbFault, Freeze) {
   connect(Wire::kPty);
-  ASSERT_TRUE(is_live());
-  bench_.run(10.0, FaultKind::kFreeze);
-  EXPECT_GE(bench_.sink.readings.size(), 9U) << "the driver publishes what the device says; the hub judges it";
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnected);
-  expect_return();
+  expect_freeze_is_published();
 }
 
 TEST_F(UmbFault, Spike) {
   connect(Wire::kPty);
-  ASSERT_TRUE(is_live());
-  bench_.run(30.0);
-  ASSERT_FALSE(bench_.sink.believed.empty());
-  bench_.run(2.0, FaultKind::kSpike);
-  EXPECT_NEAR(bench_.sink.readings.back().speed_m_s, 55.0, 1e-3);
-  EXPECT_EQ(bench_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
-  for (const wind::WindReading& believed : bench_.sink.believed) {
-    EXPECT_EQ(believed.speed_m_s, 7.25) << "the hub keeps it from the wind";
-  }
-  expect_return();
+  expect_spike_is_not_believed();
 }
 
 TEST_F(UmbFault, Garbage) {
   for (const Wire wire : {Wire::kPty, Wire::kTcp}) {
     connect(wire);
     ASSERT_TRUE(is_live());
-    bench_.run(12.0, FaultKind::kGarbage);
-    EXPECT_TRUE(bench_.sink.readings.empty());
+    expect_no_wind(FaultKind::kGarbage, 12.0, "replies arrive damaged");
     EXPECT_GE(bench_.sink.count(decode::Refusal::kMalformed), 3);
-    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("replies arrive damaged"));
     expect_return();
   }
 }
@@ -176,11 +134,8 @@ TEST_F(UmbFault, Partial) {
   for (const Wire wire : {Wire::kPty, Wire::kTcp}) {
     connect(wire);
     ASSERT_TRUE(is_live());
-    bench_.run(12.0, FaultKind::kPartial);
-    EXPECT_TRUE(bench_.sink.readings.empty());
+    expect_no_wind(FaultKind::kPartial, 12.0, "replies arrive damaged");
     EXPECT_GE(bench_.sink.count(decode::Refusal::kTooShort), 3);
-    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("replies arrive damaged"));
     expect_return();
   }
 }
@@ -189,11 +144,8 @@ TEST_F(UmbFault, BadChecksum) {
   for (const Wire wire : {Wire::kPty, Wire::kTcp}) {
     connect(wire);
     ASSERT_TRUE(is_live());
-    bench_.run(12.0, FaultKind::kBadChecksum);
-    EXPECT_TRUE(bench_.sink.readings.empty());
+    expect_no_wind(FaultKind::kBadChecksum, 12.0, "replies arrive damaged");
     EXPECT_GE(bench_.sink.count(decode::Refusal::kBadChecksum), 3);
-    EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-    EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("replies arrive damaged"));
     expect_return();
   }
 }
@@ -201,11 +153,8 @@ TEST_F(UmbFault, BadChecksum) {
 TEST_F(UmbFault, WrongId) {
   connect(Wire::kPty);
   ASSERT_TRUE(is_live());
-  bench_.run(12.0, FaultKind::kWrongId);
-  EXPECT_TRUE(bench_.sink.readings.empty());
+  expect_no_wind(FaultKind::kWrongId, 12.0, "another device than Lufft 7001h replies");
   EXPECT_GE(bench_.sink.count(decode::Refusal::kNotMine), 3);
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("another device than Lufft 7001h replies"));
   expect_return();
 }
 
@@ -222,21 +171,15 @@ TEST_F(UmbFault, Late) {
 TEST_F(UmbFault, Exception) {
   connect(Wire::kPty);
   ASSERT_TRUE(is_live());
-  bench_.run(10.0, FaultKind::kException);
-  EXPECT_TRUE(bench_.sink.readings.empty());
+  expect_no_wind(FaultKind::kException, 10.0, "refuses the query of its channels (status 11h)");
   EXPECT_GE(bench_.sink.count(decode::Refusal::kException), 9);
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("refuses the query of its channels (status 11h)"));
   expect_return();
 }
 
 TEST_F(UmbFault, Disconnect) {
   connect(Wire::kTcp);
   ASSERT_TRUE(is_live());
-  bench_.run(5.0, FaultKind::kDisconnect);
-  EXPECT_TRUE(bench_.sink.readings.empty());
-  EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
-  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("cannot connect to 127.0.0.1:"));
+  expect_no_wind(FaultKind::kDisconnect, 5.0, "cannot connect to 127.0.0.1:");
   expect_return();
 }
 
