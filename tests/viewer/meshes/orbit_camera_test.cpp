@@ -58,7 +58,7 @@ TEST(OrbitCamera, TurnsWithTheHandAndStaysAboveTheGround) {
 TEST(OrbitCamera, CarriesTheTargetWithThePointer) {
   // Looking north, dragging to the right moves what is seen to the right: the target goes west.
   OrbitCamera camera = camera_at({{0.0, 0.5, 0.0}, 0.0, 20.0, 5.0});
-  camera.pan(0.1, 0.0);
+  camera.pan(0.1, 0.0, 16.0 / 9.0);
   settle(camera);
   EXPECT_LT(camera.place().target_m.x, -0.1);
   EXPECT_NEAR(camera.place().target_m.z, 0.0, 1e-9);
@@ -95,7 +95,7 @@ TEST(OrbitCamera, ComesBackWhenReset) {
   const CameraPlace home{{0.0, 0.5, 0.0}, 45.0, 20.0, 5.0};
   OrbitCamera camera = camera_at(home);
   camera.orbit(0.3, 0.2);
-  camera.pan(0.5, 0.5);
+  camera.pan(0.5, 0.5, 1.0);
   camera.zoom(-5.0);
   settle(camera);
   camera.reset();
@@ -116,7 +116,7 @@ TEST(OrbitCamera, StaysFiniteWhateverIsAskedOfIt) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   OrbitCamera camera = camera_at({{nan, nan, 1e300}, nan, nan, nan});
   camera.orbit(nan, nan);
-  camera.pan(nan, 1e300);
+  camera.pan(nan, 1e300, 1.0);
   settle(camera);
   EXPECT_TRUE(std::isfinite(camera.eye_m().x + camera.eye_m().y + camera.eye_m().z));
 }
