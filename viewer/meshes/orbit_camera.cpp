@@ -17,9 +17,14 @@ constexpr double kAcrossPitch_deg = 6.0;
 constexpr double kFieldHeights = 5.0;     // so many times as wide as high: something to look across
 constexpr double kAcrossHeights = 1.05;   // of the eye, in heights of what it looks across
 constexpr double kFromCorner_deg = 32.0;  // how far a broad side is looked at aslant
-constexpr double kAroundPitch_deg = 4.0;
-constexpr double kFlatPitch_deg = 9.0;
-constexpr double kFilled = 0.95;  // of the picture
+constexpr double kFlatHeights = 0.2;      // of what is flat, against its width
+constexpr double kFlatPitch_deg = 7.0;
+constexpr double kFlatShown = 0.6;  // of its width
+constexpr double kEyeHeights = 0.45;
+constexpr double kSittingEye_m = 0.5;
+constexpr double kStandingEye_m = 1.5;
+constexpr double kLowestHorizon = 0.55;  // so far from the picture's middle to its lower side
+constexpr double kFilled = 0.95;         // of the picture
 constexpr double kUsualAspect = 16.0 / 9.0;
 constexpr double kMinFieldOfView_deg = 2.0;
 constexpr double kMaxFieldOfView_deg = 120.0;
@@ -159,9 +164,23 @@ CameraPlace place_around(const Bounds& bounds, double aspect) {
   // At the broad side: to the south-south-west, or to the west-south-west.
   CameraPlace place;
   place.heading_deg = size_m.x >= size_m.z ? 180.0 + kFromCorner_deg : 270.0 - kFromCorner_deg;
-  const bool is_flat = size_m.y < 0.2 * std::hypot(size_m.x, size_m.z);
-  place.pitch_deg = is_flat ? kFlatPitch_deg : kAroundPitch_deg;
   place.target_m = glm::dvec3(bounds.low_m + bounds.high_m) / 2.0;
+  if (size_m.y < kFlatHeights * std::hypot(size_m.x, size_m.z)) {
+    // From its edge, so that it goes on beyond the picture's sides; in an upright picture from no farther.
+    place.pitch_deg = kFlatPitch_deg;
+    place.distance_m = kFlatShown * distance_to_see(bounds, place, std::max(aspect, kUsualAspect));
+    return limited(place);
+  }
+
+  // From as low as a person who stands or sits sees it, against the sky; with the horizon well inside of the picture.
+  const double eye_height_m = std::clamp(kEyeHeights * size_m.y, kSittingEye_m, kStandingEye_m);
+  const double up_deg = glm::degrees(std::atan(tangent_up(place.field_of_view_deg, aspect)));
+  place.pitch_deg = 0.0;
+  for (int round = 0; round < 4; ++round) {
+    place.distance_m = distance_to_see(bounds, place, aspect);
+    const double sine = std::clamp((eye_height_m - place.target_m.y) / place.distance_m, -1.0, 1.0);
+    place.pitch_deg = std::max(glm::degrees(std::asin(sine)), -kLowestHorizon * up_deg);
+  }
   place.distance_m = distance_to_see(bounds, place, aspect);
   return limited(place);
 }

@@ -77,8 +77,9 @@ CameraPlace place_across(const Bounds& bounds);
 /// width / height `aspect`.
 double distance_to_see(const Bounds& bounds, const CameraPlace& place, double aspect);
 
-/// A place outside of `bounds` from where all of it is in a picture of width / height `aspect`: at its broad side, a
-/// little from the corner, toward the evening sun's side.
+/// A low place outside of `bounds`, toward the evening sun's side, at its broad side and a little from the corner. All
+/// of what stands is in a picture of width / height `aspect`, before the sky; what is flat, as water, fills the picture
+/// from side to side.
 CameraPlace place_around(const Bounds& bounds, double aspect);
 
 }  // namespace yuragi::viewer::meshes
