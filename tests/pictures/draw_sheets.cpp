@@ -41,6 +41,7 @@ struct PageLight {
 constexpr std::array kLights{PageLight{"evening", {}}, PageLight{"dawn", 6.2}, PageLight{"noon", 12.0},
                              PageLight{"dusk", 18.1}, PageLight{"night", 23.0}};
 constexpr double kDay_s = 1790208000.0;  // 2026-09-24
+constexpr double kEvening_h = 17.0;      // for the cameras of a configuration that has some
 
 light::Light light_of(const PageLight& page) {
   if (!page.solar_time_h) return light::light_of({}, kDay_s);
@@ -50,12 +51,9 @@ light::Light light_of(const PageLight& page) {
 struct Framing {
   const char* name;
   int width_px, height_px;
-  meshes::CameraPlace (*place)(const looks::Stage& stage, double aspect);
+  meshes::CameraPlace (*place)(const looks::Stage& stage, double aspect);  // null: where the viewer begins
 };
 
-meshes::CameraPlace home(const looks::Stage& stage, double aspect) {
-  return stage.home(aspect);
-}
 meshes::CameraPlace near(const looks::Stage& stage, double aspect) {
   meshes::CameraPlace place = stage.home(aspect);
   place.distance_m *= 0.35;
@@ -76,15 +74,18 @@ meshes::CameraPlace above(const looks::Stage& stage, double /*aspect*/) {
   return around_middle(stage, 80.0, 2.0 + 1.6 * static_cast<double>(glm::length(bounds.high_m - bounds.low_m)));
 }
 
-constexpr std::array kFramings{Framing{"wide", 640, 360, home},     Framing{"portrait", 202, 360, home},
-                               Framing{"6:1", 640, 107, home},      Framing{"near", 640, 360, near},
+constexpr std::array kFramings{Framing{"wide", 640, 360, nullptr},  Framing{"portrait", 202, 360, nullptr},
+                               Framing{"6:1", 640, 107, nullptr},   Framing{"near", 640, 360, near},
                                Framing{"far, 40 m", 640, 360, far}, Framing{"above", 640, 360, above}};
 
-std::vector<std::uint8_t> draw(looks::Stage& stage, const stream::PoseMoment& moment, const Framing& framing) {
+std::vector<std::uint8_t> draw(looks::Stage& stage, const ScenesInWind& scenes, const PageLight& light,
+                               const Framing& framing) {
   gl::RenderTarget target(framing.width_px, framing.height_px, kSamples);
   meshes::OrbitCamera camera;
-  camera.frame(framing.place(stage, static_cast<double>(framing.width_px) / framing.height_px));
-  stage.draw(moment, camera, target);
+  const double aspect = static_cast<double>(framing.width_px) / framing.height_px;
+  camera.frame(framing.place != nullptr ? framing.place(stage, aspect)
+                                        : scenes.home(stage, aspect, light.solar_time_h.value_or(kEvening_h)));
+  stage.draw(scenes.moment(), camera, target);
   return target.read_rgb();
 }
 
@@ -101,7 +102,6 @@ void draw_pages(looks::Stage& stage, std::string_view scene, std::span<const Pag
     ScenesInWind scenes(scene, weather.speed_m_s);
     scenes.advance(kSettling_s);
     stage.set_scenes(scenes.models());
-    const stream::PoseMoment moment = scenes.moment();
     for (std::size_t light = 0; light < lights.size(); ++light) {
       stage.set_light(light_of(lights[light]));
       int top_px = 0;
@@ -110,7 +110,7 @@ void draw_pages(looks::Stage& stage, std::string_view scene, std::span<const Pag
                                 fmt::format("{}, {} {:g} m/s, {}, {}", scene, weather.name, weather.speed_m_s,
                                             lights[light].name, framing.name));
         top_px += Canvas::kTextHeight_px + kGap_px;
-        pages[light].put(left_px, top_px, framing.width_px, draw(stage, moment, framing));
+        pages[light].put(left_px, top_px, framing.width_px, draw(stage, scenes, lights[light], framing));
         top_px += framing.height_px;
       }
     }
@@ -126,7 +126,7 @@ void draw_strip(looks::Stage& stage, std::string_view scene, const std::filesyst
   constexpr int kPictures = 12;
   constexpr int kColumns = 4;
   constexpr double kStep_s = 1.0 / 6.0;
-  constexpr Framing kFraming{"strip", 480, 270, home};
+  constexpr Framing kFraming{"strip", 480, 270, nullptr};
   constexpr int kRow_px = kFraming.height_px + Canvas::kTextHeight_px + kGap_px;
   const Weather& breeze = kWeathers[1];
 
@@ -141,7 +141,7 @@ void draw_strip(looks::Stage& stage, std::string_view scene, const std::filesyst
     strip.write_text(left_px + kGap_px, top_px + kGap_px,
                      fmt::format("{}, {} {:g} m/s, {:.2f} s", scene, breeze.name, breeze.speed_m_s, i * kStep_s));
     strip.put(left_px, top_px + Canvas::kTextHeight_px + kGap_px, kFraming.width_px,
-              draw(stage, scenes.moment(), kFraming));
+              draw(stage, scenes, kLights.front(), kFraming));
     scenes.advance(kStep_s);
   }
   strip.save(folder / fmt::format("{}-strip.png", scene));
