@@ -1,6 +1,8 @@
 #include "viewer/options.hpp"
 
+#include <array>
 #include <charconv>
+#include <cmath>
 
 #include "engine/base/duration.hpp"
 #include "engine/look/look.hpp"
@@ -31,7 +33,28 @@ std::string check_picture_name(const std::string& name) {
   return "'" + name + "' is not the name of a picture that can be written: it has to end in .png, .jpg or .jpeg";
 }
 
+/// A text of nothing but numbers with commas between that is no view is no camera's name either, but a mistake.
+std::string check_camera(const std::string& text) {
+  const bool is_numbers = text.find_first_not_of("0123456789.,+-eE ") == std::string::npos;
+  if (!text.empty() && (!is_numbers || text.find(',') == std::string::npos || read_camera_view(text))) return {};
+  return "'" + text + "' is not a view: give HEADING,PITCH,DISTANCE, such as 225,7,4, or the name of a camera";
+}
+
 }  // namespace
+
+std::optional<CameraView> read_camera_view(std::string_view text) {
+  std::array<double, 3> numbers{};
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
+    const auto read = std::from_chars(at, end, numbers.at(i));
+    if (read.ec != std::errc{} || !std::isfinite(numbers.at(i))) return std::nullopt;
+    at = read.ptr;
+  }
+  if (at != end) return std::nullopt;
+  return CameraView{numbers[0], numbers[1], numbers[2]};
+}
 
 void add_options(CLI::App& app, ViewerOptions& options) {
   app.add_option("--connect", options.connect, "The daemon whose stream to show, HOST:PORT")->capture_default_str();
@@ -58,10 +81,10 @@ void add_options(CLI::App& app, ViewerOptions& options) {
         return look ? std::string() : look.error().name + " " + look.error().message;
       });
   app.add_option("--camera", options.camera,
-                 "HEADING,PITCH,DISTANCE: direction of view (degrees, 0 north, 90 east), angle downward (degrees) and "
-                 "distance (metres); default: chosen to suit the scene")
-      ->delimiter(',')
-      ->expected(3);
+                 "NAME of one of the daemon's cameras ([[camera]]), or HEADING,PITCH,DISTANCE: direction of view "
+                 "(degrees, 0 north, 90 east), angle downward (degrees) and distance (metres); default: the daemon's "
+                 "cameras by the time of day, or where it has none chosen to suit the scene")
+      ->check(check_camera);
 
   const std::string picture = "Write a picture instead of opening a window";
   auto* const screenshot =
@@ -88,17 +111,18 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       ->group(picture);
 
   app.footer(
-      "In the window: drag to turn (left button) or move (right), scroll to zoom; R first view, N next scene alone "
-      "(after\n"
-      "the last, all), T turn slowly, H overlay, F11 full screen, Esc or Q quit. If the stream is interrupted, its "
-      "last\n"
-      "seconds are replayed until it returns.\n"
+      "In the window: drag to turn (left button) or move (right), scroll to zoom; R first view, C next of the "
+      "daemon's\n"
+      "cameras, N next scene alone (after the last, all), T turn slowly, H overlay, F11 full screen, Esc or Q quit. "
+      "If\n"
+      "the stream is interrupted, its last seconds are replayed until it returns.\n"
       "\n"
       "Examples:\n"
       "  yuragi run &                                    the daemon, with a synthetic wind\n"
       "  yuragi-viewer                                   show it\n"
       "  yuragi-viewer --connect wall.local:7410 --fullscreen --no-overlay\n"
       "  yuragi-viewer --screenshot now.png              a picture; needs no screen\n"
+      "  yuragi-viewer --camera night                    by one of the daemon's cameras, whatever the hour\n"
       "\n"
       "Exit code 0: done; 64: wrong command line; 69: no daemon answers, or nothing to draw on; 73: the picture "
       "cannot be\n"

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -22,12 +23,20 @@ struct ViewerOptions {
   bool is_dark_when_closed = false;
   std::vector<std::string> look;  ///< "time=06:30": over the daemon's look
   std::string scene;              ///< the only one to show; empty: all
-  std::vector<double> camera;     ///< heading_deg, pitch_deg, distance_m; empty: chosen
+  std::string camera;             ///< a name of the daemon's, or read_camera_view(); empty: the hour's, or chosen
   std::string screenshot;         ///< a file; empty: a window
   int frames = 30;
   std::optional<double> at_s;
   double wait_s = 10.0;
 };
+
+/// Where the camera is, of the text "HEADING,PITCH,DISTANCE".
+struct CameraView {
+  double heading_deg = 0.0;
+  double pitch_deg = 0.0;
+  double distance_m = 0.0;
+};
+std::optional<CameraView> read_camera_view(std::string_view text);
 
 /// Declares the options; app.parse() fills `options`, which must outlive it.
 void add_options(CLI::App& app, ViewerOptions& options);

@@ -255,6 +255,7 @@ void Overlay::draw(const PixelSize& size, const OverlayFacts& facts) {
   write_shaping(facts);
   write_scenes(facts);
   write_look(facts);
+  if (!facts.camera.empty()) write(kQuiet, facts.camera);
   write_stream(facts);
   ImGui::End();
 

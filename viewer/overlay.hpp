@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "engine/look/look.hpp"
 #include "viewer/light/daylight.hpp"
@@ -24,6 +25,7 @@ struct OverlayFacts {
   const light::Sky* sky = nullptr;               ///< null: not known
   look::Quality quality = look::Quality::kHigh;  ///< in which it is drawn
   double heading_deg = 0.0;                      ///< of the camera: up on the compass
+  std::string camera;                            ///< which it is, for a person; empty: there is but one
 };
 
 /// Small texts over the picture: wind, sensors, stream. It takes no input. One at a time; needs a current context.

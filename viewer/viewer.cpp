@@ -8,6 +8,9 @@
 #include <stdexcept>
 
 #include "engine/base/address.hpp"
+#include "viewer/camera_keeper.hpp"
+#include "viewer/camera_place.hpp"
+#include "viewer/gl/cross_fade.hpp"
 #include "viewer/gl/dimmer.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/light/sky_keeper.hpp"
@@ -83,9 +86,11 @@ class Viewer::Show {
     samples_ = options.samples.value_or(is_slow ? 1 : kSamples);
     stage_.emplace();
     dimmer_.emplace();
+    cross_fade_.emplace();
     sky_.start(look_for({}));
     if (!options.scene.empty()) stage_->show_only(options.scene);
     window_ ? overlay_.emplace(window_->handle(), window_->content_scale()) : overlay_.emplace(nullptr, 1.0);
+    begin_cameras();
     camera_.set_turning(options.is_turning);
     frame_camera();
   }
@@ -120,7 +125,8 @@ class Viewer::Show {
         continue;
       }
       if (first_pose_s == 0.0) first_pose_s = last_s_;
-      if (!sensors_ && last_s_ - first_pose_s < kLookWait_s) continue;
+      if (!sensors_ && last_s_ - first_pose_s < longest_wait_for_status_s()) continue;
+      require_camera();
       if (options_.at_s && last_s_ - first_pose_s < *options_.at_s) continue;
       draw(size);
       ++drawn;
@@ -150,6 +156,55 @@ class Viewer::Show {
                      "--scene: " + options_.connect + " has no scene '" + options_.scene + "'; it has: " + names);
   }
 
+  /// A camera that is asked for by its name has to come.
+  double longest_wait_for_status_s() const {
+    return is_camera_named() ? std::max(options_.wait_s, kLookWait_s) : kLookWait_s;
+  }
+
+  bool is_camera_named() const {
+    return !options_.camera.empty() && !view_;
+  }
+
+  void require_camera() const {
+    if (!is_camera_named() || cameras_.has(options_.camera)) return;
+    std::string names;
+    for (const look::Camera& camera : cameras_.cameras()) names += names.empty() ? camera.name : ", " + camera.name;
+    throw ViewerExit(EX_USAGE, "--camera: " + options_.connect + " has no camera '" + options_.camera + "'; it has " +
+                                   (names.empty() ? "none: there is no [[camera]] in its configuration" : names));
+  }
+
+  /// What the command line asks for comes before the hour.
+  void begin_cameras() {
+    view_ = read_camera_view(options_.camera);
+    if (is_camera_named()) {
+      cameras_.begin_with(options_.camera);
+    } else if (view_ || !options_.scene.empty() || options_.is_turning) {
+      cameras_.begin_by_hand();
+    }
+  }
+
+  /// The camera of a shot, for a picture of width / height `aspect`.
+  const meshes::OrbitCamera& camera_of(const Shot& shot, double aspect) {
+    if (!shot.camera) return camera_;
+    const look::Camera& camera = *shot.camera;
+    shot_camera_.go_to(place_of(camera, stage_->bounds_of(camera.scene), aspect, shot.utc_s));
+    return shot_camera_;
+  }
+
+  /// The user's hand begins where the picture is.
+  void take_camera() {
+    if (cameras_.now().camera) camera_.go_to(camera_of(cameras_.now(), aspect_).place());
+    cameras_.take_by_hand();
+  }
+
+  /// For the overlay.
+  std::string camera_text() const {
+    if (cameras_.cameras().empty()) return {};
+    const std::string name = cameras_.now().name();
+    if (name.empty()) return cameras_.is_fading() ? "camera by hand, cross-fading" : "camera by hand";
+    return "camera " + name + (cameras_.is_fading() ? ", cross-fading" : "");
+  }
+
   /// What the command line says, over the daemon's look.
   look::Look look_for(const look::Look& daemons) const {
     return *look::edited(daemons, options_.look);
@@ -165,23 +220,27 @@ class Viewer::Show {
 
   void frame_camera() {
     meshes::CameraPlace place = stage_->home(static_cast<double>(options_.width_px) / options_.height_px);
-    if (options_.camera.size() == 3) {
-      place.heading_deg = options_.camera[0];
-      place.pitch_deg = options_.camera[1];
-      place.distance_m = options_.camera[2];
+    if (view_) {
+      place.heading_deg = view_->heading_deg;
+      place.pitch_deg = view_->pitch_deg;
+      place.distance_m = view_->distance_m;
     }
     camera_.frame(place);
   }
 
   void use_input() {
     const WindowInput input = window_->take_input();
+    if (input.moves_camera() || input.toggle_turning) take_camera();
     camera_.orbit(input.orbit_right, input.orbit_down);
-    camera_.pan(input.pan_right, input.pan_down);
+    camera_.pan(input.pan_right, input.pan_down, aspect_);
     camera_.zoom(input.zoom_notches);
-    if (input.reset_camera) camera_.reset();
+    if (input.next_camera) cameras_.next();
+    if (input.reset_camera && !cameras_.reset()) camera_.reset();
     if (input.next_scene) {
       stage_->show_next();
+      cameras_.take_by_hand();
       frame_camera();
+      if (stage_->shows_all()) cameras_.reset();
     }
     if (input.toggle_turning) camera_.set_turning(!camera_.is_turning());
     if (input.toggle_overlay) has_overlay_ = !has_overlay_;
@@ -195,10 +254,13 @@ class Viewer::Show {
       utc_s_ = 1e-9 * static_cast<double>(timed.frame.info.utc_ns);
       timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
     }
+    if (!inbox.frames.empty()) cameras_.hear_clock(utc_s_);
     const bool is_first_status = inbox.sensors && !sensors_;
     if (inbox.sensors) {
       sensors_ = std::move(inbox.sensors);
       is_first_status ? sky_.start(look_for(sensors_->look)) : sky_.set_look(look_for(sensors_->look));
+      cameras_.set_cameras(sensors_->cameras, sensors_->camera);
+      if (is_first_status) require_camera();
     }
 
     const double now = now_s();
@@ -206,6 +268,7 @@ class Viewer::Show {
     last_s_ = now;
     follow_opening_hours(is_first_status ? kDimming_s : passed_s);
     camera_.advance(passed_s);
+    cameras_.advance(passed_s);
     moment_ = &timeline_.advance(now);
     if (auto scenes = timeline_.take_new_scenes()) {
       stage_->set_scenes(std::move(*scenes));
@@ -231,7 +294,14 @@ class Viewer::Show {
     if (!target_ || PixelSize{target_->width_px(), target_->height_px()} != size) {
       target_.emplace(size.width_px, size.height_px, samples_);
     }
-    stage_->draw(*moment_, camera_, *target_);
+    aspect_ = static_cast<double>(size.width_px) / size.height_px;
+    if (cameras_.is_fading()) {
+      stage_->draw(*moment_, camera_of(cameras_.before(), aspect_), *target_);
+      cross_fade_->keep(*target_);
+    }
+    const meshes::OrbitCamera& camera = camera_of(cameras_.now(), aspect_);
+    stage_->draw(*moment_, camera, *target_);
+    if (cameras_.is_fading()) cross_fade_->draw(*target_, static_cast<float>(cameras_.share()));
     dimmer_->draw(static_cast<float>(brightness_));
     if (!has_overlay_) return;
     const light::Sky sky = light::sky_of(sky_.look(), utc_s_);
@@ -245,7 +315,8 @@ class Viewer::Show {
                           .opacities = moment_->opacities,
                           .sky = &sky,
                           .quality = quality_,
-                          .heading_deg = camera_.place().heading_deg});
+                          .heading_deg = camera.place().heading_deg,
+                          .camera = camera_text()});
   }
 
   /// Waits where the driver does not wait for the screen: no more pictures than the screen can show.
@@ -261,10 +332,15 @@ class Viewer::Show {
   std::unique_ptr<gl::HeadlessContext> headless_;
   std::optional<looks::Stage> stage_;
   std::optional<gl::Dimmer> dimmer_;
+  std::optional<gl::CrossFade> cross_fade_;
   std::optional<Overlay> overlay_;
   std::optional<gl::RenderTarget> target_;
 
-  meshes::OrbitCamera camera_;
+  std::optional<CameraView> view_;  // of the command line
+  CameraKeeper cameras_;
+  meshes::OrbitCamera camera_;       // by hand
+  meshes::OrbitCamera shot_camera_;  // one of the daemon's, at the moment
+  double aspect_ = 16.0 / 9.0;       // of the last picture
   bool has_framed_ = false;
   light::SkyKeeper sky_;
   look::Quality quality_ = look::Quality::kAuto;

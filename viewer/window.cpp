@@ -71,6 +71,9 @@ struct Window::State {
       case GLFW_KEY_Q:
         glfwSetWindowShouldClose(window, GLFW_TRUE);
         break;
+      case GLFW_KEY_C:
+        input.next_camera = true;
+        break;
       case GLFW_KEY_F11:
         toggle_fullscreen();
         break;

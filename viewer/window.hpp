@@ -26,6 +26,11 @@ struct WindowInput {
   bool toggle_overlay = false;  ///< H
   bool toggle_turning = false;  ///< T
   bool next_scene = false;      ///< N
+  bool next_camera = false;     ///< C
+
+  bool moves_camera() const {
+    return orbit_right != 0.0 || orbit_down != 0.0 || pan_right != 0.0 || pan_down != 0.0 || zoom_notches != 0.0;
+  }
 };
 
 struct PixelSize {

@@ -36,6 +36,12 @@ nlohmann::ordered_json json_of(const ParameterValues& values) {
   return json;
 }
 
+/// The time from which it is on.
+std::optional<std::string> from_text(const settings::CameraConfig& camera) {
+  if (!camera.values.has("from")) return std::nullopt;
+  return camera.values.text("from");
+}
+
 /// What print_summary() shows, and with `full` every value.
 nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
   nlohmann::ordered_json sensors = nlohmann::ordered_json::array();
@@ -56,7 +62,12 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
     scenes.push_back({{"name", scene.name}, {"kind", scene.kind->name}});
     if (full) scenes.back()["values"] = json_of(scene.values);
   }
-  nlohmann::ordered_json json = {{"sensors", sensors}, {"scenes", scenes}};
+  nlohmann::ordered_json cameras = nlohmann::ordered_json::array();
+  for (const settings::CameraConfig& camera : config.cameras) {
+    cameras.push_back({{"name", camera.name}, {"from", tools::sensors::json_or_null(from_text(camera))}});
+    if (full) cameras.back()["values"] = json_of(camera.values);
+  }
+  nlohmann::ordered_json json = {{"sensors", sensors}, {"scenes", scenes}, {"cameras", cameras}};
   if (!full) return json;
   json["seed"] = config.seed;
   json["stream"] = json_of(config.by_name.stream);
@@ -78,6 +89,11 @@ void print_summary(const settings::Config& config, const std::filesystem::path& 
   }
   for (const settings::SceneConfig& scene : config.scenes)
     fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
+  for (const settings::CameraConfig& camera : config.cameras) {
+    const std::optional<std::string> from = from_text(camera);
+    fmt::print("  camera {}{}\n", camera.name,
+               from ? fmt::format(", from {} ({})", *from, config.clock.zone_name()) : std::string());
+  }
 }
 
 struct CheckOptions {
@@ -107,8 +123,9 @@ void add_check_config(CLI::App& app) {
       "Exit code 0: no error; 78: errors, each reported as file:line:column: key: what is wrong.\nNo device is opened. "
       "--full prints the whole configuration with every default; \"(secret)\" stands in place of a password.\n"
       "Warns on standard error where others can read a password.\n"
-      "--json: sensors (name, driver, place, gust_length_m, height_m) and scenes (name, kind); with --full also the\n"
-      "values of every table by the keys of the configuration, without secrets.");
+      "--json: sensors (name, driver, place, gust_length_m, height_m), scenes (name, kind) and cameras (name, from); "
+      "with\n"
+      "--full also the values of every table by the keys of the configuration, without secrets.");
   auto options = std::make_shared<CheckOptions>();
   command->add_option("file", options->file, "the configuration")->required()->type_name("FILE.toml");
   command->add_flag("--full", options->full, "print every value, including defaults, as TOML");
@@ -144,6 +161,10 @@ std::vector<DescribedTable> all_tables() {
   for (const scenes::SceneDescription* scene : scenes::scene_table()) {
     all.push_back({"[[scene]]", fmt::format("kind = \"{}\": {}", scene->name, scene->summary), scene->parameters});
   }
+  all.push_back({"[[camera]]",
+                 "a place to see the scenes from, with a name, and how it moves; viewers follow it at once, and take "
+                 "the next when its time comes",
+                 look::camera_parameters()});
   return all;
 }
 

@@ -20,11 +20,10 @@ namespace {
 
 constexpr const char* kReloadFooter =
     "The daemon reads the file that it was started with, and applies what can change while it runs: scenes,\n"
-    "[sensor.calibration] except for heights, [sensor.judge], [shaping], [look], [log], who may connect and control, "
-    "how much "
-    "is\n"
-    "recorded, and the rate of recordings that play. What else has changed is named: it takes a restart. A mistake\n"
-    "changes nothing. SIGHUP does the same; then the log says what was done.\n"
+    "[sensor.calibration] except for heights, [sensor.judge], [shaping], [look], [[camera]], [log], who may connect\n"
+    "and control, how much is recorded, and the rate of recordings that play. What else has changed is named: it "
+    "takes\n"
+    "a restart. A mistake changes nothing. SIGHUP does the same; then the log says what was done.\n"
     "  yuragi reload                            the daemon at 127.0.0.1:7410\n"
     "  yuragi reload --config wall.toml         the one that was started with this file, where this file says\n"
     "Exit code 0: done; 64: the daemon has no such file; 69: no daemon answers; 70: it failed, and the daemon says\n"

@@ -61,6 +61,12 @@ wire::RecorderStatus to_wire(const recording::RecorderStatus& status) {
           .error = status.error};
 }
 
+std::vector<look::Camera> cameras_of(const settings::Config& config) {
+  std::vector<look::Camera> cameras;
+  for (const settings::CameraConfig& camera : config.cameras) cameras.push_back(camera.camera);
+  return cameras;
+}
+
 wire::Lateness lateness_of(const animation::DurationHistogram& histogram) {
   return {.p50_s = histogram.percentile_s(0.5), .p99_s = histogram.percentile_s(0.99), .max_s = histogram.max_s()};
 }
@@ -79,6 +85,8 @@ class Service::Io {
         hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0),
         shaper_(config, gusts_),
         look_(config.look),
+        cameras_(cameras_of(config)),
+        clock_of_cameras_(config.clock),
         players_(config.stream.control, hub_.players()),
         folders_(config, options.record),
         control_(config.stream.control),
@@ -232,6 +240,8 @@ class Service::Io {
     hub_.change(next);
     if (plan.changes_shaping) shaper_.change(next.shaping);
     look_ = next.look;
+    cameras_ = cameras_of(next);
+    clock_of_cameras_ = next.clock;
     control_ = next.stream.control;
     director_.allow(control_);
     players_.allow(control_);
@@ -315,6 +325,8 @@ class Service::Io {
     status.wind = hub_.wind();
     status.shaping = shaper_.status();
     status.look = look_;
+    status.cameras = cameras_;
+    status.camera = look::camera_at(cameras_, clock_of_cameras_.hour_of_day(clock_.now().utc));
     status.late_ticks = loop_ ? loop_->counters().skipped_ticks.load(std::memory_order_relaxed) : 0;
     status.clients = static_cast<std::uint32_t>(stream_.client_count());
     const stream::ClientCounts& counts = stream_.counts();
@@ -386,7 +398,9 @@ class Service::Io {
   stream::TcpStream stream_;
   sensing::SensorHub hub_;
   shaping::WindShaper shaper_;
-  look::Look look_;  // for the viewers
+  look::Look look_;                    // for the viewers
+  std::vector<look::Camera> cameras_;  // for them, too
+  settings::LocalClock clock_of_cameras_;
   sensing::PlayerDirector players_;
   sensing::RecordingFolders folders_;
   Latest<wind::ground::DrivingWind> wind_;

@@ -23,6 +23,10 @@ constexpr std::string_view kNameKey = "name";
 constexpr std::string_view kCalibrationKey = "calibration";
 constexpr std::string_view kBlendKey = "blend";
 constexpr std::string_view kJudgeKey = "judge";
+constexpr std::string_view kCameraList = "camera";
+
+/// The scenes of a file without any.
+std::vector<SceneConfig> default_scenes();
 
 /// All keys of a [[sensor]] or a [[scene]] of this kind.
 std::vector<Parameter> parameters_of(const drivers::sensor::DriverDescription& driver) {
@@ -88,6 +92,8 @@ class ConfigReader {
     for_each_entry(root, "scene", "kind", kMostScenes, scenes::scene_table(),
                    [&](const std::string& name, const scenes::SceneDescription& kind, const ParameterValues& values,
                        const toml::table&) { config.scenes.push_back(scene_config_of(name, kind, values)); });
+    if (config.scenes.empty()) config.scenes = default_scenes();
+    read_cameras(root, config);
 
     if (!mistakes_.empty()) throw ConfigError(mistakes_);
     return config;
@@ -129,14 +135,13 @@ class ConfigReader {
 
   void check_top_level(const toml::table& root) {
     for (const auto& [key, node] : root) {
-      const bool is_array = key == "sensor" || key == "scene";
+      const bool is_array = key == "sensor" || key == "scene" || key == kCameraList;
       bool known = is_array || key == "seed";
       for (const ConfigTable& table : config_tables()) known = known || table.name == key.str();
       if (!known) {
         mistake(key.source(), std::string(key.str()),
                 "is not known here; allowed: seed, [stream], [recording], [animation], [wind], [shaping], [look], "
-                "[log], "
-                "[[sensor]], [[scene]]");
+                "[log], [[sensor]], [[scene]], [[camera]]");
       } else if (is_array && !(node.is_array_of_tables() || (node.is_array() && node.as_array()->empty()))) {
         mistake(key.source(), std::string(key.str()),
                 "is one table; write [[" + std::string(key.str()) + "]] above it");
@@ -261,6 +266,59 @@ class ConfigReader {
     }
   }
 
+  /// Every [[camera]]: its name, its values, and whether they go together with the scenes and the other cameras.
+  void read_cameras(const toml::table& root, Config& config) {
+    const toml::node* node = root.get(kCameraList);
+    const toml::array* entries = node != nullptr ? node->as_array() : nullptr;
+    if (entries == nullptr) return;
+    if (entries->size() > look::kMostCameras) {
+      mistake(entries->get(look::kMostCameras)->source(), std::string(kCameraList),
+              fmt::format("is one of {}; allowed: at most {}", entries->size(), look::kMostCameras));
+      return;
+    }
+    for (const toml::node& element : *entries) {
+      // By pointer: a copy of a TOML table loses its lines and columns.
+      if (const toml::table* entry = element.as_table()) read_camera(*entry, config);
+    }
+    const auto has_time = [](const CameraConfig& camera) { return camera.camera.from_h.has_value(); };
+    if (std::ranges::any_of(config.cameras, has_time)) {
+      // A zone that is not known has been reported with [shaping].
+      if (auto clock = LocalClock::of_zone(config.by_name.shaping.text("zone"))) config.clock = *clock;
+    }
+  }
+
+  void read_camera(const toml::table& entry, Config& config) {
+    const std::string prefix = std::string(kCameraList) + ".";
+    CameraConfig camera{.name = read_name(entry, prefix, {})};
+    if (!entry.contains(kNameKey)) mistake(entry.source(), prefix + "name", "is missing; give each camera a name");
+    camera.values = read_values(entry, prefix, look::camera_parameters(), {kNameKey});
+    const auto mistake_at = [&](std::string_view key, const std::string& what) {
+      const toml::node* at = entry.get(key);
+      mistake(at != nullptr ? at->source() : entry.source(), prefix + std::string(key), what);
+    };
+    auto made = look::camera_of(camera.name, camera.values);
+    if (!made) return mistake_at(made.error().name, made.error().message);
+    camera.camera = std::move(*made);
+
+    for (const CameraConfig& other : config.cameras) {
+      if (!camera.name.empty() && other.name == camera.name) {
+        mistake_at(kNameKey, "\"" + camera.name + "\" is used twice; give each camera a name");
+      }
+      if (camera.camera.from_h && other.camera.from_h == camera.camera.from_h) {
+        mistake_at("from", "is that of the camera \"" + other.name + "\", too; only one can be on");
+      }
+    }
+    const std::string& scene = camera.camera.scene;
+    if (!scene.empty() && std::ranges::find(config.scenes, scene, &SceneConfig::name) == config.scenes.end()) {
+      std::string names;
+      for (const SceneConfig& known : config.scenes) {
+        names.append(names.empty() ? "\"" : ", \"").append(known.name).append("\"");
+      }
+      mistake_at("scene", "is \"" + scene + "\"; allowed: the name of a scene: " + names);
+    }
+    config.cameras.push_back(std::move(camera));
+  }
+
   template <class Description>
   const Description* find_kind(const toml::table& entry, std::string_view list, std::string_view kind_key,
                                std::span<const Description* const> descriptions) {
@@ -311,6 +369,9 @@ SceneConfig default_scene(std::string_view kind) {
   const scenes::SceneDescription& scene = description_named(scenes::scene_table(), kind);
   return scene_config_of(std::string(scene.name), scene, defaults_of(scene));
 }
+std::vector<SceneConfig> default_scenes() {
+  return {default_scene("grass"), default_scene("ground")};
+}
 
 toml::table to_table(const ParameterValues& values) {
   toml::table table;
@@ -351,9 +412,6 @@ Config parse_config(std::string_view toml_text, const std::string& source_name) 
   }
   Config config = ConfigReader(source_name).read(root);
   if (config.sensors.empty()) config.sensors.push_back(synthetic_sensor());
-  if (config.scenes.empty()) {
-    for (const char* kind : {"grass", "ground"}) config.scenes.push_back(default_scene(kind));
-  }
   return config;
 }
 
@@ -466,6 +524,14 @@ std::string to_toml(const Config& config) {
     root["sensor"].as_array()->back().as_table()->insert(kBlendKey, to_table(sensor.by_name.blend));
   }
   for (const SceneConfig& scene : config.scenes) append("scene", "kind", scene.kind->name, scene.name, scene.values);
+
+  toml::array cameras;
+  for (const CameraConfig& camera : config.cameras) {
+    toml::table entry = to_table(camera.values);
+    entry.insert_or_assign(kNameKey, camera.name);
+    cameras.push_back(std::move(entry));
+  }
+  if (!cameras.empty()) root.insert(kCameraList, std::move(cameras));
 
   std::ostringstream out;
   out << root << '\n';

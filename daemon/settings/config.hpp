@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "daemon/settings/animation_config.hpp"
+#include "daemon/settings/camera_config.hpp"
 #include "daemon/settings/config_tables.hpp"
+#include "daemon/settings/local_clock.hpp"
 #include "daemon/settings/log_config.hpp"
 #include "daemon/settings/recording_config.hpp"
 #include "daemon/settings/scene_config.hpp"
@@ -42,6 +44,8 @@ struct Config {
   LogConfig log;
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
+  std::vector<CameraConfig> cameras;
+  LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC where no camera has a time
 
   /// The values of the tables by key, from which the members above were made. For to_toml() and plan_reload() only.
   struct ByName {

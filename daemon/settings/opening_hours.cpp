@@ -5,9 +5,7 @@
 #include <charconv>
 #include <chrono>
 #include <optional>
-#include <stdexcept>
 
-#include <date/tz.h>
 #include <fmt/format.h>
 
 namespace yuragi::daemon::settings {
@@ -81,16 +79,6 @@ std::optional<OpeningRule> parse_rule(std::string_view text) {
   return rule;
 }
 
-/// The library's object of the zone. Null: UTC.
-const date::time_zone* find_zone(const std::string& name) {
-  if (!name.empty()) return date::locate_zone(name);
-  try {
-    return date::current_zone();
-  } catch (const std::exception&) {
-    return nullptr;  // without /etc/localtime the machine runs on UTC
-  }
-}
-
 }  // namespace
 
 Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours, const std::string& zone) {
@@ -98,14 +86,9 @@ Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours,
   const bool has_hours = !without_spaces_around(hours).empty();
   // Without rules the time zone is not needed.
   if (!has_hours && zone.empty()) return result;
-  try {
-    result.zone_ = find_zone(zone);
-  } catch (const std::exception&) {
-    return ParameterError{"zone", fmt::format("is \"{}\", which is no time zone that this machine knows; allowed: a "
-                                              "name such as \"Europe/Berlin\" or \"Asia/Tokyo\" (timedatectl "
-                                              "list-timezones), or nothing for this machine's own",
-                                              zone)};
-  }
+  auto clock = LocalClock::of_zone(zone);
+  if (!clock) return clock.error();
+  result.clock_ = *clock;
   if (!has_hours) return result;
   if (hours.size() > kLongestHours) {
     return ParameterError{"hours", fmt::format("has {} characters; allowed: at most {}", hours.size(), kLongestHours)};
@@ -135,20 +118,15 @@ Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours,
 }
 
 std::size_t OpeningHours::minute_of_week(UtcTime now) const {
-  const auto utc = std::chrono::floor<std::chrono::seconds>(now);
-  const auto since_1970 = zone_ != nullptr ? zone_->to_local(utc).time_since_epoch() : utc.time_since_epoch();
   // 1 January 1970 was a Thursday, three days after a Monday. The modulo is made positive for earlier times.
   constexpr auto kWeek = static_cast<std::int64_t>(kMinutesPerWeek);
-  const std::int64_t minutes = std::chrono::floor<std::chrono::minutes>(since_1970).count() + std::int64_t{3} * 24 * 60;
+  const std::int64_t minutes =
+      std::chrono::floor<std::chrono::minutes>(clock_.since_1970(now)).count() + std::int64_t{3} * 24 * 60;
   return static_cast<std::size_t>((minutes % kWeek + kWeek) % kWeek);
 }
 
 bool OpeningHours::is_open(UtcTime now) const {
   return is_always_open() || open_.test(minute_of_week(now));
-}
-
-std::string OpeningHours::zone_name() const {
-  return zone_ != nullptr ? zone_->name() : "UTC";
 }
 
 std::string OpeningHours::until_text(UtcTime now) const {

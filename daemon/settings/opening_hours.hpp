@@ -5,13 +5,10 @@
 #include <string>
 #include <string_view>
 
+#include "daemon/settings/local_clock.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
-
-namespace date {
-class time_zone;
-}
 
 namespace yuragi::daemon::settings {
 
@@ -36,7 +33,7 @@ class OpeningHours {
   bool is_open(UtcTime now) const;
 
   /// The time zone: "Europe/Berlin"; "UTC" on a machine without one.
-  std::string zone_name() const;
+  std::string zone_name() const { return clock_.zone_name(); }
 
   /// The local time of the next change, for a person: "until 18:00", "until Tue 10:00" where that is more than a
   /// day away; empty where there is none.
@@ -47,8 +44,8 @@ class OpeningHours {
 
   std::size_t minute_of_week(UtcTime now) const;
 
-  std::bitset<kMinutesPerWeek> open_;      ///< from Monday 00:00 on
-  const date::time_zone* zone_ = nullptr;  ///< null: UTC; lives as long as the program
+  std::bitset<kMinutesPerWeek> open_;  ///< from Monday 00:00 on
+  LocalClock clock_;
 };
 
 }  // namespace yuragi::daemon::settings

@@ -233,6 +233,17 @@ void compare_scenes(Comparison& comparison, const std::vector<SceneConfig>& runn
   compare_lists(comparison, "scene", change, running, wanted);
 }
 
+void compare_cameras(Comparison& comparison, const std::vector<CameraConfig>& running,
+                     const std::vector<CameraConfig>& wanted) {
+  for (const CameraConfig& camera : wanted) {
+    const auto before = std::ranges::find(running, camera.name, &CameraConfig::name);
+    if (before == running.end()) continue;
+    comparison.merged("camera " + camera.name + ": ", before->values, camera.values,
+                      [](const std::string&) { return kApplied; });
+  }
+  compare_lists(comparison, "camera", kApplied, running, wanted);
+}
+
 }  // namespace
 
 std::optional<KeyChange> change_of(std::string_view table, std::string_view key) {
@@ -284,6 +295,9 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
   compare_scenes(comparison, running.scenes, wanted.scenes, can_change_scenes ? kApplied : kTakesRestart);
   plan.changes_scenes = can_change_scenes && plan.applied.size() + plan.takes_restart.size() > noted_before;
   if (plan.changes_scenes) next.scenes = wanted.scenes;
+  compare_cameras(comparison, running.cameras, wanted.cameras);
+  next.cameras = wanted.cameras;
+  next.clock = wanted.clock;
   return plan;
 }
 

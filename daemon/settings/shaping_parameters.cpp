@@ -74,10 +74,11 @@ const std::array kShapingParameters = {
               .default_value = std::string(""),
               .help = "opening hours in local time, \"10:00-18:00\" or \"Tue-Sun 10:00-18:00, Thu 18:00-21:00\"; "
                       "outside of them the wind fades out; empty: always open"},
-    Parameter{.name = "zone",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "time zone of the hours, \"Europe/Berlin\"; empty: that of this machine"},
+    Parameter{
+        .name = "zone",
+        .unit = "",
+        .default_value = std::string(""),
+        .help = "time zone of the hours, and of the cameras' times: \"Europe/Berlin\"; empty: that of this machine"},
     Parameter{.name = "closed",
               .unit = "",
               .default_value = 0.0,

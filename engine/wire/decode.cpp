@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -182,6 +183,37 @@ void read(const fb::Look* from, look::Look& to) {
   to = look::within_limits(look);
 }
 
+/// Refuses only a text that is too long.
+bool read(const fb::Camera& from, look::Camera& to) {
+  look::Camera camera{.target_x_m = from.x_m(),
+                      .target_y_m = from.y_m(),
+                      .target_z_m = from.z_m(),
+                      .heading_deg = from.heading_deg(),
+                      .pitch_deg = from.pitch_deg(),
+                      .fov_deg = from.fov_deg(),
+                      .turn_deg_min = from.turn_deg_min(),
+                      .sway_deg = from.sway_deg(),
+                      .pan_deg = from.pan_deg(),
+                      .dolly_m = from.dolly_m(),
+                      .track_m = from.track_m(),
+                      .period_s = from.period_s(),
+                      .fade_s = from.fade_s()};
+  if (const auto distance_m = from.distance_m()) camera.distance_m = *distance_m;
+  if (const auto hour = from.from_h()) camera.from_h = *hour;
+  to = look::within_limits(camera);
+  return read_text(from.name(), to.name) && read_text(from.scene(), to.scene);
+}
+
+/// The first kMostCameras of them: a newer server may have more.
+bool read_cameras(const fb::Sensors& from, Sensors& to) {
+  const std::size_t count = from.cameras() == nullptr ? 0 : from.cameras()->size();
+  for (std::size_t i = 0; i < std::min(count, look::kMostCameras); ++i) {
+    if (!read(*from.cameras()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.cameras.emplace_back())) return false;
+  }
+  to.camera = from.camera() < to.cameras.size() ? from.camera() : 0;
+  return true;
+}
+
 bool read(const fb::Sensors& from, Sensors& to) {
   const std::size_t count = from.sensors() == nullptr ? 0 : from.sensors()->size();
   if (count > kMaxSensors || !read(from.wind(), to.wind) || !read(from.wind_place(), to.wind)) return false;
@@ -193,7 +225,7 @@ bool read(const fb::Sensors& from, Sensors& to) {
   to.stuck_clients = from.stuck_clients();
   to.idle_clients = from.idle_clients();
   read(from.look(), to.look);
-  return read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
+  return read_cameras(from, to) && read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
          read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder);
 }
 

@@ -191,6 +191,30 @@ flatbuffers::Offset<fb::Look> add_look(Builder& builder, const look::Look& look)
   return table.Finish();
 }
 
+flatbuffers::Offset<fb::Camera> add_camera(Builder& builder, const look::Camera& camera) {
+  const auto name = add_text(builder, camera.name);
+  const auto scene = add_text(builder, camera.scene);
+  fb::CameraBuilder table(builder);
+  table.add_name(name);
+  table.add_scene(scene);
+  table.add_x_m(camera.target_x_m);
+  table.add_y_m(camera.target_y_m);
+  table.add_z_m(camera.target_z_m);
+  table.add_heading_deg(camera.heading_deg);
+  table.add_pitch_deg(camera.pitch_deg);
+  if (camera.distance_m) table.add_distance_m(*camera.distance_m);
+  table.add_fov_deg(camera.fov_deg);
+  table.add_turn_deg_min(camera.turn_deg_min);
+  table.add_sway_deg(camera.sway_deg);
+  table.add_pan_deg(camera.pan_deg);
+  table.add_dolly_m(camera.dolly_m);
+  table.add_track_m(camera.track_m);
+  table.add_period_s(camera.period_s);
+  if (camera.from_h) table.add_from_h(*camera.from_h);
+  table.add_fade_s(camera.fade_s);
+  return table.Finish();
+}
+
 /// The first kMaxReloadItems of them.
 flatbuffers::Offset<flatbuffers::Vector<Text>> add_texts(Builder& builder, const std::vector<std::string>& texts) {
   std::vector<Text> added;
@@ -295,6 +319,9 @@ Bytes encode(const Sensors& sensors) {
   const auto recorder =
       sensors.recorder ? add_recorder(builder, *sensors.recorder) : flatbuffers::Offset<fb::Recorder>();
   const auto look = add_look(builder, sensors.look);
+  std::vector<flatbuffers::Offset<fb::Camera>> cameras;
+  for (const look::Camera& camera : sensors.cameras) cameras.push_back(add_camera(builder, camera));
+  const auto camera_list = builder.CreateVector(cameras);
   fb::SensorsBuilder table(builder);
   table.add_sensors(vector);
   table.add_wind(&wind);
@@ -309,6 +336,8 @@ Bytes encode(const Sensors& sensors) {
   if (tick_lateness) table.add_tick_lateness(&*tick_lateness);
   if (sensors.recorder) table.add_recorder(recorder);
   table.add_look(look);
+  table.add_cameras(camera_list);
+  table.add_camera(static_cast<std::uint32_t>(sensors.camera));
   return finish(builder, fb::Body_Sensors, table.Finish());
 }
 

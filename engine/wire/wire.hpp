@@ -14,6 +14,7 @@
 
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
+#include "engine/look/camera.hpp"
 #include "engine/look/look.hpp"
 #include "engine/pose/skeleton.hpp"
 #include "engine/wind/judging/sensor_state.hpp"
@@ -169,6 +170,8 @@ struct Sensors {
   std::optional<Lateness> tick_lateness = std::nullopt;   ///< of the animation's ticks
   std::optional<RecorderStatus> recorder = std::nullopt;  ///< nothing: nothing is recorded, or it is not known
   look::Look look = {};                                   ///< within_limits(), whatever was sent
+  std::vector<look::Camera> cameras = {};                 ///< the same; at most look::kMostCameras
+  std::size_t camera = 0;                                 ///< which is on by the time of day; 0 where there are none
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };

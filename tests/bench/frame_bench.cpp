@@ -81,7 +81,7 @@ void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, g
   }
   stage.set_scenes(scenes.models());
   meshes::OrbitCamera camera;
-  camera.frame(stage.home(static_cast<double>(options.width_px) / options.height_px));
+  camera.frame(scenes.home(stage, static_cast<double>(options.width_px) / options.height_px));
 
   gl::PassClock clock;
   if (!gl::is_software_renderer()) stage.time_passes_with(&clock);

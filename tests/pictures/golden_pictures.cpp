@@ -18,9 +18,9 @@ std::string golden_file(std::string_view scene, const Weather& weather) {
 }
 
 GoldenMoment golden_moment(std::string_view scene, const Weather& weather) {
-  ScenesInWind scenes(scene, weather.speed_m_s);
-  scenes.advance(kSettling_s);
-  return {scenes.models(), scenes.moment()};
+  const auto scenes = std::make_shared<ScenesInWind>(scene, weather.speed_m_s);
+  scenes->advance(kSettling_s);
+  return {scenes, scenes->models(), scenes->moment()};
 }
 
 GoldenDrawing::GoldenDrawing(int samples)
@@ -31,7 +31,7 @@ GoldenDrawing::GoldenDrawing(int samples)
 Picture GoldenDrawing::draw(const GoldenMoment& moment) {
   stage_.set_scenes(moment.models);
   meshes::OrbitCamera camera;
-  camera.frame(stage_.home(static_cast<double>(kWidth_px) / kHeight_px));
+  camera.frame(moment.scenes->home(stage_, static_cast<double>(kWidth_px) / kHeight_px));
   stage_.draw(moment.poses, camera, target_);
   return {kWidth_px, kHeight_px, target_.read_rgb()};
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -19,13 +20,14 @@ std::string golden_file(std::string_view scene, const Weather& weather);
 
 /// A scene as its golden picture shows it.
 struct GoldenMoment {
+  std::shared_ptr<const ScenesInWind> scenes;
   std::vector<wire::SceneModel> models;
   stream::PoseMoment poses;
 };
 GoldenMoment golden_moment(std::string_view scene, const Weather& weather);
 
-/// Draws as the golden pictures are drawn: by the processor, without a display, from where the viewer's camera begins.
-/// One at a time.
+/// Draws as the golden pictures are drawn: by the processor, without a display, from where the viewer's camera begins,
+/// or by the day's camera of a configuration that has cameras. One at a time.
 class GoldenDrawing {
  public:
   static constexpr int kWidth_px = 480;

@@ -7,6 +7,7 @@
 
 #include "daemon/sensing/sensor_hub.hpp"
 #include "tests/support/places.hpp"
+#include "viewer/camera_place.hpp"
 
 namespace yuragi::viewer {
 namespace {
@@ -45,7 +46,9 @@ ScenesInWind::ScenesInWind(const daemon::settings::Config& config,
                            const std::shared_ptr<const wind::turbulence::GustNoise>& gusts)
     : tick_s_(1.0 / config.animation.rate_hz),
       animation_(config, gusts),
-      estimator_(daemon::sensing::make_estimator(config, gusts, animation_.reach_m())) {}
+      estimator_(daemon::sensing::make_estimator(config, gusts, animation_.reach_m())) {
+  for (const daemon::settings::CameraConfig& camera : config.cameras) cameras_.push_back(camera.camera);
+}
 
 void ScenesInWind::advance(double duration_s) {
   for (auto ticks = std::lround(duration_s / tick_s_); ticks > 0; --ticks) {
@@ -53,6 +56,12 @@ void ScenesInWind::advance(double duration_s) {
     const wind::WindState state = estimator_.advance(now_);  // no sensor speaks: the configuration's default wind
     animation_.step({state, estimator_.ground(), estimator_.stroke()}, tick_s_);
   }
+}
+
+meshes::CameraPlace ScenesInWind::home(const looks::Stage& stage, double aspect, double hour) const {
+  if (cameras_.empty()) return stage.home(aspect);
+  const look::Camera& camera = cameras_[look::camera_at(cameras_, hour)];
+  return place_of(camera, stage.bounds_of(camera.scene), aspect, 0.0);
 }
 
 stream::PoseMoment ScenesInWind::moment() const {

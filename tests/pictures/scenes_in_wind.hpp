@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "daemon/animation/animation.hpp"
+#include "engine/look/camera.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
+#include "viewer/looks/stage.hpp"
 #include "viewer/stream/pose_moment.hpp"
 
 namespace yuragi::viewer {
@@ -33,10 +35,15 @@ class ScenesInWind {
   std::vector<wire::SceneModel> models() const { return animation_.describe().scenes; }
   stream::PoseMoment moment() const;
 
+  /// The camera that the configuration has at this hour, where it stands at its middle; otherwise where the stage,
+  /// which has these scenes, begins.
+  meshes::CameraPlace home(const looks::Stage& stage, double aspect, double hour = 12.0) const;
+
  private:
   ScenesInWind(const daemon::settings::Config& config, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts);
 
   double tick_s_;
+  std::vector<look::Camera> cameras_;
   daemon::animation::Animation animation_;
   wind::blend::BlendedEstimator estimator_;
   MonoTime now_{std::chrono::hours(1)};

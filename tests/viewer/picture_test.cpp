@@ -205,6 +205,38 @@ TEST_F(PictureTest, DrawsTheOverlayWhenAsked) {
   EXPECT_GT(without->difference(*with), 1.0);
 }
 
+TEST_F(PictureTest, IsSeenByTheDaemonsCameraOfTheHourOrTheOneThatIsAskedFor) {
+  wire::Sensors status;
+  status.cameras = {look::Camera{.name = "day", .pitch_deg = 4.0, .distance_m = 6.0, .fov_deg = 60.0},
+                    look::Camera{.name = "night", .pitch_deg = 50.0, .distance_m = 3.0, .fov_deg = 20.0}};
+  status.camera = 1;
+  const auto hours = take("hours.png", 0.3, {"--frames", "2"}, status);
+  const auto night = take("night.png", 0.3, {"--frames", "2", "--camera", "night"}, status);
+  const auto day = take("day.png", 0.3, {"--frames", "2", "--camera", "day"}, status);
+  const auto by_hand = take("by hand.png", 0.3, {"--frames", "2", "--camera", "20,30,4"}, status);
+  ASSERT_TRUE(hours->is_there() && night->is_there() && day->is_there() && by_hand->is_there());
+  EXPECT_LT(hours->difference(*night), 0.1);
+  EXPECT_GT(hours->difference(*day), 10.0);
+  EXPECT_GT(hours->difference(*by_hand), 10.0);
+  EXPECT_GT(day->mean(0.0, 0.2).b, 2.0 * night->mean(0.0, 0.2).b) << "sky, and grass";
+}
+
+TEST_F(PictureTest, EndsWith64ForACameraThatTheDaemonDoesNotHave) {
+  const pose::Skeleton meadow = test_meadow(4, 1.0);
+  wire::FrameEncoder encoder;
+  wire::Sensors status;
+  const auto refusal_of = [&](const wire::Sensors& said) {
+    const StreamServer server(greeting_for(meadow) + wire::encode(said) +
+                              frame_of(meadow, test_pose(meadow, 0.0, 0.0, 0.0, 0.0), 1, 0.1, 0.0, encoder));
+    const Ended ended = take_picture(server.port(), "none.png", {"--camera", "dawn"});
+    EXPECT_EQ(ended.code, 64);
+    return ended.said;
+  };
+  EXPECT_THAT(refusal_of(status), testing::HasSubstr("has no camera 'dawn'; it has none: there is no [[camera]]"));
+  status.cameras = {look::Camera{.name = "day"}, look::Camera{.name = "night"}};
+  EXPECT_THAT(refusal_of(status), testing::HasSubstr("has no camera 'dawn'; it has day, night"));
+}
+
 TEST_F(PictureTest, FadesToBlackOutsideOfOpeningHoursWhenAsked) {
   wire::Sensors closing;
   closing.shaping.openness = 0.5;

@@ -48,6 +48,10 @@ void RenderTarget::resolve() {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, sampled_.name());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.name());
   glBlitFramebuffer(0, 0, width_px_, height_px_, 0, 0, width_px_, height_px_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  bind_resolved();
+}
+
+void RenderTarget::bind_resolved() const {
   glBindFramebuffer(GL_FRAMEBUFFER, resolved_.name());
 }
 

@@ -22,6 +22,8 @@ class RenderTarget {
   void begin();
   /// Resolves the samples to pixels; what is drawn from now on (the overlay) goes over these.
   void resolve();
+  /// What is read and drawn from now on are these pixels, which resolve() has made.
+  void bind_resolved() const;
   /// Copies the pixels to the window's framebuffer.
   void show(int window_width_px, int window_height_px);
   /// The pixels, 3 bytes each, rows from the top down.

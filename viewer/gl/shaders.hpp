@@ -14,6 +14,7 @@ extern const std::string_view kClothVert;
 extern const std::string_view kClothFrag;
 extern const std::string_view kContactVert;
 extern const std::string_view kContactFrag;
+extern const std::string_view kCrossFadeFrag;
 extern const std::string_view kDimFrag;
 extern const std::string_view kDoorVert;
 extern const std::string_view kDoorFrag;

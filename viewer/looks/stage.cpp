@@ -81,6 +81,12 @@ meshes::CameraPlace Stage::home(double aspect) const {
   return is_all_field ? meshes::place_across(bounds()) : meshes::place_around(bounds(), aspect);
 }
 
+std::optional<meshes::Bounds> Stage::bounds_of(std::string_view scene) const {
+  const auto found = std::ranges::find_if(views_, [&](const auto& view) { return view->scene.name == scene; });
+  if (found == views_.end()) return std::nullopt;
+  return (*found)->renderer->is_ground() ? kPartOfGround : (*found)->bounds;
+}
+
 std::size_t Stage::node_count() const {
   std::size_t count = 0;
   for (const wire::SceneModel* scene : scenes_) count += pose::node_count(scene->skeleton);

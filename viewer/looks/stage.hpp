@@ -33,10 +33,13 @@ class Stage {
   void show_only(std::optional<std::string> name) { only_ = std::move(name); }
   /// Draws only the first scene, then only the next, and after the last all again.
   void show_next();
+  bool shows_all() const { return !only_; }
 
   /// The box around all scenes that are drawn, and the camera's first place for a picture of width / height `aspect`.
   meshes::Bounds bounds() const;
   meshes::CameraPlace home(double aspect) const;
+  /// The box around the scene of this name; nothing where there is none.
+  std::optional<meshes::Bounds> bounds_of(std::string_view scene) const;
   /// How many joints move in all scenes.
   std::size_t node_count() const;
 

@@ -17,9 +17,17 @@ constexpr double kAcrossPitch_deg = 6.0;
 constexpr double kFieldHeights = 5.0;     // so many times as wide as high: something to look across
 constexpr double kAcrossHeights = 1.05;   // of the eye, in heights of what it looks across
 constexpr double kFromCorner_deg = 32.0;  // how far a broad side is looked at aslant
-constexpr double kAroundPitch_deg = 4.0;
-constexpr double kFlatPitch_deg = 9.0;
-constexpr double kFilled = 0.95;  // of the picture
+constexpr double kFlatHeights = 0.2;      // of what is flat, against its width
+constexpr double kFlatPitch_deg = 7.0;
+constexpr double kFlatShown = 0.6;  // of its width
+constexpr double kEyeHeights = 0.45;
+constexpr double kSittingEye_m = 0.5;
+constexpr double kStandingEye_m = 1.5;
+constexpr double kLowestHorizon = 0.55;  // so far from the picture's middle to its lower side
+constexpr double kFilled = 0.95;         // of the picture
+constexpr double kUsualAspect = 16.0 / 9.0;
+constexpr double kMinFieldOfView_deg = 2.0;
+constexpr double kMaxFieldOfView_deg = 120.0;
 
 glm::dvec3 direction(const CameraPlace& place) {
   const double heading = glm::radians(place.heading_deg);
@@ -34,19 +42,36 @@ double finite_or(double value, double fallback) {
 CameraPlace limited(const CameraPlace& place) {
   CameraPlace to = place;
   to.heading_deg = finite_or(place.heading_deg, 0.0);
-  to.pitch_deg = std::clamp(finite_or(place.pitch_deg, 10.0), OrbitCamera::kMinPitch_deg, OrbitCamera::kMaxPitch_deg);
   to.distance_m =
       std::clamp(finite_or(place.distance_m, 5.0), OrbitCamera::kMinDistance_m, OrbitCamera::kMaxDistance_m);
   for (int axis = 0; axis < 3; ++axis) {
     to.target_m[axis] = std::clamp(finite_or(place.target_m[axis], 0.0), axis == 1 ? 0.0 : -kMaxTarget_m, kMaxTarget_m);
   }
+  to.field_of_view_deg = std::clamp(finite_or(place.field_of_view_deg, 40.0), kMinFieldOfView_deg, kMaxFieldOfView_deg);
+  // As far up as the eye stays above the ground.
+  const double sine = std::clamp((OrbitCamera::kLowestEye_m - to.target_m.y) / to.distance_m, -1.0, 1.0);
+  to.pitch_deg =
+      std::clamp(finite_or(place.pitch_deg, 10.0), std::max(OrbitCamera::kMinPitch_deg, glm::degrees(std::asin(sine))),
+                 OrbitCamera::kMaxPitch_deg);
   return to;
 }
 
 }  // namespace
 
+glm::dvec3 eye_of(const CameraPlace& place) {
+  return place.target_m - direction(place) * place.distance_m;
+}
+
+double tangent_up(double field_of_view_deg, double aspect) {
+  return std::tan(glm::radians(field_of_view_deg) / 2.0) * std::sqrt(kUsualAspect / aspect);
+}
+
 void OrbitCamera::frame(const CameraPlace& place) {
   home_ = wanted_ = place_ = limited(place);
+}
+
+void OrbitCamera::go_to(const CameraPlace& place) {
+  wanted_ = place_ = limited(place);
 }
 
 void OrbitCamera::orbit(double right, double down) {
@@ -55,9 +80,9 @@ void OrbitCamera::orbit(double right, double down) {
   wanted_ = limited(wanted_);
 }
 
-void OrbitCamera::pan(double right, double down) {
+void OrbitCamera::pan(double right, double down, double aspect) {
   // The point of the target's plane under the pointer stays there: the picture's height in metres at the target.
-  const double height_m = 2.0 * wanted_.distance_m * std::tan(glm::radians(kFieldOfView_deg) / 2.0);
+  const double height_m = 2.0 * wanted_.distance_m * tangent_up(wanted_.field_of_view_deg, aspect);
   const double heading = glm::radians(wanted_.heading_deg);
   const glm::dvec3 to_right(std::cos(heading), 0.0, std::sin(heading));
   const glm::dvec3 forward(std::sin(heading), 0.0, -std::cos(heading));
@@ -77,10 +102,7 @@ void OrbitCamera::advance(double dt_s) {
   place_.heading_deg += share * (wanted_.heading_deg - place_.heading_deg);
   place_.pitch_deg += share * (wanted_.pitch_deg - place_.pitch_deg);
   place_.distance_m += share * (wanted_.distance_m - place_.distance_m);
-}
-
-glm::dvec3 OrbitCamera::eye_m() const {
-  return place_.target_m - direction(place_) * place_.distance_m;
+  place_.field_of_view_deg += share * (wanted_.field_of_view_deg - place_.field_of_view_deg);
 }
 
 glm::mat4 OrbitCamera::view() const {
@@ -89,7 +111,8 @@ glm::mat4 OrbitCamera::view() const {
 
 glm::mat4 OrbitCamera::projection(double aspect) const {
   const double near_m = std::clamp(0.02 * place_.distance_m, 0.01, 1.0);
-  return glm::mat4(glm::perspective(glm::radians(kFieldOfView_deg), aspect, near_m, 2000.0));
+  const double up_rad = 2.0 * std::atan(tangent_up(place_.field_of_view_deg, aspect));
+  return glm::mat4(glm::perspective(up_rad, aspect, near_m, 2000.0));
 }
 
 CameraPlace place_across(const Bounds& bounds) {
@@ -118,32 +141,47 @@ CameraPlace place_across(const Bounds& bounds) {
   return limited(place);
 }
 
-CameraPlace place_around(const Bounds& bounds, double aspect) {
-  const glm::dvec3 low(bounds.low_m);
-  const glm::dvec3 high(bounds.high_m);
-  const glm::dvec3 size_m = high - low;
-
-  // At the broad side: to the south-south-west, or to the west-south-west.
-  CameraPlace place;
-  place.heading_deg = size_m.x >= size_m.z ? 180.0 + kFromCorner_deg : 270.0 - kFromCorner_deg;
-  const bool is_flat = size_m.y < 0.2 * std::hypot(size_m.x, size_m.z);
-  place.pitch_deg = is_flat ? kFlatPitch_deg : kAroundPitch_deg;
-  place.target_m = (low + high) / 2.0;
-
-  // So far away that every corner is in the picture.
+double distance_to_see(const Bounds& bounds, const CameraPlace& place, double aspect) {
+  const glm::dvec3 half_m = glm::dvec3(bounds.high_m - bounds.low_m) / 2.0;
   const glm::dvec3 forward = direction(place);
   const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3(0.0, 1.0, 0.0)));
   const glm::dvec3 up = glm::cross(right, forward);
-  const double tan_up = kFilled * std::tan(glm::radians(OrbitCamera::kFieldOfView_deg) / 2.0);
+  const double tan_up = kFilled * tangent_up(place.field_of_view_deg, aspect);
   double distance_m = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 sign((corner & 1) * 2 - 1, (corner >> 1 & 1) * 2 - 1, (corner >> 2 & 1) * 2 - 1);
-    const glm::dvec3 from_middle = sign * size_m / 2.0;
+    const glm::dvec3 from_middle = sign * half_m;
     const double across = std::abs(glm::dot(from_middle, right)) / (tan_up * aspect);
     const double upright = std::abs(glm::dot(from_middle, up)) / tan_up;
     distance_m = std::max(distance_m, std::max(across, upright) - glm::dot(from_middle, forward));
   }
-  place.distance_m = distance_m;
+  return distance_m;
+}
+
+CameraPlace place_around(const Bounds& bounds, double aspect) {
+  const glm::dvec3 size_m = bounds.high_m - bounds.low_m;
+
+  // At the broad side: to the south-south-west, or to the west-south-west.
+  CameraPlace place;
+  place.heading_deg = size_m.x >= size_m.z ? 180.0 + kFromCorner_deg : 270.0 - kFromCorner_deg;
+  place.target_m = glm::dvec3(bounds.low_m + bounds.high_m) / 2.0;
+  if (size_m.y < kFlatHeights * std::hypot(size_m.x, size_m.z)) {
+    // From its edge, so that it goes on beyond the picture's sides; in an upright picture from no farther.
+    place.pitch_deg = kFlatPitch_deg;
+    place.distance_m = kFlatShown * distance_to_see(bounds, place, std::max(aspect, kUsualAspect));
+    return limited(place);
+  }
+
+  // From as low as a person who stands or sits sees it, against the sky; with the horizon well inside of the picture.
+  const double eye_height_m = std::clamp(kEyeHeights * size_m.y, kSittingEye_m, kStandingEye_m);
+  const double up_deg = glm::degrees(std::atan(tangent_up(place.field_of_view_deg, aspect)));
+  place.pitch_deg = 0.0;
+  for (int round = 0; round < 4; ++round) {
+    place.distance_m = distance_to_see(bounds, place, aspect);
+    const double sine = std::clamp((eye_height_m - place.target_m.y) / place.distance_m, -1.0, 1.0);
+    place.pitch_deg = std::max(glm::degrees(std::asin(sine)), -kLowestHorizon * up_deg);
+  }
+  place.distance_m = distance_to_see(bounds, place, aspect);
   return limited(place);
 }
 

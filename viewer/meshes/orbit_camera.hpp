@@ -10,28 +10,41 @@ namespace yuragi::viewer::meshes {
 /// The position of a camera that orbits a target and never rolls.
 struct CameraPlace {
   glm::dvec3 target_m{0.0};
-  double heading_deg = 0.0;  ///< direction of view: 0 north, 90 east
-  double pitch_deg = 10.0;   ///< of the view below level
-  double distance_m = 5.0;   ///< from the target
+  double heading_deg = 0.0;       ///< direction of view: 0 north, 90 east
+  double pitch_deg = 10.0;        ///< of the view below level; below 0 it looks up
+  double distance_m = 5.0;        ///< from the target
+  double field_of_view_deg = 40;  ///< from the bottom of the picture to its top, at 16:9; see tangent_up()
 };
+
+/// The eye of a place.
+glm::dvec3 eye_of(const CameraPlace& place);
+
+/// The tangent of half the field of view from bottom to top in a picture of width / height `aspect`. At 16:9 it is that
+/// of `field_of_view_deg`. In every other picture it is such that the product of height and width of what is seen stays
+/// the same: an upright one sees less to the sides and more above and below, and a very broad one is not drawn out at
+/// its ends.
+double tangent_up(double field_of_view_deg, double aspect);
 
 /// A camera that the user turns, shifts and moves nearer and farther; it follows these movements smoothly. Pure: time
 /// is a parameter. Thread-safe: no. Its place is always finite and within the limits below.
 class OrbitCamera {
  public:
-  static constexpr double kFieldOfView_deg = 40.0;  ///< from the bottom of the picture to its top
-  static constexpr double kMinPitch_deg = 1.0;      ///< the camera stays above the ground
+  static constexpr double kMinPitch_deg = -45.0;
   static constexpr double kMaxPitch_deg = 89.0;
+  static constexpr double kLowestEye_m = 0.08;  ///< above the ground
   static constexpr double kMinDistance_m = 0.2;
   static constexpr double kMaxDistance_m = 200.0;
 
   /// Takes the place at once, and as the one that reset() returns to.
   void frame(const CameraPlace& place);
   void reset() { wanted_ = home_; }
+  /// Takes the place at once; reset() returns to where it did.
+  void go_to(const CameraPlace& place);
 
   /// The user's drags, as shares of the picture's height; `right` and `down` are the screen's.
   void orbit(double right, double down);
-  void pan(double right, double down);
+  /// `aspect`: the picture's width / height.
+  void pan(double right, double down, double aspect);
   /// Turns of the wheel; above 0 is nearer.
   void zoom(double notches);
 
@@ -43,7 +56,7 @@ class OrbitCamera {
   void advance(double dt_s);
 
   const CameraPlace& place() const { return place_; }
-  glm::dvec3 eye_m() const;
+  glm::dvec3 eye_m() const { return eye_of(place_); }
 
   glm::mat4 view() const;
   /// For a picture of width / height `aspect`; near and far planes fit the distance.
@@ -60,8 +73,13 @@ class OrbitCamera {
 /// its edge, and at something small from outside.
 CameraPlace place_across(const Bounds& bounds);
 
-/// A place outside of `bounds` from where all of it is in a picture of width / height `aspect`: at its broad side, a
-/// little from the corner, toward the evening sun's side.
+/// How far from the middle of `bounds` a camera with this direction and field of view sees all of it in a picture of
+/// width / height `aspect`.
+double distance_to_see(const Bounds& bounds, const CameraPlace& place, double aspect);
+
+/// A low place outside of `bounds`, toward the evening sun's side, at its broad side and a little from the corner. All
+/// of what stands is in a picture of width / height `aspect`, before the sky; what is flat, as water, fills the picture
+/// from side to side.
 CameraPlace place_around(const Bounds& bounds, double aspect);
 
 }  // namespace yuragi::viewer::meshes

@@ -8,7 +8,7 @@
 namespace yuragi::viewer::meshes {
 View view_of(const OrbitCamera& camera, int width_px, int height_px) {
   const float aspect = static_cast<float>(width_px) / static_cast<float>(height_px);
-  const float tan_up = std::tan(glm::radians(static_cast<float>(OrbitCamera::kFieldOfView_deg) / 2.0F));
+  const auto tan_up = static_cast<float>(tangent_up(camera.place().field_of_view_deg, static_cast<double>(aspect)));
   const glm::mat4 to_camera = camera.view();
 
   View view;

@@ -48,6 +48,48 @@ TEST(Config, HasTheLookWithTheLineOfAMistake) {
   }
 }
 
+TEST(Config, HasCameras) {
+  const Config config = parse_config(
+      "[shaping]\nzone = \"Asia/Tokyo\"\n"
+      "[[scene]]\nkind = \"flag\"\nname = \"pole\"\n"
+      "[[camera]]\nname = \"near\"\nscene = \"pole\"\nsway = 5\n"
+      "[[camera]]\nname = \"night\"\ntarget_y = 2\ndistance = 30\nfrom = \"21:30\"\n",
+      "wall.toml");
+  ASSERT_EQ(config.cameras.size(), 2U);
+  EXPECT_EQ(config.cameras[0].camera, (look::Camera{.name = "near", .scene = "pole", .sway_deg = 5.0}));
+  EXPECT_EQ(config.cameras[1].camera,
+            (look::Camera{.name = "night", .target_y_m = 2.0, .distance_m = 30.0, .from_h = 21.5}));
+  EXPECT_EQ(config.clock.zone_name(), "Asia/Tokyo");
+
+  // What is printed and recorded says the same.
+  const Config again = parse_config(to_toml(config), "again.toml");
+  ASSERT_EQ(again.cameras.size(), 2U);
+  EXPECT_EQ(again.cameras[0].camera, config.cameras[0].camera);
+  EXPECT_EQ(again.cameras[1].camera, config.cameras[1].camera);
+}
+
+TEST(Config, ACameraMayLookAtASceneThatIsThereByDefault) {
+  EXPECT_EQ(parse_config("[[camera]]\nname = \"a\"\nscene = \"grass\"\n", "wall.toml").cameras.size(), 1U);
+}
+
+TEST(Config, TellsEachMistakeOfACameraWithItsPlace) {
+  EXPECT_EQ(mistakes_of("[camera]\nname = \"a\"\n"), "wall.toml:1:2: camera: is one table; write [[camera]] above it");
+  EXPECT_EQ(mistakes_of("[[camera]]\nheading = 10\n"),
+            "wall.toml:1:1: camera.name: is missing; give each camera a name");
+  EXPECT_EQ(mistakes_of("[[camera]]\nname = \"a\"\n[[camera]]\nname = \"a\"\n"),
+            "wall.toml:4:8: camera.name: \"a\" is used twice; give each camera a name");
+  EXPECT_EQ(mistakes_of("[[camera]]\nname = \"a\"\nfrom = \"dusk\"\n"),
+            "wall.toml:3:8: camera.from: is \"dusk\"; allowed: a time of the day such as \"06:30\"");
+  EXPECT_EQ(mistakes_of("[[camera]]\nname = \"a\"\nfrom = \"06:30\"\n[[camera]]\nname = \"b\"\nfrom = \"06:30\"\n"),
+            "wall.toml:6:8: camera.from: is that of the camera \"a\", too; only one can be on");
+  EXPECT_EQ(mistakes_of("[[camera]]\nname = \"a\"\nscene = \"tree\"\n[[scene]]\nkind = \"flag\"\nname = \"pole\"\n"),
+            "wall.toml:3:9: camera.scene: is \"tree\"; allowed: the name of a scene: \"pole\"");
+  EXPECT_THAT(mistakes_of("[[camera]]\nname = \"a\"\nfov = 180\n"), StartsWith("wall.toml:3:7: camera.fov: "));
+  std::string many;
+  for (std::size_t i = 0; i <= look::kMostCameras; ++i) many += "[[camera]]\nname = \"" + std::to_string(i) + "\"\n";
+  EXPECT_EQ(mistakes_of(many), "wall.toml:65:1: camera: is one of 33; allowed: at most 32");
+}
+
 TEST(Config, AnEmptyFileIsTheDefaultInstallation) {
   const Config config = parse_config("", "empty.toml");
   ASSERT_EQ(config.sensors.size(), 1U);

@@ -100,6 +100,33 @@ TEST(ReloadPlan, AppliesTheLookAlsoWhereAKeyComesOrGoes) {
   EXPECT_EQ(plan_reload(morning, evening, true).next.look, evening.look);
 }
 
+TEST(ReloadPlan, AppliesCameras) {
+  const Config running =
+      wall("[[camera]]\nname = \"day\"\nfrom = \"09:00\"\n[[camera]]\nname = \"night\"\nheading = 10\n");
+  const Config wanted =
+      wall("[[camera]]\nname = \"night\"\nheading = 20\ndistance = 5\n[[camera]]\nname = \"dawn\"\nfrom = \"05:00\"\n");
+  const ReloadPlan plan = plan_reload(running, wanted, true);
+  EXPECT_THAT(plan.applied,
+              ElementsAre("camera night: distance: left out -> 5.0", "camera night: heading: 10.0 -> 20.0",
+                          "camera dawn: is new", "camera day: is gone"));
+  EXPECT_THAT(plan.takes_restart, IsEmpty());
+  EXPECT_FALSE(plan.changes_scenes);
+  ASSERT_EQ(plan.next.cameras.size(), 2U);
+  EXPECT_EQ(plan.next.cameras[0].camera, wanted.cameras[0].camera);
+  EXPECT_EQ(plan.next.cameras[1].camera.from_h, 5.0);
+  EXPECT_THAT(plan_reload(running, wall(), true).applied, ElementsAre("camera day: is gone", "camera night: is gone"));
+}
+
+TEST(ReloadPlan, TheCamerasFollowTheClocksOfAnotherZone) {
+  const auto in_zone = [](const char* zone) {
+    return parse_config(std::string("[shaping]\nzone = \"") + zone + "\"\n[[camera]]\nname = \"a\"\nfrom = \"05:00\"\n",
+                        "wall.toml");
+  };
+  const ReloadPlan plan = plan_reload(in_zone("Asia/Tokyo"), in_zone("Europe/Berlin"), true);
+  EXPECT_THAT(plan.applied, ElementsAre("[shaping] zone: \"Asia/Tokyo\" -> \"Europe/Berlin\""));
+  EXPECT_EQ(plan.next.clock.zone_name(), "Europe/Berlin");
+}
+
 TEST(ReloadPlan, OfTheSameConfigurationIsEmpty) {
   const Config config = wall(kTwoSensors);
   const ReloadPlan plan = plan_reload(config, wall(kTwoSensors), true);

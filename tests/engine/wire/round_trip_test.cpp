@@ -361,6 +361,26 @@ TEST(RoundTrip, BringsAHostileLookWithinItsLimits) {
   EXPECT_EQ(decoded<Sensors>(encode(sensors)).look, (look::Look{.solar_time_h = 0.0, .clouds = 1.0}));
 }
 
+TEST(RoundTrip, KeepsTheCameras) {
+  const Sensors sensors = decoded<Sensors>(encode(samples::sensors()));
+  EXPECT_EQ(sensors.cameras, samples::sensors().cameras);
+  EXPECT_EQ(sensors.camera, 1U);
+  EXPECT_TRUE(decoded<Sensors>(encode(Sensors{})).cameras.empty());
+}
+
+TEST(RoundTrip, BringsHostileCamerasWithinTheirLimits) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Sensors sensors;
+  sensors.cameras.assign(
+      look::kMostCameras + 8,
+      {.target_x_m = kNan, .pitch_deg = 1e300, .distance_m = kNan, .fov_deg = -1.0, .period_s = 0.0, .from_h = kNan});
+  sensors.camera = 1'000'000;
+  const Sensors read = decoded<Sensors>(encode(sensors));
+  ASSERT_EQ(read.cameras.size(), look::kMostCameras);
+  EXPECT_EQ(read.cameras[0], (look::Camera{.pitch_deg = 89.0, .fov_deg = 5.0, .period_s = 10.0}));
+  EXPECT_EQ(read.camera, 0U) << "there is no such camera";
+}
+
 TEST(WireRoundTrip, WhatShapesTheWindComesBack) {
   const Shaping shaping = decoded<Sensors>(encode(samples::sensors())).shaping;
   EXPECT_EQ(shaping.site_gain, 1.75);

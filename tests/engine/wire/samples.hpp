@@ -341,7 +341,25 @@ inline wire::Sensors sensors() {
                              .clouds = 0.75,
                              .haze = 0.5,
                              .exposure_ev = -1.5,
-                             .quality = look::Quality::kMedium}};
+                             .quality = look::Quality::kMedium},
+          .cameras = {look::Camera{.name = "dawn", .from_h = 5.5}, look::Camera{.name = "night",
+                                                                                .scene = "fire",
+                                                                                .target_x_m = 1.0,
+                                                                                .target_y_m = 2.0,
+                                                                                .target_z_m = 3.0,
+                                                                                .heading_deg = 90.0,
+                                                                                .pitch_deg = -5.0,
+                                                                                .distance_m = 12.0,
+                                                                                .fov_deg = 25.0,
+                                                                                .turn_deg_min = 6.0,
+                                                                                .sway_deg = 7.0,
+                                                                                .pan_deg = 8.0,
+                                                                                .dolly_m = 2.5,
+                                                                                .track_m = 1.5,
+                                                                                .period_s = 300.0,
+                                                                                .from_h = 21.0,
+                                                                                .fade_s = 30.0}},
+          .camera = 1};
 }
 
 inline wire::RawTrace raw_trace() {

@@ -58,7 +58,7 @@ TEST(OrbitCamera, TurnsWithTheHandAndStaysAboveTheGround) {
 TEST(OrbitCamera, CarriesTheTargetWithThePointer) {
   // Looking north, dragging to the right moves what is seen to the right: the target goes west.
   OrbitCamera camera = camera_at({{0.0, 0.5, 0.0}, 0.0, 20.0, 5.0});
-  camera.pan(0.1, 0.0);
+  camera.pan(0.1, 0.0, 16.0 / 9.0);
   settle(camera);
   EXPECT_LT(camera.place().target_m.x, -0.1);
   EXPECT_NEAR(camera.place().target_m.z, 0.0, 1e-9);
@@ -95,7 +95,7 @@ TEST(OrbitCamera, ComesBackWhenReset) {
   const CameraPlace home{{0.0, 0.5, 0.0}, 45.0, 20.0, 5.0};
   OrbitCamera camera = camera_at(home);
   camera.orbit(0.3, 0.2);
-  camera.pan(0.5, 0.5);
+  camera.pan(0.5, 0.5, 1.0);
   camera.zoom(-5.0);
   settle(camera);
   camera.reset();
@@ -116,9 +116,27 @@ TEST(OrbitCamera, StaysFiniteWhateverIsAskedOfIt) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   OrbitCamera camera = camera_at({{nan, nan, 1e300}, nan, nan, nan});
   camera.orbit(nan, nan);
-  camera.pan(nan, 1e300);
+  camera.pan(nan, 1e300, 1.0);
   settle(camera);
   EXPECT_TRUE(std::isfinite(camera.eye_m().x + camera.eye_m().y + camera.eye_m().z));
+}
+
+TEST(FieldOfView, KeepsTheAreaThatIsSeen) {
+  const double usual = tangent_up(40.0, 16.0 / 9.0);
+  EXPECT_NEAR(usual, std::tan(20.0 * M_PI / 180.0), 1e-12);
+  for (const double aspect : {0.3, 9.0 / 16.0, 1.0, 4.0 / 3.0, 6.0}) {
+    const double up = tangent_up(40.0, aspect);
+    EXPECT_NEAR(up * up * aspect, usual * usual * 16.0 / 9.0, 1e-12) << aspect;
+  }
+  EXPECT_LT(2.0 * std::atan(6.0 * tangent_up(40.0, 6.0)) * 180.0 / M_PI, 105.0) << "not drawn out at its ends";
+}
+
+TEST(OrbitCamera, LooksUpFromAboveTheGround) {
+  const OrbitCamera camera = camera_at({{0.0, 5.0, 0.0}, 0.0, -20.0, 10.0});
+  EXPECT_EQ(camera.place().pitch_deg, -20.0);
+  EXPECT_NEAR(camera.eye_m().y, 5.0 - 10.0 * std::sin(20.0 * M_PI / 180.0), 1e-9);
+  const OrbitCamera low = camera_at({{0.0, 1.0, 0.0}, 0.0, -40.0, 10.0});
+  EXPECT_NEAR(low.eye_m().y, OrbitCamera::kLowestEye_m, 1e-9);
 }
 
 TEST(PlaceAcross, HasTheWholeOfThingsOfAnySizeInFrontOfItFromALowPlace) {
@@ -137,14 +155,19 @@ TEST(PlaceAcross, HasTheWholeOfThingsOfAnySizeInFrontOfItFromALowPlace) {
 }
 
 TEST(PlaceAround, HasEveryCornerInThePictureAndLooksAtTheBroadSide) {
+  const auto looks_along = [](const OrbitCamera& camera) {
+    const double heading = camera.place().heading_deg * M_PI / 180.0;
+    return glm::dvec3(std::sin(heading), 0.0, -std::cos(heading));
+  };
   const auto looks_across = [](const OrbitCamera& camera, double along_deg) {
     return std::abs(std::sin((camera.place().heading_deg - along_deg) * M_PI / 180.0));
   };
   for (const glm::vec3 size_m : {glm::vec3(2.4F, 2.3F, 0.1F), glm::vec3(0.1F, 4.0F, 2.0F), glm::vec3(5.0F, 0.1F, 5.0F),
-                                 glm::vec3(9.0F, 12.0F, 9.0F), glm::vec3(30.0F, 5.0F, 12.0F)}) {
+                                 glm::vec3(9.0F, 12.0F, 9.0F), glm::vec3(12.0F, 5.0F, 8.0F)}) {
+    const bool is_flat = size_m.y < 0.5F;
     const glm::vec3 low(3.0F, 0.0F, -7.0F);
     const Bounds bounds{low, low + size_m};
-    for (const double aspect : {16.0 / 9.0, 1.0, 9.0 / 16.0}) {
+    for (const double aspect : {6.0, 16.0 / 9.0, 1.0, 9.0 / 16.0}) {
       const OrbitCamera camera = camera_at(place_around(bounds, aspect));
       EXPECT_GT(camera.eye_m().y, 0.0);
       EXPECT_GT(looks_across(camera, size_m.x >= size_m.z ? 90.0 : 0.0), 0.7);
@@ -155,10 +178,15 @@ TEST(PlaceAround, HasEveryCornerInThePictureAndLooksAtTheBroadSide) {
         const glm::vec4 seen = clip * glm::vec4(low + share * size_m, 1.0F);
         ASSERT_GT(seen.w, 0.0F);
         const float reach = std::max(std::abs(seen.x), std::abs(seen.y)) / seen.w;
-        EXPECT_LT(reach, 1.0F);
+        if (!is_flat) {
+          EXPECT_LT(reach, 1.0F);
+        }
         widest = std::max(widest, static_cast<double>(reach));
       }
-      EXPECT_GT(widest, 0.75);  // and not lost in it
+      EXPECT_GT(widest, is_flat ? 1.0 : 0.75);  // and not lost in it; what is flat fills it
+      // The horizon is in the picture.
+      const glm::vec4 horizon = clip * glm::vec4(camera.eye_m() + 1e5 * glm::dvec3(looks_along(camera)), 1.0);
+      EXPECT_LT(std::abs(horizon.y), 0.9F * horizon.w) << aspect;
     }
   }
 }

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "engine/base/parameter.hpp"
+#include "engine/base/result.hpp"
+#include "engine/base/time.hpp"
+
+namespace date {
+class time_zone;
+}
+
+namespace yuragi::daemon::settings {
+
+/// What the clocks of a time zone show, with its daylight saving time. Thread-safe: reading, yes.
+class LocalClock {
+ public:
+  /// That of UTC.
+  LocalClock() noexcept = default;
+
+  /// `name`: of the IANA database ("Europe/Berlin"); empty: this machine's own zone, or UTC where it has none. The
+  /// error names "zone".
+  static Result<LocalClock, ParameterError> of_zone(const std::string& name);
+
+  /// As if the clocks had run since the midnight at which 1970 began there.
+  std::chrono::seconds since_1970(UtcTime now) const;
+
+  /// 0 to 24, less than that.
+  double hour_of_day(UtcTime now) const;
+
+  /// "Europe/Berlin"; "UTC" on a machine without a zone.
+  std::string zone_name() const;
+
+ private:
+  const date::time_zone* zone_ = nullptr;  ///< null: UTC; lives as long as the program
+};
+
+}  // namespace yuragi::daemon::settings
