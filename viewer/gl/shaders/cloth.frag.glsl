@@ -103,10 +103,8 @@ vec2 eyelet(vec2 from_middle_m) {
 }
 
 void main() {
-  // To the sun it is a sieve: a part of its light goes through, in a pattern that soft shadows do not show.
+  // The sun's map of depths needs no colour.
   if (shadow.x == 0.0 && shadow.w > 0.0) {
-    ivec2 texel = ivec2(gl_FragCoord.xy) & 1;
-    if (texel.x + texel.y == 0) discard;
     color = vec4(0.0);
     return;
   }
@@ -188,6 +186,6 @@ void main() {
   shine *= shine;
   shine *= shine;
   shine *= shine;
-  light += (0.10 * satin + 0.5 * brass.x * (1.0 - brass.y)) * shine * on * sun;
+  light += (0.045 * satin + 0.5 * brass.x * (1.0 - brass.y)) * shine * on * sun;
   color = vec4(seen(light, place_m), 1.0);
 }
