@@ -26,8 +26,8 @@ struct Image {
 
 /// What a flag, a banner or a curtain looks like, as an installation wants it.
 struct ClothLook {
-  std::optional<Color> color = std::nullopt;      ///< of the cloth; alone: plain. Nothing: the viewer's own
-  std::optional<Color> color_2 = std::nullopt;    ///< of its pattern
+  std::optional<Color> color = std::nullopt;     ///< of the cloth; alone: plain. Nothing: the viewer's own
+  std::optional<Color> color_2 = std::nullopt;   ///< of its pattern
   std::shared_ptr<const Image> image = nullptr;  ///< covers all of it
 
   friend bool operator==(const ClothLook& a, const ClothLook& b) {

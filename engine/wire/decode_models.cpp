@@ -271,8 +271,8 @@ bool read(const fb::Cloth& from, look::ClothLook& to) {
     return false;
   if (width_px * height_px == 0) return true;
   const auto* const rgb = from.image_rgb();
-  to.image = std::make_shared<look::Image>(look::Image{
-      .width_px = from.image_width(), .height_px = from.image_height(), .rgb = {rgb->begin(), rgb->end()}});
+  to.image = std::make_shared<look::Image>(
+      look::Image{.width_px = from.image_width(), .height_px = from.image_height(), .rgb = {rgb->begin(), rgb->end()}});
   return true;
 }
 

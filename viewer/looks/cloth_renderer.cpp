@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
 #include "viewer/gl/shaders.hpp"
 
@@ -16,13 +17,43 @@ constexpr float kCell_px = 3.0F;  // of the coarsest mesh that does
 constexpr float kNearest_m = 0.1F;
 constexpr std::size_t kLooks = 12;     // joints along each side that are asked how far they are
 constexpr float kHalfHem_m = 0.0015F;  // half the thickness of a hem
-constexpr float kThinnest_px = 0.2F;   // half as thick, a rim is not seen
+constexpr float kDarkestPaint = 0.012F;
+constexpr float kLightestPaint = 0.78F;
+constexpr float kThinnest_px = 0.2F;  // half as thick, a rim is not seen
 
 /// From a banner's pole to the end of its arm along the ground, at rest and in a pose.
 glm::vec2 arm_m(const pose::GridSkeleton& cloth, const pose::GridPose* pose) {
   const std::size_t end = cloth.columns - 1;
   const glm::vec2 at_rest_m(cloth.rest_x_m[end] - cloth.rest_x_m[0], cloth.rest_z_m[end] - cloth.rest_z_m[0]);
   return pose == nullptr ? at_rest_m : at_rest_m + glm::vec2(pose->offset_x_m[end], pose->offset_z_m[end]);
+}
+
+/// A screen's value (IEC 61966-2-1, sRGB) as light, of cloth: none is quite black or reflects all.
+float paint_of(std::uint8_t value) {
+  const float part = static_cast<float>(value) / 255.0F;
+  const float light = part <= 0.04045F ? part / 12.92F : std::pow((part + 0.055F) / 1.055F, 2.4F);
+  return kDarkestPaint + (kLightestPaint - kDarkestPaint) * light;
+}
+
+/// w: 1 where there is one.
+glm::vec4 paint_of(const std::optional<look::Color>& color) {
+  if (!color) return glm::vec4(0.0F);
+  return {paint_of(color->red), paint_of(color->green), paint_of(color->blue), 1.0F};
+}
+
+gl::GlTexture texture_of(const look::Image& image) {
+  gl::GlTexture texture;
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, texture.name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8, static_cast<GLsizei>(image.width_px), static_cast<GLsizei>(image.height_px),
+               0, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  return texture;
 }
 
 /// Of its vertices; `none` where there are none.
@@ -37,7 +68,8 @@ meshes::Bounds bounds_of(const meshes::SolidMesh& mesh, const meshes::Bounds& no
 
 }  // namespace
 
-ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style, const meshes::SolidMesh& holder)
+ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style, const look::ClothLook& look,
+                             const meshes::SolidMesh& holder)
     : cloth_(&cloth),
       lies_(meshes::measure(cloth)),
       style_(style),
@@ -51,6 +83,11 @@ ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle
   glUseProgram(program_.name());
   glUniform2f(glGetUniformLocation(program_.name(), "size_m"), lies_.size_m.x, lies_.size_m.y);
   glUniform1i(glGetUniformLocation(program_.name(), "style"), static_cast<GLint>(style_));
+  glUniform4fv(glGetUniformLocation(program_.name(), "color_1"), 1, &paint_of(look.color)[0]);
+  glUniform4fv(glGetUniformLocation(program_.name(), "color_2"), 1, &paint_of(look.color_2)[0]);
+  glUniform1i(glGetUniformLocation(program_.name(), "has_picture"), look.image != nullptr ? 1 : 0);
+  gl::set_sampler(program_, "picture", 0);
+  if (look.image != nullptr) picture_ = texture_of(*look.image);
 }
 
 float ClothRenderer::nearest_m(const meshes::View& view) const {
@@ -102,6 +139,7 @@ void ClothRenderer::draw(const meshes::View& view) {
   const bool is_sun = view.to_clip[0][3] == 0.0F && view.to_clip[1][3] == 0.0F && view.to_clip[2][3] == 0.0F;
   if (!is_sun) level_ = level_in(view);
   glUseProgram(program_.name());
+  if (picture_) glBindTexture(GL_TEXTURE_2D, picture_->name());
   ClothSheet& now = sheet();
   now.draw();
   if (!is_sun && kHalfHem_m > kThinnest_px * view.eye_m.w * nearest_m(view)) now.draw_rim(kHalfHem_m);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string_view>
 
+#include "engine/look/cloth_look.hpp"
 #include "engine/pose/point_kinematics.hpp"
 #include "viewer/looks/board_floor.hpp"
 #include "viewer/looks/cloth_sheet.hpp"
@@ -18,8 +19,8 @@ namespace yuragi::viewer::looks {
 class ClothRenderer : public SceneRenderer {
  public:
   /// `cloth` must outlive this.
-  ClothRenderer(const pose::GridSkeleton& cloth, std::string_view kind)
-      : ClothRenderer(cloth, meshes::cloth_style(kind, cloth)) {}
+  ClothRenderer(const pose::GridSkeleton& cloth, std::string_view kind, const look::ClothLook& look)
+      : ClothRenderer(cloth, meshes::cloth_style(kind, cloth), look) {}
 
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
@@ -30,9 +31,10 @@ class ClothRenderer : public SceneRenderer {
   std::optional<meshes::Floor> floor() const override { return floor_; }
 
  private:
-  ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style)
-      : ClothRenderer(cloth, style, meshes::cloth_holder(style, cloth)) {}
-  ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style, const meshes::SolidMesh& holder);
+  ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style, const look::ClothLook& look)
+      : ClothRenderer(cloth, style, look, meshes::cloth_holder(style, cloth)) {}
+  ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style, const look::ClothLook& look,
+                const meshes::SolidMesh& holder);
 
   /// The level of detail whose cells are a few pixels of `view` wide.
   int level_in(const meshes::View& view) const;
@@ -54,6 +56,7 @@ class ClothRenderer : public SceneRenderer {
   std::optional<meshes::Floor> floor_;
   std::optional<BoardFloor> boards_;  ///< of the floor
   gl::GlProgram program_;
+  std::optional<gl::GlTexture> picture_;
 };
 
 }  // namespace yuragi::viewer::looks

@@ -26,7 +26,8 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
   ground_.set_standing({});  // it refers to the skeletons
   for (wire::SceneModel& scene : scenes) {
     const auto same = std::ranges::find_if(before, [&](const auto& view) {
-      return view && view->scene.kind == scene.kind && view->scene.skeleton == scene.skeleton;
+      return view && view->scene.kind == scene.kind && view->scene.skeleton == scene.skeleton &&
+             view->scene.cloth == scene.cloth;
     });
     if (same != before.end()) {
       views_.push_back(std::move(*same));

@@ -21,13 +21,12 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Does a message that decode() let through keep what wire.hpp and skeleton.hpp promise?
 bool is_safe(const Message& message) {
   if (const auto* scenes = std::get_if<Scenes>(&message)) {
-    return std::all_of(scenes->scenes.begin(), scenes->scenes.end(),
-                       [](const SceneModel& scene) {
-                         const auto& image = scene.cloth.image;
-                         const bool is_sound_image =
-                             image == nullptr || image->rgb.size() == std::size_t{3} * image->width_px * image->height_px;
-                         return samples::is_sound(scene.skeleton) && is_sound_image;
-                       });
+    return std::all_of(scenes->scenes.begin(), scenes->scenes.end(), [](const SceneModel& scene) {
+      const auto& image = scene.cloth.image;
+      const bool is_sound_image =
+          image == nullptr || image->rgb.size() == std::size_t{3} * image->width_px * image->height_px;
+      return samples::is_sound(scene.skeleton) && is_sound_image;
+    });
   }
   if (const auto* trace = std::get_if<RawTrace>(&message)) {
     return trace->bytes.size() <= kMaxRawBytes && trace->bytes.size() <= trace->length;

@@ -1,6 +1,10 @@
 // Woven cloth, lit from both sides and through: plain linen, a flag, a banner.
 uniform int style;  // 0 curtain, 1 flag, 2 banner
 uniform vec2 size_m;
+uniform vec4 color_1;  // of the cloth; w: 1 where an installation wants it
+uniform vec4 color_2;  // of its pattern
+uniform bool has_picture;
+uniform sampler2D picture;  // covers all of it
 
 in vec3 place_m;
 in vec3 normal;
@@ -55,10 +59,18 @@ vec3 hem(float edge_m, float along_m, float width_m) {
   return vec3(cover(width_m - edge_m), line(from_seam_m, 0.0011) * stitches, line(edge_m - width_m - 0.0008, 0.0022));
 }
 
+// Is there nothing but the cloth's own colour?
+bool is_plain() { return color_1.w > color_2.w; }
+vec3 wanted(vec4 color, vec3 otherwise) { return mix(otherwise, color.rgb, color.w); }
+
 // A golden sun behind three gusts on a dark blue sky. Unit: the flag's height.
 vec3 flag(vec2 p, float aspect) {
-  vec3 paint = mix(kInk * 1.15, kInk * 0.85, p.y);
-  paint = mix(paint, kGold, cover(0.235 - length(p - vec2(0.40 * aspect, 0.45))));
+  vec3 sky = wanted(color_1, kInk);
+  if (is_plain()) return sky;
+  vec3 sun = wanted(color_2, kGold);
+  vec3 gusts = wanted(color_2, kSnow);
+  vec3 paint = mix(sky * 1.15, sky * 0.85, p.y);
+  paint = mix(paint, sun, cover(0.235 - length(p - vec2(0.40 * aspect, 0.45))));
   for (int i = 0; i < 3; ++i) {
     float n = float(i);
     float swing = 0.065 * sin(4.6 * p.x / aspect * 1.35 + 1.1 * n + 0.4) + 0.018 * sin(11.0 * p.x / aspect + 2.0 * n);
@@ -66,34 +78,44 @@ vec3 flag(vec2 p, float aspect) {
     float begins = 0.10 + 0.07 * n;
     float half_width = (0.034 - 0.006 * n) * smoothstep(begins, begins + 0.35, along) * smoothstep(1.0, 0.72 - 0.08 * n, along);
     float line = half_width - abs(p.y - (0.545 + 0.125 * n + swing));
-    paint = mix(paint, kSnow, cover(line) * step(0.0005, half_width));
+    paint = mix(paint, gusts, cover(line) * step(0.0005, half_width));
   }
   return paint;
 }
 
 // White, with a red head, a crest of three gusts, and a dark blue foot of waves. Unit: the banner's width.
 vec3 banner(vec2 p, float tall) {
-  vec3 paint = kSnow;
-  paint = mix(paint, kVermilion, cover(0.36 - p.y));
-  paint = mix(paint, kSnow, cover(0.022 - abs(p.y - 0.29)));
+  vec3 ground = wanted(color_1, kSnow);
+  if (is_plain()) return ground;
+  vec3 ink = wanted(color_2, kInk);
+  vec3 red = wanted(color_2, kVermilion);
+  vec3 paint = ground;
+  paint = mix(paint, red, cover(0.36 - p.y));
+  paint = mix(paint, ground, cover(0.022 - abs(p.y - 0.29)));
 
   vec2 from_crest = p - vec2(0.5, 0.92);
   float radius = length(from_crest);
   float turn = atan(from_crest.y, from_crest.x);
   float gusts = sin(3.0 * turn - 15.0 * radius);
-  paint = mix(paint, kInk, cover(0.355 - radius));
-  paint = mix(paint, kSnow, cover(0.30 - radius) * cover(gusts * (0.12 + radius)));
-  paint = mix(paint, kVermilion, cover(0.055 - radius));
+  paint = mix(paint, ink, cover(0.355 - radius));
+  paint = mix(paint, ground, cover(0.30 - radius) * cover(gusts * (0.12 + radius)));
+  paint = mix(paint, red, cover(0.055 - radius));
 
   for (int i = 0; i < 3; ++i) {
     float n = float(i);
     float foot = tall - 1.15 + 0.30 * n + 0.055 * sin(6.2832 * (p.x * 1.5 + 0.31 * n));
-    paint = mix(paint, i == 1 ? kSnow : kInk, cover(p.y - foot));
+    paint = mix(paint, i == 1 ? ground : ink, cover(p.y - foot));
   }
   float stem = 0.030 * smoothstep(1.36, 2.1, p.y) * smoothstep(tall - 1.34, tall - 1.9, p.y);
   float thread = stem - abs(p.x - 0.5 - 0.11 * sin(2.6 * p.y + 0.6));
-  paint = mix(paint, kVermilion, cover(thread) * step(1.36, p.y) * step(p.y, tall - 1.34));
+  paint = mix(paint, red, cover(thread) * step(1.36, p.y) * step(p.y, tall - 1.34));
   return paint;
+}
+
+// Linen, with broad stripes that hang down where they are wanted. In metres.
+vec3 curtain(vec2 at_m) {
+  vec3 ground = wanted(color_1, kLinen);
+  return mix(ground, color_2.rgb, color_2.w * cover(0.25 - abs(fract(at_m.x / 0.30) - 0.5)));
 }
 
 // A brass eyelet in its middle: 1 on its ring (x), 1 in its hole (y).
@@ -122,10 +144,12 @@ void main() {
   float satin = 0.0;
   float thread_m = 0.0015;
   vec2 brass = vec2(0.0);
+  vec2 on_picture = cloth_m / size_m;
+  vec3 printed = has_picture ? mix(vec3(0.012), vec3(0.78), texture(picture, on_picture).rgb) : vec3(0.0);
   if (style == 0) {
     seams = max(hem(inside_m.x, cloth_m.y, 0.020), hem(to_end_m.y, cloth_m.x, 0.070));
     seams = max(seams, hem(cloth_m.y, cloth_m.x, 0.055));
-    paint = kLinen;
+    paint = curtain(cloth_m);
     through = 0.62;
     thread_m = 0.0025;
   } else if (style == 1) {
@@ -136,7 +160,7 @@ void main() {
     satin = 1.0;
     // A heading of canvas along the hoist, with eyelets in its ends.
     float heading_m = 0.075 * min(size_m.y, 1.4);
-    paint = mix(paint, kCanvas, cover(heading_m - cloth_m.x));
+    if (!has_picture) paint = mix(paint, kCanvas, cover(heading_m - cloth_m.x));
     seams = max(seams, hem(cloth_m.x, cloth_m.y, heading_m));
     brass = eyelet(vec2(cloth_m.x - 0.75 * heading_m, inside_m.y - 0.035));
   } else {
@@ -145,6 +169,7 @@ void main() {
     through = 0.56;
     satin = 0.4;
   }
+  if (has_picture) paint = printed;
   vec3 threads = weave(cloth_m, thread_m);
   paint *= threads.z * (1.0 - 0.05 * seams.x) * (1.0 - 0.22 * seams.z);
   paint = mix(paint, min(paint * 1.25 + 0.03, 0.8), 0.6 * seams.y);

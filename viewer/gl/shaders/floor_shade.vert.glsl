@@ -12,5 +12,6 @@ void main() {
   float above_m = y_m - middle_m.y;
   place_m = vec3(x_m, y_m, z_m) - to_sun.xyz * (above_m / max(to_sun.y, 0.02));
   normal = vec3(0.0, 1.0, 0.0);
-  gl_Position = to_clip * vec4(place_m, 1.0);
+  // A sun on the horizon or below casts none.
+  gl_Position = to_sun.y > 0.02 ? to_clip * vec4(place_m, 1.0) : vec4(0.0, 0.0, 2.0, 1.0);
 }
