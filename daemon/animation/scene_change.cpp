@@ -13,9 +13,10 @@ bool is_same_place(const scenes::ScenePlacement& a, const scenes::ScenePlacement
   return a.x_m == b.x_m && a.y_m == b.y_m && a.z_m == b.z_m && a.heading_deg == b.heading_deg;
 }
 
-/// Are all parameters of its kind the same? Others, as its gain, do not go into the making of a scene.
+/// Are all parameters of its kind, and its picture, the same? Others, as its gain, do not go into the making of a
+/// scene.
 bool is_same_model(const settings::SceneConfig& a, const settings::SceneConfig& b) {
-  if (a.kind != b.kind || !is_same_place(a.placement, b.placement)) return false;
+  if (a.kind != b.kind || a.cloth != b.cloth || !is_same_place(a.placement, b.placement)) return false;
   return std::ranges::all_of(a.kind->parameters, [&](const Parameter& parameter) {
     const auto one = a.values.all().find(parameter.name);
     const auto other = b.values.all().find(parameter.name);
@@ -99,7 +100,7 @@ std::unique_ptr<SceneChange> make_scene_change(const SceneRoster& present, const
   for (std::size_t i = 0; i < present.scenes.size(); ++i) {
     if (stays[i]) continue;
     const settings::SceneConfig& config = present.configs[i];
-    leaving.push_back({config.name, std::string(config.kind->name), present.scenes[i]});
+    leaving.push_back({config.name, std::string(config.kind->name), present.scenes[i], config.cloth});
     change->leaving.push_back(present.scenes[i]);
   }
   change->leaving_count = leaving.size();

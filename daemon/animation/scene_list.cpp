@@ -29,7 +29,7 @@ SceneList::SceneList(std::shared_ptr<const SceneRoster> roster, std::span<const 
     : roster_(std::move(roster)), generation_(generation) {
   for (std::size_t i = 0; i < roster_->scenes.size(); ++i) {
     const settings::SceneConfig& config = roster_->configs[i];
-    entries_.push_back({config.name, std::string(config.kind->name), roster_->scenes[i]});
+    entries_.push_back({config.name, std::string(config.kind->name), roster_->scenes[i], config.cloth});
   }
   entries_.insert(entries_.end(), leaving.begin(), leaving.end());
 
@@ -59,7 +59,9 @@ void SceneList::make_room_in(wire::Bytes& buffer) noexcept {
 
 wire::Scenes SceneList::describe() const {
   wire::Scenes all;
-  for (const Entry& entry : entries_) all.scenes.push_back({entry.name, entry.kind, entry.staged->scene->skeleton()});
+  for (const Entry& entry : entries_) {
+    all.scenes.push_back({entry.name, entry.kind, entry.staged->scene->skeleton(), entry.cloth});
+  }
   return all;
 }
 
@@ -73,8 +75,8 @@ wire::Bytes checked_scenes_message(const wire::Scenes& scenes) {
   if (auto message = scenes_message(scenes)) return std::move(*message);
   throw settings::ConfigError(
       fmt::format("[[scene]]: the scenes are larger than the stream allows; allowed in total: {} scenes, {} strands, "
-                  "joints of cloth and points of surfaces",
-                  wire::kMaxScenes, wire::kMaxStrands));
+                  "joints of cloth and points of surfaces, and {} pixels of pictures",
+                  wire::kMaxScenes, wire::kMaxStrands, wire::kMaxPixels));
 }
 
 }  // namespace yuragi::daemon::animation

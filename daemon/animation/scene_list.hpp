@@ -44,6 +44,7 @@ class SceneList {
   struct Entry {
     std::string name, kind;
     std::shared_ptr<StagedScene> staged;
+    look::ClothLook cloth = {};
   };
 
   SceneList(std::shared_ptr<const SceneRoster> roster, std::span<const Entry> leaving, std::uint64_t generation);

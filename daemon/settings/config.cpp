@@ -60,7 +60,9 @@ std::optional<ParameterValue> to_parameter_value(const toml::node& node) {
 /// Reads a parsed file and collects every error with its place.
 class ConfigReader {
  public:
-  explicit ConfigReader(std::string source_name) : source_name_(std::move(source_name)) {}
+  /// Pictures' paths begin at `folder`; without a folder none is read.
+  explicit ConfigReader(std::string source_name, std::optional<std::filesystem::path> folder = std::nullopt)
+      : source_name_(std::move(source_name)), folder_(std::move(folder)) {}
 
   Config read(const toml::table& root) {
     Config config;
@@ -91,7 +93,10 @@ class ConfigReader {
                    });
     for_each_entry(root, "scene", "kind", kMostScenes, scenes::scene_table(),
                    [&](const std::string& name, const scenes::SceneDescription& kind, const ParameterValues& values,
-                       const toml::table&) { config.scenes.push_back(scene_config_of(name, kind, values)); });
+                       const toml::table& entry) {
+                     config.scenes.push_back(scene_config_of(name, kind, values));
+                     config.scenes.back().cloth = read_cloth(entry, values);
+                   });
     if (config.scenes.empty()) config.scenes = default_scenes();
     read_cameras(root, config);
 
@@ -117,6 +122,17 @@ class ConfigReader {
       sensor.blend.length_m = gust_length_at_height_m(*sensor.heights.sensor_m, sensor.calibration);
     }
     return sensor;
+  }
+
+  /// What a cloth looks like; of other scenes nothing.
+  look::ClothLook read_cloth(const toml::table& entry, const ParameterValues& values) {
+    auto cloth = cloth_look_of(values, folder_);
+    if (cloth) return std::move(*cloth);
+    for (const ParameterError& error : cloth.error()) {
+      const toml::node* node = entry.get(error.name);
+      mistake(node != nullptr ? node->source() : entry.source(), "scene." + error.name, error.message);
+    }
+    return {};
   }
 
  private:
@@ -344,6 +360,7 @@ class ConfigReader {
   }
 
   std::string source_name_;
+  std::optional<std::filesystem::path> folder_;
   std::string mistakes_;
 };
 
@@ -400,7 +417,10 @@ Config listening_at(Config config, const std::string& address) {
   return config;
 }
 
-Config parse_config(std::string_view toml_text, const std::string& source_name) {
+namespace {
+
+Config read_config(std::string_view toml_text, const std::string& source_name,
+                   const std::optional<std::filesystem::path>& folder) {
   toml::table root;
   try {
     root = toml::parse(toml_text, source_name);
@@ -410,9 +430,15 @@ Config parse_config(std::string_view toml_text, const std::string& source_name) 
          << ": TOML: " << error.description();
     throw ConfigError(line.str());
   }
-  Config config = ConfigReader(source_name).read(root);
+  Config config = ConfigReader(source_name, folder).read(root);
   if (config.sensors.empty()) config.sensors.push_back(synthetic_sensor());
   return config;
+}
+
+}  // namespace
+
+Config parse_config(std::string_view toml_text, const std::string& source_name) {
+  return read_config(toml_text, source_name, std::nullopt);
 }
 
 std::string read_config_text(const std::filesystem::path& file) {
@@ -441,7 +467,7 @@ std::string read_config_text(const std::filesystem::path& file) {
 }
 
 Config load_config(const std::filesystem::path& file) {
-  return parse_config(read_config_text(file), file.string());
+  return read_config(read_config_text(file), file.string(), file.parent_path());
 }
 
 namespace {

@@ -70,7 +70,8 @@ SensorConfig default_sensor(std::string name, const drivers::sensor::DriverDescr
 /// The same configuration with another listening address, which is not checked.
 Config listening_at(Config config, const std::string& address);
 
-/// Reads a configuration. `source_name` is the file name in error messages. Throws ConfigError with every error found.
+/// Reads a configuration, but not the pictures that it names. `source_name` is the file name in error messages. Throws
+/// ConfigError with every error found.
 Config parse_config(std::string_view toml_text, const std::string& source_name);
 
 /// The largest configuration that is read, in bytes: many times what any installation needs.
@@ -80,7 +81,8 @@ inline constexpr std::size_t kLargestConfig_bytes = 1 << 20;
 /// than kLargestConfig_bytes. Waits for nothing but the disk.
 std::string read_config_text(const std::filesystem::path& file);
 
-/// Reads a configuration file. Throws ConfigError, also where the file cannot be read.
+/// Reads a configuration file, and the pictures that it names, from its folder on. Throws ConfigError, also where one
+/// of them cannot be read.
 Config load_config(const std::filesystem::path& file);
 
 /// Makes the sensor, without touching its device. Throws ConfigError where its values contradict each other.

@@ -229,6 +229,9 @@ void compare_scenes(Comparison& comparison, const std::vector<SceneConfig>& runn
       continue;
     }
     comparison.merged(owner, before->values, scene.values, [change](const std::string&) { return change; });
+    if (before->values.all() == scene.values.all() && before->cloth != scene.cloth) {
+      comparison.note(change, owner + "image: its file has changed");
+    }
   }
   compare_lists(comparison, "scene", change, running, wanted);
 }

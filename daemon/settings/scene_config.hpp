@@ -1,8 +1,12 @@
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/base/parameter.hpp"
+#include "engine/look/cloth_look.hpp"
 #include "engine/scenes/scene.hpp"
 
 namespace yuragi::daemon::settings {
@@ -14,11 +18,16 @@ struct SceneConfig {
   ParameterValues values{};  ///< its kind's own parameters, and common_scene_parameters()
 
   scenes::ScenePlacement placement{};
-  double wind_gain = 1.0;  ///< factor on the wind speed
-  bool is_shown = true;    ///< from the start
+  double wind_gain = 1.0;   ///< factor on the wind speed
+  bool is_shown = true;     ///< from the start
+  look::ClothLook cloth{};  ///< of a flag, a banner or a curtain
 };
 
 /// `values`: of common_scene_parameters() and of the kind's own parameters.
 SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values);
+
+/// What a cloth of these values looks like. Its picture's path begins at `folder`; without a folder no picture is read.
+Result<look::ClothLook, std::vector<ParameterError>> cloth_look_of(const ParameterValues& values,
+                                                                   const std::optional<std::filesystem::path>& folder);
 
 }  // namespace yuragi::daemon::settings

@@ -9,6 +9,7 @@
 #include "engine/math/philox.hpp"
 #include "engine/math/trig.hpp"
 #include "engine/scenes/cloth.hpp"
+#include "engine/scenes/cloth_parameters.hpp"
 #include "engine/scenes/cloth_strength.hpp"
 #include "engine/scenes/cloth_swing.hpp"
 #include "engine/scenes/cloth_waves.hpp"
@@ -50,6 +51,9 @@ const std::array kBannerParameters = {
     Parameter{"wave_length", "m", 2.4, 0.2, 100, "of the longest waves; shorter ones make it flutter faster"},
     Parameter{"wave_speed", "", 0.55, 0, 2, "how fast the waves run down, as a part of the wind's speed"},
     Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
+    kClothColor,
+    kClothColor2,
+    kClothImage,
 };
 
 /// No wave runs faster: 0.2 m a tick.

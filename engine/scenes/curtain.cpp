@@ -9,6 +9,7 @@
 #include "engine/operators/propagation_job.hpp"
 #include "engine/scenes/cloth.hpp"
 #include "engine/scenes/cloth_noise.hpp"
+#include "engine/scenes/cloth_parameters.hpp"
 #include "engine/scenes/cloth_strength.hpp"
 #include "engine/scenes/cloth_swing.hpp"
 #include "engine/scenes/scene.hpp"
@@ -62,6 +63,9 @@ const std::array kCurtainParameters = {
     Parameter{"wave_speed", "", 0.36, 0, 1, "how fast bulges and waves pass, as a part of the wind's speed"},
     Parameter{"damping", "", 0.36, 0.01, 1, "how soon it hangs still again; 0.1: it swings on for long"},
     Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
+    kClothColor,
+    kClothColor2,
+    kClothImage,
 };
 
 constexpr double kCurtainGravity_m_s2 = 9.81;

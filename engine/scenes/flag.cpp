@@ -8,6 +8,7 @@
 #include "engine/math/trig.hpp"
 #include "engine/operators/oscillator_job.hpp"
 #include "engine/scenes/cloth.hpp"
+#include "engine/scenes/cloth_parameters.hpp"
 #include "engine/scenes/cloth_strength.hpp"
 #include "engine/scenes/cloth_waves.hpp"
 #include "engine/scenes/scene.hpp"
@@ -65,6 +66,9 @@ const std::array kFlagParameters = {
               "the waves grow as the way from the hoist to this power; more: a calmer hoist"},
     Parameter{"edge_flutter", "", 0.25, 0, 1, "how high the short waves near the fly are, as a part of the long ones"},
     Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
+    kClothColor,
+    kClothColor2,
+    kClothImage,
 };
 
 /// No wave runs faster: 0.2 m a tick, so that the shortest are seen to run, and not to jump.

@@ -64,11 +64,13 @@ bool read(const fb::Scenes& from, Scenes& to) {
   const std::size_t count = from.scenes() == nullptr ? 0 : from.scenes()->size();
   if (count > kMaxScenes) return false;
   std::size_t room = 0;
+  std::size_t pixels = 0;  // scenes may share a picture: few bytes must not ask for much memory
   for (std::size_t i = 0; i < count; ++i) {
     if (!read_scene(*from.scenes()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.scenes.emplace_back()))
       return false;
     room += room_of(to.scenes.back().skeleton);
-    if (room > kMaxStrands + kMaxPadding) return false;
+    if (to.scenes.back().cloth.image != nullptr) pixels += to.scenes.back().cloth.image->rgb.size() / 3;
+    if (room > kMaxStrands + kMaxPadding || pixels > kMaxPixels) return false;
   }
   return true;
 }

@@ -252,8 +252,35 @@ bool read_kind(const Table* from, Any& to) {
 
 }  // namespace
 
+namespace {
+
+std::optional<look::Color> color_of(flatbuffers::Optional<std::uint32_t> rgb) {
+  if (!rgb.has_value()) return std::nullopt;
+  const auto part = [&](unsigned shift) { return static_cast<std::uint8_t>(*rgb >> shift & 0xFFU); };
+  return look::Color{part(16), part(8), part(0)};
+}
+
+/// A picture that is as large as it says, or none.
+bool read(const fb::Cloth& from, look::ClothLook& to) {
+  to.color = color_of(from.color());
+  to.color_2 = color_of(from.color_2());
+  const std::size_t width_px = from.image_width();
+  const std::size_t height_px = from.image_height();
+  if (width_px > look::Image::kLongestSide_px || height_px > look::Image::kLongestSide_px ||
+      width_px * height_px > look::Image::kMostPixels || size_of(from.image_rgb()) != 3 * width_px * height_px)
+    return false;
+  if (width_px * height_px == 0) return true;
+  const auto* const rgb = from.image_rgb();
+  to.image = std::make_shared<look::Image>(
+      look::Image{.width_px = from.image_width(), .height_px = from.image_height(), .rgb = {rgb->begin(), rgb->end()}});
+  return true;
+}
+
+}  // namespace
+
 bool read_scene(const fb::Scene& from, SceneModel& to) {
   if (!read_text(from.name(), to.name) || !read_text(from.kind(), to.kind)) return false;
+  if (from.cloth() != nullptr && !read(*from.cloth(), to.cloth)) return false;
   switch (from.skeleton_type()) {
     case fb::Skeleton_StrandSkeleton:
       return read_kind<pose::StrandSkeleton>(from.skeleton_as_StrandSkeleton(), to.skeleton);

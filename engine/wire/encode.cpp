@@ -291,6 +291,24 @@ Bytes encode(const Subscribe& subscribe) {
                                     subscribe.raw, raw_sensor, subscribe.takes_new_scenes));
 }
 
+namespace {
+
+flatbuffers::Optional<std::uint32_t> to_schema(const std::optional<look::Color>& color) {
+  if (!color) return flatbuffers::nullopt;
+  return std::uint32_t{color->red} << 16 | std::uint32_t{color->green} << 8 | color->blue;
+}
+
+/// Nothing where it says nothing.
+flatbuffers::Offset<fb::Cloth> add_cloth(Builder& builder, const look::ClothLook& cloth) {
+  if (cloth == look::ClothLook{}) return {};
+  if (cloth.image == nullptr) return fb::CreateCloth(builder, to_schema(cloth.color), to_schema(cloth.color_2));
+  const auto rgb = builder.CreateVector(cloth.image->rgb);
+  return fb::CreateCloth(builder, to_schema(cloth.color), to_schema(cloth.color_2), cloth.image->width_px,
+                         cloth.image->height_px, rgb);
+}
+
+}  // namespace
+
 Bytes encode(const Scenes& scenes) {
   Builder builder;
   std::vector<flatbuffers::Offset<fb::Scene>> tables;
@@ -300,7 +318,8 @@ Bytes encode(const Scenes& scenes) {
     const auto kind = add_text(builder, scene.kind);
     const auto skeleton =
         std::visit([&](const auto& model) { return add_skeleton(builder, model).Union(); }, scene.skeleton);
-    tables.push_back(fb::CreateScene(builder, name, kind, kind_of(scene.skeleton), skeleton));
+    const auto cloth = add_cloth(builder, scene.cloth);
+    tables.push_back(fb::CreateScene(builder, name, kind, kind_of(scene.skeleton), skeleton, cloth));
   }
   return finish(builder, fb::Body_Scenes, fb::CreateScenes(builder, builder.CreateVector(tables)));
 }

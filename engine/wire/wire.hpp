@@ -15,6 +15,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
 #include "engine/look/camera.hpp"
+#include "engine/look/cloth_look.hpp"
 #include "engine/look/look.hpp"
 #include "engine/pose/skeleton.hpp"
 #include "engine/wind/judging/sensor_state.hpp"
@@ -40,6 +41,7 @@ inline constexpr std::size_t kMaxTextBytes = 1024;  ///< encoders cut longer tex
 inline constexpr std::size_t kMaxScenes = 64;
 /// Strands, joints of cloth and points of surfaces, of all scenes of a message together.
 inline constexpr std::size_t kMaxStrands = 1u << 22;
+inline constexpr std::size_t kMaxPixels = 1u << 23;  ///< in the pictures of all cloths of a message together
 inline constexpr std::size_t kMaxLinksPerStrand = 256;
 inline constexpr std::size_t kMaxSensors = 256;
 inline constexpr std::size_t kMaxRefusalReasons = 64;
@@ -78,6 +80,7 @@ struct SceneModel {
   std::string name;
   std::string kind;
   pose::Skeleton skeleton;
+  look::ClothLook cloth = {};  ///< of a cloth; its picture is as large as it says, and within Image's limits
 };
 
 struct Scenes {

@@ -38,8 +38,15 @@ void demand_lateness(const std::optional<wire::Lateness>& lateness) {
 /// What decode() promises of everything that it lets through.
 void demand_consistency(const wire::Message& message) {
   if (const auto* scenes = std::get_if<wire::Scenes>(&message)) {
-    for (const auto& scene : scenes->scenes)
+    std::size_t pixels = 0;
+    for (const auto& scene : scenes->scenes) {
       if (!samples::is_sound(scene.skeleton)) std::abort();
+      const auto& image = scene.cloth.image;
+      if (image == nullptr) continue;
+      if (image->rgb.size() != std::size_t{3} * image->width_px * image->height_px || image->rgb.empty()) std::abort();
+      pixels += image->rgb.size() / 3;
+    }
+    if (pixels > wire::kMaxPixels) std::abort();
   }
   if (const auto* trace = std::get_if<wire::RawTrace>(&message)) {
     if (trace->bytes.size() > wire::kMaxRawBytes || trace->bytes.size() > trace->length) std::abort();

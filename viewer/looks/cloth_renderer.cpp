@@ -1,12 +1,25 @@
 #include "viewer/looks/cloth_renderer.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
 
 #include "viewer/gl/shaders.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
+
+constexpr float kCell_px = 3.0F;  // of the coarsest mesh that does
+constexpr float kNearest_m = 0.1F;
+constexpr std::size_t kLooks = 12;     // joints along each side that are asked how far they are
+constexpr float kHalfHem_m = 0.0015F;  // half the thickness of a hem
+constexpr float kDarkestPaint = 0.012F;
+constexpr float kLightestPaint = 0.78F;
+constexpr float kThinnest_px = 0.2F;  // half as thick, a rim is not seen
 
 /// From a banner's pole to the end of its arm along the ground, at rest and in a pose.
 glm::vec2 arm_m(const pose::GridSkeleton& cloth, const pose::GridPose* pose) {
@@ -15,31 +28,103 @@ glm::vec2 arm_m(const pose::GridSkeleton& cloth, const pose::GridPose* pose) {
   return pose == nullptr ? at_rest_m : at_rest_m + glm::vec2(pose->offset_x_m[end], pose->offset_z_m[end]);
 }
 
+/// A screen's value (IEC 61966-2-1, sRGB) as light, of cloth: none is quite black or reflects all.
+float paint_of(std::uint8_t value) {
+  const float part = static_cast<float>(value) / 255.0F;
+  const float light = part <= 0.04045F ? part / 12.92F : std::pow((part + 0.055F) / 1.055F, 2.4F);
+  return kDarkestPaint + (kLightestPaint - kDarkestPaint) * light;
+}
+
+/// w: 1 where there is one.
+glm::vec4 paint_of(const std::optional<look::Color>& color) {
+  if (!color) return glm::vec4(0.0F);
+  return {paint_of(color->red), paint_of(color->green), paint_of(color->blue), 1.0F};
+}
+
+gl::GlTexture texture_of(const look::Image& image) {
+  gl::GlTexture texture;
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, texture.name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8, static_cast<GLsizei>(image.width_px), static_cast<GLsizei>(image.height_px),
+               0, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  return texture;
+}
+
+/// Of its vertices; `none` where there are none.
+meshes::Bounds bounds_of(const meshes::SolidMesh& mesh, const meshes::Bounds& none) {
+  if (mesh.vertices().empty()) return none;
+  meshes::Bounds bounds{mesh.vertices()[0].place_m, mesh.vertices()[0].place_m};
+  for (const meshes::SolidVertex& vertex : mesh.vertices()) {
+    bounds = meshes::united(bounds, {vertex.place_m, vertex.place_m});
+  }
+  return bounds;
+}
+
 }  // namespace
 
-ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, std::string_view kind)
+ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style, const look::ClothLook& look,
+                             const meshes::SolidMesh& holder)
     : cloth_(&cloth),
-      is_vane_(meshes::cloth_style(kind, cloth) == meshes::ClothStyle::kBanner && cloth.columns > 1 && cloth.rows > 0),
+      lies_(meshes::measure(cloth)),
+      style_(style),
+      is_vane_(style_ == meshes::ClothStyle::kBanner && cloth.columns > 1 && cloth.rows > 0),
       points_(cloth),
-      sheet_(meshes::layout_of(cloth)),
-      holder_(meshes::cloth_holder(meshes::cloth_style(kind, cloth), cloth)),
+      holder_bounds_(bounds_of(holder, meshes::bounds_of(cloth))),
+      holder_(holder),
+      floor_(meshes::cloth_floor(style_, cloth)),
       program_(gl::link_program("cloth", gl::shaders::kClothVert, gl::shaders::kClothFrag)) {
-  const meshes::ClothMeasure lies = meshes::measure(cloth);
-  const auto place = [&](const char* name) { return glGetUniformLocation(program_.name(), name); };
+  if (floor_) boards_.emplace(*floor_);
   glUseProgram(program_.name());
-  glUniform1i(place("stride"), static_cast<GLint>(cloth.stride()));
-  glUniform2f(place("origin_m"), lies.origin_m.x, lies.origin_m.y);
-  glUniform2f(place("per_column_m"), lies.per_column_m.x, lies.per_column_m.y);
-  glUniform2f(place("per_row_m"), lies.per_row_m.x, lies.per_row_m.y);
-  glUniform2f(place("size_m"), lies.size_m.x, lies.size_m.y);
-  glUniform1i(place("style"), static_cast<GLint>(meshes::cloth_style(kind, cloth)));
+  glUniform2f(glGetUniformLocation(program_.name(), "size_m"), lies_.size_m.x, lies_.size_m.y);
+  glUniform1i(glGetUniformLocation(program_.name(), "style"), static_cast<GLint>(style_));
+  glUniform4fv(glGetUniformLocation(program_.name(), "color_1"), 1, &paint_of(look.color)[0]);
+  glUniform4fv(glGetUniformLocation(program_.name(), "color_2"), 1, &paint_of(look.color_2)[0]);
+  glUniform1i(glGetUniformLocation(program_.name(), "has_picture"), look.image != nullptr ? 1 : 0);
+  gl::set_sampler(program_, "picture", 0);
+  if (look.image != nullptr) picture_ = texture_of(*look.image);
+}
+
+float ClothRenderer::nearest_m(const meshes::View& view) const {
+  const glm::vec3 eye_m(view.eye_m);
+  float nearest_m = std::numeric_limits<float>::max();
+  const std::size_t row_step = std::max<std::size_t>(cloth_->rows / kLooks, 1);
+  const std::size_t column_step = std::max<std::size_t>(cloth_->columns / kLooks, 1);
+  for (std::size_t row = 0; row < cloth_->rows; row += row_step) {
+    for (std::size_t column = 0; column < cloth_->columns; column += column_step) {
+      const pose::JointPosition at = points_.point(row * cloth_->stride() + column);
+      nearest_m = std::min(nearest_m, glm::distance(eye_m, glm::vec3(at.x_m, at.y_m, at.z_m)));
+    }
+  }
+  return std::max(nearest_m, kNearest_m);
+}
+
+int ClothRenderer::level_in(const meshes::View& view) const {
+  const float cell_m = std::max(glm::length(lies_.per_column_m), glm::length(lies_.per_row_m));
+  const float level = std::ceil(std::log2(std::max(cell_m, 1e-6F) / (kCell_px * view.eye_m.w * nearest_m(view))));
+  return static_cast<int>(std::clamp(level, static_cast<float>(meshes::ClothSurface::kCoarsest),
+                                     static_cast<float>(meshes::ClothSurface::kFinest)));
+}
+
+ClothSheet& ClothRenderer::sheet() {
+  const auto i = static_cast<std::size_t>(level_ - meshes::ClothSurface::kCoarsest);
+  std::optional<ClothSheet>& sheet = sheets_[i];
+  if (!sheet) sheet.emplace(meshes::layout_of(*cloth_), lies_, level_);
+  if (!is_moved_[i]) sheet->move_to(std::as_const(points_).data());
+  is_moved_[i] = true;
+  return *sheet;
 }
 
 void ClothRenderer::move_to(const pose::Pose& pose) {
   const auto* const offsets = std::get_if<pose::GridPose>(&pose);
   const pose::GridKinematicsJob job{.skeleton = cloth_, .pose = offsets, .points = &points_};
   if (job.run() != pose::GridKinematicsJob::Problem::kNone) return;
-  sheet_.move_to(std::as_const(points_).data());
+  is_moved_.fill(false);
   if (!is_vane_) return;
   const glm::vec2 rest_m = arm_m(*cloth_, nullptr);
   const glm::vec2 now_m = arm_m(*cloth_, offsets);
@@ -49,10 +134,19 @@ void ClothRenderer::move_to(const pose::Pose& pose) {
                glm::dot(rest_m, now_m) / square_m2);
 }
 
-void ClothRenderer::draw(const meshes::View&) {
+void ClothRenderer::draw(const meshes::View& view) {
+  // The sun sees what the last picture's eye saw.
+  const bool is_sun = view.to_clip[0][3] == 0.0F && view.to_clip[1][3] == 0.0F && view.to_clip[2][3] == 0.0F;
+  if (!is_sun) level_ = level_in(view);
   glUseProgram(program_.name());
-  sheet_.draw();
+  if (picture_) glBindTexture(GL_TEXTURE_2D, picture_->name());
+  ClothSheet& now = sheet();
+  now.draw();
+  if (!is_sun && kHalfHem_m > kThinnest_px * view.eye_m.w * nearest_m(view)) now.draw_rim(kHalfHem_m);
   holder_.draw();
+  if (is_sun || !boards_) return;
+  boards_->draw();
+  if (view.shadow.x == 0.0F) boards_->draw_in_shade([&] { now.draw(); });
 }
 
 }  // namespace yuragi::viewer::looks

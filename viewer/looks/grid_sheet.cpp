@@ -1,9 +1,7 @@
 #include "viewer/looks/grid_sheet.hpp"
 
 namespace yuragi::viewer::looks {
-namespace {
 
-/// `buffer` holds one array of `size` numbers for each attribute from `first` on.
 void describe_arrays(const gl::GlBuffer& buffer, GLuint first, GLuint count, std::size_t size) {
   glBindBuffer(GL_ARRAY_BUFFER, buffer.name());
   for (GLuint i = 0; i < count; ++i) {
@@ -14,8 +12,6 @@ void describe_arrays(const gl::GlBuffer& buffer, GLuint first, GLuint count, std
     glEnableVertexAttribArray(first + i);
   }
 }
-
-}  // namespace
 
 GridSheet::GridSheet(const meshes::GridLayout& layout) : layout_(layout), normals_(3 * layout.size()) {
   const std::vector<std::uint32_t> triangles = meshes::grid_triangles(layout);

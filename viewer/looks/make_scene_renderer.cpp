@@ -28,7 +28,7 @@ std::unique_ptr<SceneRenderer> renderer_of(const pose::StrandSkeleton& strands, 
 }
 std::unique_ptr<SceneRenderer> renderer_of(const pose::GridSkeleton& cloth, const wire::SceneModel& scene,
                                            look::Quality) {
-  return std::make_unique<ClothRenderer>(cloth, scene.kind);
+  return std::make_unique<ClothRenderer>(cloth, scene.kind, scene.cloth);
 }
 std::unique_ptr<SceneRenderer> renderer_of(const pose::TreeSkeleton& tree, const wire::SceneModel&, look::Quality) {
   return std::make_unique<TreeRenderer>(tree);

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "engine/look/look.hpp"
 #include "engine/wire/wire.hpp"
+#include "viewer/meshes/bounds.hpp"
+#include "viewer/meshes/floor.hpp"
 #include "viewer/meshes/view.hpp"
 
 namespace yuragi::viewer::looks {
@@ -29,6 +32,12 @@ class SceneRenderer {
 
   /// Fills, in the stencil alone, the part of the ground that is open: under water.
   virtual void draw_hole() {}
+
+  /// `bounds`, of its skeleton, and what holds that, but not the floor.
+  virtual meshes::Bounds bounds_with_holder(const meshes::Bounds& bounds) const { return bounds; }
+
+  /// The floor on which it stands, where it has one of its own.
+  virtual std::optional<meshes::Floor> floor() const { return std::nullopt; }
 
   /// Does it cast a shadow? Then draw() is also called with a View that projects everything onto the ground.
   virtual bool casts_shadow() const { return false; }

@@ -26,7 +26,9 @@ Solids::Solids(const meshes::SolidMesh& mesh)
   glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(meshes::SolidVertex),
                         at(offsetof(meshes::SolidVertex, normal)));
   glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, sizeof(meshes::SolidVertex), at(offsetof(meshes::SolidVertex, tint)));
-  for (GLuint attribute = 0; attribute < 3; ++attribute) glEnableVertexAttribArray(attribute);
+  glVertexAttribPointer(3, 3, GL_FLOAT, GL_FALSE, sizeof(meshes::SolidVertex),
+                        at(offsetof(meshes::SolidVertex, grain)));
+  for (GLuint attribute = 0; attribute < 4; ++attribute) glEnableVertexAttribArray(attribute);
 }
 
 void Solids::turn(const glm::vec2& axis_m, float sine, float cosine) {

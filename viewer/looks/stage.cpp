@@ -26,7 +26,8 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
   ground_.set_standing({});  // it refers to the skeletons
   for (wire::SceneModel& scene : scenes) {
     const auto same = std::ranges::find_if(before, [&](const auto& view) {
-      return view && view->scene.kind == scene.kind && view->scene.skeleton == scene.skeleton;
+      return view && view->scene.kind == scene.kind && view->scene.skeleton == scene.skeleton &&
+             view->scene.cloth == scene.cloth;
     });
     if (same != before.end()) {
       views_.push_back(std::move(*same));
@@ -36,6 +37,7 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
       view->scene = std::move(scene);
       view->bounds = meshes::bounds_of(view->scene.skeleton);
       view->renderer = make_scene_renderer(view->scene, quality_);
+      view->bounds = view->renderer->bounds_with_holder(view->bounds);
       if (const auto* strands = std::get_if<pose::StrandSkeleton>(&view->scene.skeleton)) {
         view->grid = meshes::bend_grid_of(*strands);
         if (view->renderer->is_field() && !view->renderer->is_ground()) view->stand = meshes::stand_of(*strands);
@@ -126,6 +128,7 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
     const float opacity = moment.opacities[scene];
     meshes::Standing& thing = standing_.emplace_back();
     thing.bounds = view.bounds;
+    thing.floor = view.renderer->floor();
     thing.opacity = opacity;
     if (view.stand) {
       thing.kind = meshes::Standing::Kind::kGrass;

@@ -24,8 +24,8 @@ namespace yuragi::viewer::looks {
 /// All scene views, each with its SceneRenderer, in a landscape. Needs a current context; on its thread.
 class Stage {
  public:
-  /// Replaces the scenes. One of the same kind and skeleton as before keeps what it has on the GPU. Where the scene
-  /// that alone was drawn is gone, all are drawn.
+  /// Replaces the scenes. One of the same kind, skeleton and cloth as before keeps what it has on the GPU. Where the
+  /// scene that alone was drawn is gone, all are drawn.
   void set_scenes(std::vector<wire::SceneModel> scenes);
   const std::vector<const wire::SceneModel*>& scenes() const { return scenes_; }
 

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "engine/pose/skeleton.hpp"
-#include "viewer/meshes/solid_mesh.hpp"
 
 namespace yuragi::viewer::meshes {
 
@@ -26,7 +26,7 @@ struct ClothMeasure {
 };
 ClothMeasure measure(const pose::GridSkeleton& cloth);
 
-/// The mesh of what holds it: a rod on two posts, a pole, a pole with a cross-arm, on the ground at height 0.
-SolidMesh cloth_holder(ClothStyle style, const pose::GridSkeleton& cloth);
+/// Where the joint is at rest.
+glm::vec3 cloth_joint(const pose::GridSkeleton& cloth, std::size_t column, std::size_t row);
 
 }  // namespace yuragi::viewer::meshes

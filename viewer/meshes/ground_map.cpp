@@ -10,10 +10,11 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kTexel_m = GrowthMap::kSide_m / static_cast<float>(GrowthMap::kTexels);
-constexpr float kLawn = 0.25F;     // the growth of a lawn
-constexpr float kMargin_m = 0.8F;  // of lawn around a thing
-constexpr float kSlope_m = 2.8F;   // from there on to tall grass
-constexpr float kShore_m = 0.5F;   // around water, without blades
+constexpr float kLawn = 0.25F;         // the growth of a lawn
+constexpr float kMargin_m = 0.8F;      // of lawn around a thing
+constexpr float kSlope_m = 2.8F;       // from there on to tall grass
+constexpr float kShore_m = 0.5F;       // around water, without blades
+constexpr float kFloorEdge_m = 0.05F;  // beyond which blades stand again
 /// A texel with so many blades, of those that its area has on average, is taken as full.
 constexpr float kFullTexel = 0.5F;
 
@@ -29,6 +30,13 @@ std::size_t texel_of(float at_m) {
 
 float middle_m(std::size_t texel) {
   return (static_cast<float>(texel) + 0.5F) * kTexel_m - 0.5F * GrowthMap::kSide_m;
+}
+
+Bounds box_around(const Floor& floor) {
+  const glm::vec2 aside = glm::abs(floor.along);
+  const glm::vec3 half_m(aside.x * floor.half_m.x + aside.y * floor.half_m.y, 0.0F,
+                         aside.y * floor.half_m.x + aside.x * floor.half_m.y);
+  return {floor.middle_m - half_m, floor.middle_m + half_m};
 }
 
 bool is_on_map(float x_m, float z_m) {
@@ -99,7 +107,7 @@ void GrowthMap::make(std::span<const Standing> things) {
     }
     // On the ground that water takes no blade stands.
     const bool is_water = thing.kind == Standing::Kind::kWater;
-    const Bounds& box = thing.bounds;
+    const Bounds box = thing.floor ? united(thing.bounds, box_around(*thing.floor)) : thing.bounds;
     const float reach_m = kMargin_m + kSlope_m;
     for (std::size_t row = texel_of(box.low_m.z - reach_m); row <= texel_of(box.high_m.z + reach_m); ++row) {
       for (std::size_t column = texel_of(box.low_m.x - reach_m); column <= texel_of(box.high_m.x + reach_m); ++column) {
@@ -109,7 +117,7 @@ void GrowthMap::make(std::span<const Standing> things) {
                      glm::vec2(0.0F));
         const float out_m = glm::length(out);
         float growth = kLawn + (1.0F - kLawn) * smooth((out_m - kMargin_m) / kSlope_m);
-        if (is_water && out_m <= kShore_m) {
+        if ((is_water && out_m <= kShore_m) || (thing.floor && is_on(*thing.floor, at, kFloorEdge_m))) {
           float& water = water_[row * kTexels + column];
           water = std::max(water, thing.opacity);
         }

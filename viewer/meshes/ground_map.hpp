@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 
 #include "engine/pose/skeleton.hpp"
 #include "viewer/meshes/bounds.hpp"
+#include "viewer/meshes/floor.hpp"
 
 namespace yuragi::viewer::meshes {
 
@@ -51,11 +53,12 @@ struct Standing {
   Bounds bounds;
   float opacity = 1.0F;
   const pose::StrandSkeleton* blades = nullptr;  ///< of grass
+  std::optional<Floor> floor = std::nullopt;     ///< that it stands on
 };
 
 /// How tall grass grows, and where the ground is taken, by streamed blades: a square map around the middle of the
 /// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things. Where there is
-/// water no blade of the viewer's own stands, either. Beyond the map it is as on its edge.
+/// water or a floor no blade of the viewer's own stands, either. Beyond the map it is as on its edge.
 class GrowthMap {
  public:
   static constexpr std::size_t kTexels = 256;  ///< a side

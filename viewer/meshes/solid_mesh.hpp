@@ -12,17 +12,24 @@ namespace yuragi::viewer::meshes {
 struct SolidVertex {
   glm::vec3 place_m{0.0F};
   glm::vec3 normal{0.0F};
-  glm::vec3 tint{0.0F};  ///< linear light
+  glm::vec3 tint{0.0F};   ///< linear light
+  glm::vec3 grain{0.0F};  ///< place along and across the grain, metres; how much of a grain it has, 0 to 1
 };
 
 /// A rigid mesh of poles, rods, knobs and rims, built piece by piece. Pure.
 class SolidMesh {
  public:
+  /// The pieces that follow have so much of the grain of wood, along their longer side: 0 to 1.
+  void set_grain(float share) { grain_ = share; }
+
   /// From `from` to `to`, round, tapering, open at its ends.
   void add_tube(const glm::vec3& from, const glm::vec3& to, float from_radius_m, float to_radius_m,
                 const glm::vec3& tint);
   void add_ball(const glm::vec3& middle, float radius_m, const glm::vec3& tint);
-  /// A bar with four sides along `from`..`to` (level), from low_y to high_y.
+  /// Around `middle`, across `axis`: of so thick a wire.
+  void add_ring(const glm::vec3& middle, const glm::vec3& axis, float radius_m, float wire_radius_m,
+                const glm::vec3& tint);
+  /// A bar along `from`..`to` (level), from low_y to high_y.
   void add_beam(const glm::vec3& from, const glm::vec3& to, float half_width_m, float low_y_m, float high_y_m,
                 const glm::vec3& tint);
   /// A flat piece with four corners, in their order around it.
@@ -32,6 +39,7 @@ class SolidMesh {
   const std::vector<std::uint32_t>& indices() const { return indices_; }
 
  private:
+  float grain_ = 0.0F;
   std::vector<SolidVertex> vertices_;
   std::vector<std::uint32_t> indices_;
 };

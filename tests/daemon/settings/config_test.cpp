@@ -13,6 +13,7 @@
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/site_octaves.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
+#include "tests/support/small_png.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::daemon::settings {
@@ -35,6 +36,38 @@ std::string mistakes_of(std::string_view text) {
     return error.what();
   }
   return "no mistake was found";
+}
+
+TEST(Config, HasTheColorsAndThePictureOfACloth) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "wall.toml";
+  const auto write = [](const std::filesystem::path& to, std::string_view bytes) {
+    std::ofstream(to, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  };
+  const std::vector<std::uint8_t> png = test::small_png();
+  write(folder.path() / "crest.png", {reinterpret_cast<const char*>(png.data()), png.size()});
+  write(file, "[[scene]]\nkind = \"flag\"\ncolor = \"#1b2A49\"\nimage = \"crest.png\"\n");
+
+  const look::ClothLook flag = load_config(file).scenes.at(0).cloth;
+  EXPECT_EQ(flag.color, (look::Color{0x1b, 0x2a, 0x49}));
+  EXPECT_EQ(flag.color_2, std::nullopt);
+  ASSERT_NE(flag.image, nullptr);
+  EXPECT_EQ(flag.image->width_px, 2U);
+  EXPECT_EQ(parse_config(read_config_text(file), file.string()).scenes.at(0).cloth.image, nullptr)
+      << "a recorded configuration may be without its pictures";
+
+  write(folder.path() / "text.png", "no picture");
+  write(file,
+        "[[scene]]\nkind = \"curtain\"\nimage = \"gone.png\"\n[[scene]]\nkind = \"banner\"\nimage = \"text.png\"\n"
+        "color_2 = \"#12345\"\n[[scene]]\nkind = \"flag\"\ncolor = \"red\"\n");
+  EXPECT_THAT([&] { load_config(file); },
+              ThrowsMessage<ConfigError>(AllOf(
+                  HasSubstr("wall.toml:3:9: scene.image: \"gone.png\" cannot be read: No such file or directory; give"),
+                  HasSubstr("wall.toml:6:9: scene.image: \"text.png\" is neither a PNG nor a JPEG file; save it as"),
+                  HasSubstr("wall.toml:7:11: scene.color_2: is \"#12345\"; allowed: \"#rrggbb\""),
+                  HasSubstr("wall.toml:10:9: scene.color: is \"red\"; allowed"))));
+  EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\ncolor = \"#112233\"\n"),
+              HasSubstr("color: is not a parameter"));
 }
 
 TEST(Config, HasTheLookWithTheLineOfAMistake) {

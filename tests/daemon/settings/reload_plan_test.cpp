@@ -193,6 +193,16 @@ TEST(ReloadPlan, NamesSensorsThatComeGoAndChangePlaces) {
   EXPECT_THAT(plan_reload(wanted, running, true).takes_restart, ::testing::Contains("sensor yard: is gone"));
 }
 
+TEST(ReloadPlan, NoticesAPictureWhoseFileHasChanged) {
+  const Config running = parse_config("[[scene]]\nkind = \"flag\"\nimage = \"crest.png\"\n", "wall.toml");
+  Config wanted = running;
+  EXPECT_FALSE(plan_reload(running, wanted, true).changes_scenes);
+  wanted.scenes[0].cloth.image = std::make_shared<look::Image>(look::Image{1, 1, {1, 2, 3}});
+  const ReloadPlan plan = plan_reload(running, wanted, true);
+  EXPECT_TRUE(plan.changes_scenes);
+  EXPECT_THAT(plan.applied, testing::Contains("scene flag: image: its file has changed"));
+}
+
 TEST(ReloadPlan, TakesScenesAsAWholeOrLeavesThem) {
   const Config running = wall(kTwoSensors);
   Config wanted = wall(

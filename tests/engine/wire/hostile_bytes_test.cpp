@@ -21,8 +21,12 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Does a message that decode() let through keep what wire.hpp and skeleton.hpp promise?
 bool is_safe(const Message& message) {
   if (const auto* scenes = std::get_if<Scenes>(&message)) {
-    return std::all_of(scenes->scenes.begin(), scenes->scenes.end(),
-                       [](const SceneModel& scene) { return samples::is_sound(scene.skeleton); });
+    return std::all_of(scenes->scenes.begin(), scenes->scenes.end(), [](const SceneModel& scene) {
+      const auto& image = scene.cloth.image;
+      const bool is_sound_image =
+          image == nullptr || image->rgb.size() == std::size_t{3} * image->width_px * image->height_px;
+      return samples::is_sound(scene.skeleton) && is_sound_image;
+    });
   }
   if (const auto* trace = std::get_if<RawTrace>(&message)) {
     return trace->bytes.size() <= kMaxRawBytes && trace->bytes.size() <= trace->length;
@@ -400,6 +404,50 @@ TEST(HostileBytes, AGridOfMorePointsThanThereAreIsRefused) {
     });
     EXPECT_EQ(cloth.has_value(), columns * rows == 12) << columns << ' ' << rows;
   }
+}
+
+TEST(HostileBytes, APictureThatIsNotAsLargeAsItSaysIsRefused) {
+  const auto with_image = [](std::uint32_t width_px, std::uint32_t height_px, std::size_t bytes) {
+    return decode_built(fb::Body_Scenes, [&](auto& builder) {
+      const auto values = builder.CreateVector(std::vector<float>(4));
+      const auto grid = fb::CreateGridSkeleton(builder, 2, 2, false, values, values, values).Union();
+      const auto rgb = builder.CreateVector(std::vector<std::uint8_t>(bytes));
+      const auto cloth = fb::CreateCloth(builder, flatbuffers::nullopt, flatbuffers::nullopt, width_px, height_px, rgb);
+      const auto scene = fb::CreateScene(builder, 0, 0, fb::Skeleton_GridSkeleton, grid, cloth);
+      return fb::CreateScenes(builder, builder.CreateVector(std::vector{scene})).Union();
+    });
+  };
+  EXPECT_TRUE(with_image(5, 4, 60).has_value());
+  EXPECT_TRUE(with_image(1024, 1024, 3U << 20).has_value());
+  EXPECT_TRUE(with_image(0, 0, 0).has_value());
+  struct Case {
+    std::uint32_t width_px, height_px;
+    std::size_t bytes;
+  };
+  for (const auto& [width_px, height_px, bytes] :
+       {Case{5, 4, 59}, Case{5, 4, 61}, Case{5, 0, 60}, Case{0, 0, 3}, Case{8192, 1, 3 * 8192},
+        Case{1025, 1024, 3 * 1025 * 1024}, Case{1U << 31, 1U << 31, 0}, Case{0xFFFFFFFF, 0xFFFFFFFF, 3}}) {
+    EXPECT_EQ(with_image(width_px, height_px, bytes).error(), WireError::kInconsistent)
+        << width_px << ' ' << height_px << ' ' << bytes;
+  }
+}
+
+TEST(HostileBytes, ScenesThatShareAPictureDoNotAskForMuchMemory) {
+  const auto shared = [](std::size_t scene_count) {
+    return decode_built(fb::Body_Scenes, [&](auto& builder) {
+      const auto values = builder.CreateVector(std::vector<float>(4));
+      const auto grid = fb::CreateGridSkeleton(builder, 2, 2, false, values, values, values).Union();
+      const auto rgb = builder.CreateVector(std::vector<std::uint8_t>(3U << 20));
+      const auto cloth = fb::CreateCloth(builder, flatbuffers::nullopt, flatbuffers::nullopt, 1024, 1024, rgb);
+      std::vector<flatbuffers::Offset<fb::Scene>> scenes;
+      for (std::size_t i = 0; i < scene_count; ++i) {
+        scenes.push_back(fb::CreateScene(builder, 0, 0, fb::Skeleton_GridSkeleton, grid, cloth));
+      }
+      return fb::CreateScenes(builder, builder.CreateVector(scenes)).Union();
+    });
+  };
+  EXPECT_TRUE(shared(8).has_value());
+  EXPECT_EQ(shared(9).error(), WireError::kInconsistent);
 }
 
 TEST(HostileBytes, AFrameWithoutWindIsRefused) {

@@ -66,6 +66,16 @@ TEST(WireRoundTrip, ScenesComeBackBitForBitAndPaddedToBlocks) {
   }
 }
 
+TEST(WireRoundTrip, WhatAClothLooksLikeComesBackAsItWas) {
+  const Scenes got = decoded<Scenes>(encode(samples::all_kinds()));
+  EXPECT_EQ(got.scenes[1].cloth, samples::cloth_look());
+  EXPECT_EQ(got.scenes[0].cloth, look::ClothLook{});
+
+  Scenes plain = samples::all_kinds();
+  plain.scenes[1].cloth = {.color = look::Color{0, 0, 0}};
+  EXPECT_EQ(decoded<Scenes>(encode(plain)).scenes[1].cloth, plain.scenes[1].cloth) << "black is a colour, too";
+}
+
 TEST(WireRoundTrip, StrandsOnAGridComeBackWithItsColumns) {
   Scenes sent = samples::scenes();
   auto& strands = std::get<pose::StrandSkeleton>(sent.scenes[0].skeleton);

@@ -192,10 +192,19 @@ inline wire::Scenes scenes(std::size_t strand_count = 37) {
   return {{{"meadow", "grass", meadow(strand_count)}, {"bank", "grass", meadow(3, 1)}}};
 }
 
+/// Two colours, and a picture of 3 x 2 pixels.
+inline look::ClothLook cloth_look() {
+  look::Image image{.width_px = 3, .height_px = 2, .rgb = {}};
+  for (std::uint8_t i = 0; i < 18; ++i) image.rgb.push_back(static_cast<std::uint8_t>(13 * i));
+  return {.color = look::Color{0x1b, 0x2a, 0x49},
+          .color_2 = look::Color{0xff, 0x80, 0x00},
+          .image = std::make_shared<look::Image>(std::move(image))};
+}
+
 /// One scene of each kind of skeleton, and a surface with and without a glow.
 inline wire::Scenes all_kinds() {
   return {{{"meadow", "grass", meadow(37)},
-           {"window", "curtain", cloth()},
+           {"window", "curtain", cloth(), cloth_look()},
            {"elm", "tree", tree()},
            {"pond", "ripple", bowl(false)},
            {"fire", "flame", bowl(true)}}};

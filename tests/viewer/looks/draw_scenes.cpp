@@ -1,6 +1,9 @@
 // Pictures of every scene of the engine, alone: calm, in a breeze, in a storm; without a daemon.
 //
-//   draw_scenes [--look=KEY=VALUE...] FOLDER [WIDTHxHEIGHT [KIND[,PARAMETER=VALUE...]...]]
+//   draw_scenes [--look=KEY=VALUE...] [--camera=HEADING,PITCH,DISTANCE[,X,Y,Z]] [--weather=NAME] FOLDER
+//               [WIDTHxHEIGHT [KIND[,PARAMETER=VALUE...]...]]
+//
+// --camera: degrees and metres, around the scene's middle or that place; --weather: that one alone.
 
 #include <algorithm>
 #include <cstdio>
@@ -54,11 +57,29 @@ std::unique_ptr<scenes::Scene> made(const std::string& words) {
   throw std::runtime_error("there is no scene of the kind " + kind);
 }
 
+/// The camera's place where the command line says one, otherwise `home`.
+viewer::meshes::CameraPlace camera_place(const std::string& wanted, viewer::meshes::CameraPlace home) {
+  std::sscanf(wanted.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf", &home.heading_deg, &home.pitch_deg, &home.distance_m,
+              &home.target_m.x, &home.target_m.y, &home.target_m.z);
+  return home;
+}
+
 /// Draws what the command line asks for. Returns the exit code.
 int draw_scenes(std::vector<std::string> words) {
   std::vector<std::string> edits;
-  while (!words.empty() && words.front().starts_with("--look=")) {
-    edits.push_back(words.front().substr(7));
+  std::string wanted_camera;
+  std::string wanted_weather;
+  while (!words.empty() && words.front().starts_with("--")) {
+    const std::string value = words.front().substr(std::min(words.front().find('='), words.front().size() - 1) + 1);
+    if (words.front().starts_with("--look=")) {
+      edits.push_back(value);
+    } else if (words.front().starts_with("--camera=")) {
+      wanted_camera = value;
+    } else if (words.front().starts_with("--weather=")) {
+      wanted_weather = value;
+    } else {
+      return 64;
+    }
     words.erase(words.begin());
   }
 
@@ -81,12 +102,13 @@ int draw_scenes(std::vector<std::string> words) {
   viewer::gl::RenderTarget target(width_px, height_px, 4);
   for (const std::string& kind : kinds) {
     for (const auto& [name, speed_m_s] : {Weather{"calm", 0.0}, Weather{"breeze", 4.0}, Weather{"storm", 18.0}}) {
+      if (!wanted_weather.empty() && wanted_weather != name) continue;
       const std::unique_ptr<scenes::Scene> scene = made(kind);
       const std::vector<wire::SceneModel> models{{kind, kind.substr(0, kind.find(',')), scene->skeleton()}};
       for (int i = 0; i < kSettlingTicks; ++i) scene->tick(wind::wind_from(speed_m_s, kWindFrom_deg), kTick_s);
       stage.set_scenes(models);
       viewer::meshes::OrbitCamera camera;
-      camera.frame(stage.home(static_cast<double>(width_px) / height_px));
+      camera.frame(camera_place(wanted_camera, stage.home(static_cast<double>(width_px) / height_px)));
       viewer::stream::PoseMoment moment = viewer::stream::rest_moment(models);
       moment.poses[0] = scene->pose();
       stage.draw(moment, camera, target);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/test_models.hpp"
+#include "viewer/meshes/cloth_holder.hpp"
 
 namespace yuragi::viewer::meshes {
 namespace {
@@ -62,7 +63,25 @@ TEST_F(ClothMeasureTest, HoldersStandOnTheGroundAndReachTheCloth) {
   }
 }
 
+TEST_F(ClothMeasureTest, ACurtainNearTheGroundHasAFloorBelowItsHem) {
+  pose::GridSkeleton curtain = cloth("curtain");
+  const std::optional<Floor> floor = cloth_floor(ClothStyle::kCurtain, curtain);
+  ASSERT_TRUE(floor);
+  EXPECT_GT(floor->middle_m.y, 0.1F);
+  EXPECT_LT(floor->middle_m.y, 0.2F);  // where the hem is
+  EXPECT_GT(floor->half_m.x, 1.2F);
+  EXPECT_GT(floor->half_m.y, 1.5F);
+  EXPECT_TRUE(is_on(*floor, {1.2F, 1.0F}, 0.0F));
+  EXPECT_FALSE(is_on(*floor, {1.2F, 3.0F}, 0.0F));
+  EXPECT_TRUE(is_on(*floor, {1.2F, 3.0F}, 2.0F));
+
+  EXPECT_FALSE(cloth_floor(ClothStyle::kFlag, cloth("flag")));
+  for (float& y_m : curtain.rest_y_m) y_m += 3.0F;
+  EXPECT_FALSE(cloth_floor(ClothStyle::kCurtain, curtain)) << "it hangs high";
+}
+
 TEST_F(ClothMeasureTest, NothingIsNoTrouble) {
+  EXPECT_FALSE(cloth_floor(ClothStyle::kCurtain, {}));
   EXPECT_EQ(measure({}).size_m, glm::vec2(0.0F));
   EXPECT_TRUE(cloth_holder(ClothStyle::kFlag, {}).vertices().empty());
   EXPECT_EQ(cloth_style("", {}), ClothStyle::kCurtain);

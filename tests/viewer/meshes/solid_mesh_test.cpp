@@ -41,9 +41,20 @@ TEST(SolidMesh, BallsAndBeamsAreWhereTheyShouldBe) {
   }
 }
 
+TEST(SolidMesh, RingsAreAroundTheirAxis) {
+  SolidMesh mesh;
+  mesh.add_ring({1, 2, 3}, {0, 2, 0}, 0.5F, 0.1F, {});
+  expect_sound(mesh);
+  for (const SolidVertex& vertex : mesh.vertices()) {
+    const glm::vec3 way = vertex.place_m - glm::vec3(1, 2, 3);
+    EXPECT_NEAR(std::hypot(std::hypot(way.x, way.z) - 0.5F, way.y), 0.1F, 1e-5F);
+  }
+}
+
 TEST(SolidMesh, PiecesOfNoSizeAreLeftOut) {
   SolidMesh mesh;
   mesh.add_tube({1, 1, 1}, {1, 1, 1}, 0.1F, 0.1F, {});
+  mesh.add_ring({1, 1, 1}, {0, 0, 0}, 0.1F, 0.1F, {});
   mesh.add_beam({1, 1, 1}, {1, 2, 1}, 0.1F, 0.0F, 1.0F, {});
   mesh.add_quad({glm::vec3(0), glm::vec3(0), glm::vec3(0), glm::vec3(0)}, {});
   EXPECT_TRUE(mesh.vertices().empty());

@@ -165,6 +165,15 @@ TEST(GrowthMapTest, IsShortAroundThingsTallElsewhereAndTakenByWater) {
   EXPECT_GT(map.growth_at(0.0F, 0.0F), 0.0F);
   EXPECT_EQ(map.water_at(22.0F, 22.0F), 1.0F);
   EXPECT_EQ(map.water_at(0.0F, 0.0F), 0.0F);
+
+  // Nor does a blade stand on a floor.
+  const std::vector<Standing> on_floor{
+      {.kind = Standing::Kind::kOther,
+       .bounds = {{-1.0F, 0.0F, -0.1F}, {1.0F, 2.0F, 0.1F}},
+       .floor = Floor{.middle_m = {0.0F, 0.1F, 0.0F}, .along = {0.6F, 0.8F}, .half_m = {3.0F, 2.0F}}}};
+  map.make(on_floor);
+  EXPECT_EQ(map.water_at(1.5F, 2.0F), 1.0F);
+  EXPECT_EQ(map.water_at(2.5F, -2.0F), 0.0F);
   EXPECT_EQ(map.growth_at(-30.0F, 10.0F), 1.0F);
   // And nowhere a step that is seen as a line: half a metre changes it by less than a third.
   for (float x_m = 0.0F; x_m < 15.0F; x_m += 0.5F) {

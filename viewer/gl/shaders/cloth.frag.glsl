@@ -1,17 +1,23 @@
 // Woven cloth, lit from both sides and through: plain linen, a flag, a banner.
 uniform int style;  // 0 curtain, 1 flag, 2 banner
 uniform vec2 size_m;
+uniform vec4 color_1;  // of the cloth; w: 1 where an installation wants it
+uniform vec4 color_2;  // of its pattern
+uniform bool has_picture;
+uniform sampler2D picture;  // covers all of it
 
 in vec3 place_m;
 in vec3 normal;
 in vec2 cloth_m;
+in float bend_per_m;  // above 0: hollow on the side of the normal
 out vec4 color;
 
-const vec3 kInk = vec3(0.012, 0.032, 0.125);
-const vec3 kVermilion = vec3(0.56, 0.055, 0.020);
-const vec3 kGold = vec3(0.86, 0.42, 0.045);
-const vec3 kSnow = vec3(0.70, 0.67, 0.60);
-const vec3 kLinen = vec3(0.66, 0.57, 0.43);
+const vec3 kInk = vec3(0.020, 0.060, 0.235);
+const vec3 kVermilion = vec3(0.60, 0.062, 0.022);
+const vec3 kGold = vec3(0.86, 0.44, 0.050);
+const vec3 kSnow = vec3(0.76, 0.74, 0.68);
+const vec3 kLinen = vec3(0.70, 0.63, 0.51);
+const vec3 kCanvas = vec3(0.66, 0.62, 0.53);
 
 float chance(float n) { return fract(sin(n * 12.9898) * 43758.5453); }
 
@@ -21,21 +27,50 @@ float cover(float inside) {
   return smoothstep(-0.7 * pixel, 0.7 * pixel, inside);
 }
 
-// The brightness of woven threads of uneven thickness, about 1; where they are finer than a pixel, their mean.
-float weave(vec2 at_m, float thread_m) {
+// 1 on a line so wide around 0; fainter where it is narrower than a pixel.
+float line(float beside_m, float width_m) {
+  float pixel = max(fwidth(beside_m), 1e-6);
+  return min(width_m / pixel, 1.0) * (1.0 - smoothstep(0.5 * width_m, 0.5 * width_m + pixel, abs(beside_m)));
+}
+
+// What plain woven cloth is like at a place: how its threads lean (xy, of the normal), and its brightness, about 1. Where
+// threads are finer than pixels it is their mean, so that they make no moire.
+vec3 weave(vec2 at_m, float thread_m) {
   vec2 thread = at_m / thread_m;
   vec2 blur = fwidth(thread);
   vec2 slub = vec2(chance(floor(thread.x)), chance(floor(thread.y) + 71.0)) - 0.5;
-  slub += 0.5 * (vec2(chance(floor(thread.x / 7.0) + 13.0), chance(floor(thread.y / 7.0) + 29.0)) - 0.5);
-  vec2 round_thread = 0.5 - abs(fract(thread) - 0.5);
-  vec2 plain = (0.34 * slub + 0.35 * (round_thread - 0.25)) * clamp(1.6 - blur, 0.0, 1.0);
-  return 1.0 + plain.x + plain.y;
+  vec2 bands = vec2(chance(floor(thread.x / 7.0) + 13.0), chance(floor(thread.y / 7.0) + 29.0)) - 0.5;
+  vec2 uneven = 0.16 * slub * clamp(1.4 - 1.6 * blur, 0.0, 1.0) + 0.05 * bands * clamp(1.4 - 0.3 * blur, 0.0, 1.0);
+
+  // Each thread goes over one and under the next.
+  float near = clamp(1.5 - 2.5 * max(blur.x, blur.y), 0.0, 1.0);
+  vec2 cell = floor(thread);
+  vec2 in_cell = thread - cell - 0.5;
+  vec2 lean = mod(cell.x + cell.y, 2.0) < 0.5 ? vec2(1.5, 0.5) * in_cell : vec2(0.5, 1.5) * in_cell;
+  vec2 gap = smoothstep(0.30, 0.50, abs(in_cell));
+  return vec3(near * lean, 1.0 + uneven.x + uneven.y - near * 0.22 * (gap.x + gap.y - 0.8));
 }
+
+// Seams at a hem so wide that ends `edge_m` away: its layers (x), the stitches along it (y), and the shade at its fold (z).
+vec3 hem(float edge_m, float along_m, float width_m) {
+  float from_seam_m = edge_m - (width_m - 0.0025);
+  float stitches = smoothstep(0.15, 0.30, abs(fract(along_m / 0.006) - 0.5));
+  stitches = mix(stitches, 0.7, clamp(fwidth(along_m) / 0.003, 0.0, 1.0));
+  return vec3(cover(width_m - edge_m), line(from_seam_m, 0.0011) * stitches, line(edge_m - width_m - 0.0008, 0.0022));
+}
+
+// Is there nothing but the cloth's own colour?
+bool is_plain() { return color_1.w > color_2.w; }
+vec3 wanted(vec4 color, vec3 otherwise) { return mix(otherwise, color.rgb, color.w); }
 
 // A golden sun behind three gusts on a dark blue sky. Unit: the flag's height.
 vec3 flag(vec2 p, float aspect) {
-  vec3 paint = mix(kInk * 1.25, kInk * 0.75, p.y);
-  paint = mix(paint, kGold, cover(0.235 - length(p - vec2(0.40 * aspect, 0.45))));
+  vec3 sky = wanted(color_1, kInk);
+  if (is_plain()) return sky;
+  vec3 sun = wanted(color_2, kGold);
+  vec3 gusts = wanted(color_2, kSnow);
+  vec3 paint = mix(sky * 1.15, sky * 0.85, p.y);
+  paint = mix(paint, sun, cover(0.235 - length(p - vec2(0.40 * aspect, 0.45))));
   for (int i = 0; i < 3; ++i) {
     float n = float(i);
     float swing = 0.065 * sin(4.6 * p.x / aspect * 1.35 + 1.1 * n + 0.4) + 0.018 * sin(11.0 * p.x / aspect + 2.0 * n);
@@ -43,78 +78,139 @@ vec3 flag(vec2 p, float aspect) {
     float begins = 0.10 + 0.07 * n;
     float half_width = (0.034 - 0.006 * n) * smoothstep(begins, begins + 0.35, along) * smoothstep(1.0, 0.72 - 0.08 * n, along);
     float line = half_width - abs(p.y - (0.545 + 0.125 * n + swing));
-    paint = mix(paint, kSnow, cover(line) * step(0.0005, half_width));
+    paint = mix(paint, gusts, cover(line) * step(0.0005, half_width));
   }
   return paint;
 }
 
 // White, with a red head, a crest of three gusts, and a dark blue foot of waves. Unit: the banner's width.
 vec3 banner(vec2 p, float tall) {
-  vec3 paint = kSnow;
-  paint = mix(paint, kVermilion, cover(0.36 - p.y));
-  paint = mix(paint, kSnow, cover(0.022 - abs(p.y - 0.29)));
+  vec3 ground = wanted(color_1, kSnow);
+  if (is_plain()) return ground;
+  vec3 ink = wanted(color_2, kInk);
+  vec3 red = wanted(color_2, kVermilion);
+  vec3 paint = ground;
+  paint = mix(paint, red, cover(0.36 - p.y));
+  paint = mix(paint, ground, cover(0.022 - abs(p.y - 0.29)));
 
   vec2 from_crest = p - vec2(0.5, 0.92);
   float radius = length(from_crest);
   float turn = atan(from_crest.y, from_crest.x);
   float gusts = sin(3.0 * turn - 15.0 * radius);
-  paint = mix(paint, kInk, cover(0.355 - radius));
-  paint = mix(paint, kSnow, cover(0.30 - radius) * cover(gusts * (0.12 + radius)));
-  paint = mix(paint, kVermilion, cover(0.055 - radius));
+  paint = mix(paint, ink, cover(0.355 - radius));
+  paint = mix(paint, ground, cover(0.30 - radius) * cover(gusts * (0.12 + radius)));
+  paint = mix(paint, red, cover(0.055 - radius));
 
   for (int i = 0; i < 3; ++i) {
     float n = float(i);
     float foot = tall - 1.15 + 0.30 * n + 0.055 * sin(6.2832 * (p.x * 1.5 + 0.31 * n));
-    paint = mix(paint, i == 1 ? kSnow : kInk, cover(p.y - foot));
+    paint = mix(paint, i == 1 ? ground : ink, cover(p.y - foot));
   }
   float stem = 0.030 * smoothstep(1.36, 2.1, p.y) * smoothstep(tall - 1.34, tall - 1.9, p.y);
   float thread = stem - abs(p.x - 0.5 - 0.11 * sin(2.6 * p.y + 0.6));
-  paint = mix(paint, kVermilion, cover(thread) * step(1.36, p.y) * step(p.y, tall - 1.34));
+  paint = mix(paint, red, cover(thread) * step(1.36, p.y) * step(p.y, tall - 1.34));
   return paint;
 }
 
+// Linen, with broad stripes that hang down where they are wanted. In metres.
+vec3 curtain(vec2 at_m) {
+  vec3 ground = wanted(color_1, kLinen);
+  return mix(ground, color_2.rgb, color_2.w * cover(0.25 - abs(fract(at_m.x / 0.30) - 0.5)));
+}
+
+// A brass eyelet in its middle: 1 on its ring (x), 1 in its hole (y).
+vec2 eyelet(vec2 from_middle_m) {
+  float radius_m = length(from_middle_m);
+  return vec2(cover(0.0125 - radius_m), cover(0.0060 - radius_m));
+}
+
 void main() {
+  // The sun's map of depths needs no colour.
+  if (shadow.x == 0.0 && shadow.w > 0.0) {
+    color = vec4(0.0);
+    return;
+  }
   vec3 from_eye = normalize(place_m - eye_m.xyz);
   vec3 facing = normalize(normal);
-  facing *= dot(facing, from_eye) > 0.0 ? -1.0 : 1.0;
+  float side = dot(facing, from_eye) > 0.0 ? -1.0 : 1.0;
+  facing *= side;
 
-  // Distance to the nearest free edge: hems are two layers and let less light through.
-  vec2 inside_m = min(cloth_m, size_m - cloth_m);
-  float edge_m = min(inside_m.x, inside_m.y);
+  // Hems are folded: more layers, which let less light through.
+  vec2 to_end_m = size_m - cloth_m;
+  vec2 inside_m = min(cloth_m, to_end_m);
   vec3 paint;
+  vec3 seams;
   float through;
-  float thread_m = 0.0035;
+  float satin = 0.0;
+  float thread_m = 0.0015;
+  vec2 brass = vec2(0.0);
+  vec2 on_picture = cloth_m / size_m;
+  vec3 printed = has_picture ? mix(vec3(0.012), vec3(0.78), texture(picture, on_picture).rgb) : vec3(0.0);
   if (style == 0) {
-    float hem = max(cover(0.018 - inside_m.x), cover(0.055 - (size_m.y - cloth_m.y)));
-    hem = max(hem, cover(0.05 - cloth_m.y));
-    float seam = cover(0.0035 - abs(size_m.y - cloth_m.y - 0.055));
-    paint = kLinen * (1.0 - 0.10 * hem) * (1.0 - 0.25 * seam);
-    through = 0.80 - 0.34 * hem;
-    thread_m = 0.005;
-  } else if (style == 1) {
-    paint = flag(cloth_m / size_m.y, size_m.x / size_m.y);
-    paint *= 1.0 - 0.18 * cover(0.015 - edge_m);
-    through = 0.52;
-  } else {
-    paint = banner(cloth_m / size_m.x, size_m.y / size_m.x);
-    paint *= 1.0 - 0.14 * cover(0.012 - edge_m);
+    seams = max(hem(inside_m.x, cloth_m.y, 0.020), hem(to_end_m.y, cloth_m.x, 0.070));
+    seams = max(seams, hem(cloth_m.y, cloth_m.x, 0.055));
+    paint = curtain(cloth_m);
     through = 0.62;
+    thread_m = 0.0025;
+  } else if (style == 1) {
+    seams = max(hem(inside_m.y, cloth_m.x, 0.014), hem(to_end_m.x, cloth_m.y, 0.026));
+    seams.y = max(seams.y, hem(to_end_m.x, cloth_m.y, 0.015).y);
+    paint = flag(cloth_m / size_m.y, size_m.x / size_m.y);
+    through = 0.50;
+    satin = 1.0;
+    // A heading of canvas along the hoist, with eyelets in its ends.
+    float heading_m = 0.075 * min(size_m.y, 1.4);
+    if (!has_picture) paint = mix(paint, kCanvas, cover(heading_m - cloth_m.x));
+    seams = max(seams, hem(cloth_m.x, cloth_m.y, heading_m));
+    brass = eyelet(vec2(cloth_m.x - 0.75 * heading_m, inside_m.y - 0.035));
+  } else {
+    seams = max(hem(inside_m.x, cloth_m.y, 0.012), hem(inside_m.y, cloth_m.x, 0.014));
+    paint = banner(cloth_m / size_m.x, size_m.y / size_m.x);
+    through = 0.56;
+    satin = 0.4;
   }
-  float threads = weave(cloth_m, thread_m);
-  paint *= threads;
+  if (has_picture) paint = printed;
+  vec3 threads = weave(cloth_m, thread_m);
+  paint *= threads.z * (1.0 - 0.05 * seams.x) * (1.0 - 0.22 * seams.z);
+  paint = mix(paint, min(paint * 1.25 + 0.03, 0.8), 0.6 * seams.y);
+  through *= (1.0 - 0.45 * seams.x) * (1.0 - brass.x);
+  paint = mix(paint, mix(vec3(0.55, 0.36, 0.10), vec3(0.01), brass.y), brass.x);
 
-  // The sun on this side; the sun through the threads from the other, strongest when one looks toward it; the sky.
-  float sun = dot(facing, to_sun.xyz);
+  // The threads' own lean, from the axes along which the cloth's places grow.
+  vec2 right_m = vec2(dFdx(cloth_m.x), dFdy(cloth_m.x));
+  vec2 down_m = vec2(dFdx(cloth_m.y), dFdy(cloth_m.y));
+  vec3 along_x = dFdx(place_m) * down_m.y - dFdy(place_m) * down_m.x;
+  vec3 along_y = dFdy(place_m) * right_m.x - dFdx(place_m) * right_m.y;
+  float turned = right_m.x * down_m.y - right_m.y * down_m.x < 0.0 ? -1.0 : 1.0;
+  vec3 leaning = threads.x * along_x * inversesqrt(dot(along_x, along_x) + 1e-30) + threads.y * along_y * inversesqrt(dot(along_y, along_y) + 1e-30);
+  facing = normalize(facing + 0.30 * turned * leaning);
+
+  // Inside a fold comes less of the sky; the cloth's own light fills it again a little.
+  float hollow = bend_per_m * side;
+  float open = 1.0 - 0.60 * smoothstep(0.0, 45.0, hollow) + 0.10 * smoothstep(0.0, 45.0, -hollow);
+
+  // The sun on this side; the sun through the threads from the other, strongest when one looks toward it; the sky on both.
+  // What has come through threads has the cloth's colour, deeper.
+  vec3 deep = paint * sqrt(max(paint, vec3(0.0))) * 1.25;
+  float shade = sunlight_at(place_m + 0.04 * to_sun.xyz, pixel_chance(gl_FragCoord.xy));
+  vec3 sun = sun_light.rgb * mix(0.5 * deep, vec3(1.0), shade);
+  float height = dot(facing, to_sun.xyz);
+  float on = max(height, 0.0);
+  float behind = max(-height, 0.0);
   float against = max(dot(from_eye, to_sun.xyz), 0.0);
-  float on = max(sun, 0.0);
-  float behind = max(-sun, 0.0);
-  vec3 lit = paint * sun_light.rgb * 0.80 * on;
-  vec3 glow = paint * sqrt(max(paint, vec3(0.0))) * sun_light.rgb * through * behind * (0.30 + 0.70 * behind) *
-              (0.42 + 0.40 * against * against);
-  vec3 light = lit + glow + paint * (soft_light(facing) * 0.85 + sun_light.rgb * 0.035);
+  float against_2 = against * against;
+  vec3 light = paint * sun * (0.85 * on);
+  light += deep * sun * (through * behind * (0.62 + 0.55 * against_2 * against_2));
+  light += (paint * soft_light(facing) * 0.80 + deep * soft_light(-facing) * (0.70 * through)) * open;
 
-  // Threads reflect more at a grazing angle.
+  // Threads reflect more at a grazing angle, and tight ones shine.
   float rim = 1.0 - abs(dot(facing, from_eye));
-  light += paint * (sky_light.rgb + 0.25 * sun_light.rgb * max(sun, 0.0)) * 0.35 * rim * rim * rim;
+  light += (0.25 + paint) * (sky_light.rgb * open + 0.35 * sun * on) * (0.22 * rim * rim * rim);
+  float shine = max(dot(facing, normalize(to_sun.xyz - from_eye)), 0.0);
+  shine *= shine;
+  shine *= shine;
+  shine *= shine;
+  shine *= shine;
+  light += (0.045 * satin + 0.5 * brass.x * (1.0 - brass.y)) * shine * on * sun;
   color = vec4(seen(light, place_m), 1.0);
 }

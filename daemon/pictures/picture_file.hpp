@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "engine/base/result.hpp"
+#include "engine/look/cloth_look.hpp"
+
+namespace yuragi::daemon::pictures {
+
+inline constexpr std::size_t kLargestFile_bytes = std::size_t{16} << 20;
+inline constexpr std::size_t kMostFilePixels = std::size_t{1} << 24;  ///< before it is scaled down
+inline constexpr std::uint32_t kLongestFileSide_px = 16384;
+
+// A Failure says what is wrong with a picture, and what is allowed or what to do: "is 40 MB large; allowed: up to 16
+// MB".
+
+/// Reads a PNG or JPEG file, whichever its first bytes say, and scales it down where it has more than
+/// Image::kMostPixels pixels or longer sides than Image allows. Clear parts of a PNG show `background`. Blocks while
+/// the disk does; never waits for a pipe. Thread-safe: yes.
+Result<std::shared_ptr<const look::Image>, Failure> read_picture(const std::filesystem::path& file,
+                                                                 look::Color background);
+
+/// The same of a file's bytes.
+Result<look::Image, Failure> decoded_picture(std::span<const std::uint8_t> bytes, look::Color background);
+
+/// Are these sides within the limits of a file?
+Result<void, Failure> checked_size(std::uint64_t width_px, std::uint64_t height_px);
+
+}  // namespace yuragi::daemon::pictures

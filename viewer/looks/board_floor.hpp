@@ -1,0 +1,32 @@
+#pragma once
+
+#include "viewer/gl/gl.hpp"
+#include "viewer/meshes/floor.hpp"
+
+namespace yuragi::viewer::looks {
+
+/// Draws a Floor. Needs a current context.
+class BoardFloor {
+ public:
+  explicit BoardFloor(const meshes::Floor& floor);
+
+  /// The View is bound (ViewBuffer::set).
+  void draw() const;
+
+  /// Where there is no shadow map: draws the floor in shade wherever what `draw_shapes` draws, flattened onto it,
+  /// covers it. That gives the shader its points in the attributes 0 to 2 (x, y, z).
+  template <class DrawShapes>
+  void draw_in_shade(DrawShapes&& draw_shapes) const {
+    glUseProgram(shade_program_.name());
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(-1.0F, -2.0F);
+    draw_shapes();
+    glDisable(GL_POLYGON_OFFSET_FILL);
+  }
+
+ private:
+  gl::GlProgram program_, shade_program_;
+  gl::GlVertexArray no_attributes_;
+};
+
+}  // namespace yuragi::viewer::looks

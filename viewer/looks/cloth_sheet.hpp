@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "viewer/gl/gl.hpp"
+#include "viewer/meshes/cloth_surface.hpp"
+
+namespace yuragi::viewer::looks {
+
+/// The triangles of a cloth on the GPU, at one level of detail (ClothSurface), and of the rim around it. Needs a
+/// current context.
+///
+/// A shader finds the point in the attributes 0 to 2 (x, y, z, metres), its normal in 3 to 5, how much the cloth is
+/// bent there in 6 (ClothSurface::write_bends), and the place on the cloth in 7 and 8. Allocates nothing after it is
+/// made.
+class ClothSheet {
+ public:
+  ClothSheet(const meshes::GridLayout& joints, const meshes::ClothMeasure& lies, int level);
+
+  /// Takes the joints' present positions: all x, then all y, then all z.
+  void move_to(std::span<const float> joints);
+
+  /// Draws the cloth with the program in use.
+  void draw() const;
+  /// Draws its rim, which is as thick as said at the last call of this.
+  void draw_rim(float half_thickness_m);
+
+ private:
+  meshes::ClothMeasure lies_;
+  meshes::ClothSurface surface_;
+  std::vector<float> bends_per_m_, rim_points_, rim_normals_;
+  bool is_rim_there_ = false;  ///< for the present positions
+  GLsizei index_count_ = 0;
+  gl::GlBuffer index_buffer_, point_buffer_, normal_buffer_, bend_buffer_, place_buffer_;
+  gl::GlBuffer rim_point_buffer_, rim_normal_buffer_, rim_place_buffer_;
+  gl::GlVertexArray array_, rim_array_;
+};
+
+}  // namespace yuragi::viewer::looks
