@@ -206,7 +206,11 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (is_seen(moment, scene)) views_[scene]->renderer->move_to(moment.poses[scene]);
   }
-  if (has_shadows && shadow_map_) draw_shadows(moment, to_sun, view);
+  mark_pass("kinematics");
+  if (has_shadows && shadow_map_) {
+    draw_shadows(moment, to_sun, view);
+    mark_pass("shadows");
+  }
   const bool has_flat_shadows = has_shadows && !shadow_map_;
   const meshes::View flat = has_flat_shadows ? meshes::laid_flat(view, to_sun) : view;
   view_buffer_.set(view);
@@ -220,6 +224,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
 
   move_ground(moment);
+  mark_pass("ground maps");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
     SceneRenderer& renderer = *views_[scene]->renderer;
@@ -240,6 +245,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
     door_.close();
   }
   draw_sward(view);
+  mark_pass("sward");
   landscape_.draw();
   mark_pass("landscape");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {

@@ -49,8 +49,8 @@ class Stage {
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
-  /// From now on each picture's passes are timed: by kind of scene, their shadows, the landscape, lights. Null: no
-  /// longer. Must outlive the drawing.
+  /// From now on the passes of each picture are timed: kinematics, each kind of scene, their shadows, the sward, the
+  /// landscape, lights. Null: no longer. Must outlive the drawing.
   void time_passes_with(gl::PassClock* clock) { clock_ = clock; }
 
  private:
