@@ -147,16 +147,16 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
 void Stage::draw_sward(const meshes::View& view) {
   if (tall_ > 0.0F) {
     if (!meadow_ || !meadow_stand_ || !is_alike(*meadow_stand_, stand_)) {
-      meadow_.emplace(Sward::Kind::kTall, stand_, blades_at_1m_per_m2(quality_));
+      meadow_.emplace(Sward::Kind::kTall, stand_, grass_detail(quality_));
       meadow_stand_ = stand_;
     }
     door_.open(tall_, tall_door_);
-    meadow_->draw(view);
+    meadow_->draw(view, ground_.growth());
     door_.close();
   }
   if (tall_ < 1.0F) {
-    if (!lawn_) lawn_.emplace(Sward::Kind::kLawn, stand_, blades_at_1m_per_m2(quality_));
-    lawn_->draw(view);
+    if (!lawn_) lawn_.emplace(Sward::Kind::kLawn, stand_, grass_detail(quality_));
+    lawn_->draw(view, ground_.growth());
   }
 }
 
