@@ -4,7 +4,8 @@
 // hardware, what is uploaded, and the time of each pass: of the graphics hardware, or of all threads where there is
 // none. Poses are made before; all are medians. Of other programs at work, the processor times feel least.
 //
-//   yuragi-frame-bench [--size 1280x720] [--pictures 30] [--samples 1] [--quality low] [--software] [--only 100,000]
+//   yuragi-frame-bench [--size 1280x720] [--pictures 30] [--samples 1] [--quality low] [--step 0] [--software] [--only
+//   100,000]
 
 #include <algorithm>
 #include <chrono>
@@ -21,6 +22,7 @@
 #include "tests/support/places.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
+#include "viewer/pace_keeper.hpp"
 #include "viewer/quality.hpp"
 
 namespace {
@@ -36,6 +38,7 @@ struct BenchOptions {
   int samples = 1;
   bool is_software = false;
   std::string quality = "auto";
+  std::size_t step = 0;
   std::string only;
 };
 
@@ -139,6 +142,9 @@ int main(int argc, char** argv) {
     app.add_option("--quality", options.quality, "of the look")
         ->check(CLI::IsMember(std::vector<std::string>{"auto", "low", "medium", "high"}))
         ->capture_default_str();
+    app.add_option("--step", options.step, "how much is drawn, of PaceKeeper::kSteps")
+        ->check(CLI::Range(std::size_t{0}, PaceKeeper::kSteps.size() - 1))
+        ->capture_default_str();
     app.add_flag("--software", options.is_software, "by the processor, even where there is graphics hardware");
     app.add_option("--only", options.only, "one row: 10,000 or 100,000 or 1,000,000 or garden");
     CLI11_PARSE(app, argc, argv);
@@ -150,9 +156,12 @@ int main(int argc, char** argv) {
     looks::Stage stage;
     stage.set_quality(quality);
     gl::RenderTarget target(options.width_px, options.height_px, options.samples);
+    const DrawnPart part = PaceKeeper::kSteps[options.step];
+    stage.set_blade_share(part.blades);
+    target.set_drawn_side(part.side);
     fmt::print("{}, {} samples a pixel, {}, medians of {} pictures\n",
-               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(), quality_text(quality),
-               options.pictures);
+               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(),
+               quality_text(quality, part.side), options.pictures);
     fmt::print("{:>10} {:>10} {:>9} {:>11} {:>10} {:>8} {:>11} {:>10}\n", "blades", "size", "frame ms", "pictures/s",
                "thread ms", "share", "process ms", "upload MB");
     for (const Row& row : rows()) {

@@ -15,7 +15,8 @@ constexpr GLint kBlockUnit = 5;
 }  // namespace
 
 GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands, const meshes::GrassDetail& detail)
-    : thinning_{.blades_per_m2 = meshes::stand_of(strands).blades_per_m2,
+    : detail_(detail),
+      thinning_{.blades_per_m2 = meshes::stand_of(strands).blades_per_m2,
                 .drawn_at_1m_per_m2 = detail.drawn_at_1m_per_m2},
       tiles_(strands, thinning_, detail),
       program_(gl::link_program("grass", gl::shaders::kGrassVert, gl::shaders::kShadeFrag)),
@@ -25,7 +26,6 @@ GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands, const meshes::
   gl::set_sampler(program_, "blades", kStreamedBladeUnit);
   gl::set_sampler(program_, "blocks", kBlockUnit);
   glUniform1f(glGetUniformLocation(program_.name(), "reach_m"), detail.reach_m);
-  glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
   glBindBuffer(GL_TEXTURE_BUFFER, blade_buffer_.name());
   glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(tiles_.blades().size_bytes()), tiles_.blades().data(),
                GL_STATIC_DRAW);
@@ -43,12 +43,18 @@ void GrassRenderer::move_to(const pose::Pose& pose) {
   latest_ = std::get_if<pose::StrandPose>(&pose);
 }
 
+void GrassRenderer::set_blade_share(float share) {
+  thinning_.drawn_at_1m_per_m2 = share * detail_.drawn_at_1m_per_m2;
+  tiles_.set_thinning(thinning_);
+}
+
 void GrassRenderer::draw(const meshes::View& view) {
   tiles_.choose(view);
   if (tiles_.blocks().empty() || latest_ == nullptr) return;
   gl::stream_to(GL_TEXTURE_BUFFER, bend_buffer_, tiles_.bends(*latest_));
   gl::stream_to(GL_TEXTURE_BUFFER, block_buffer_, tiles_.blocks());
   glUseProgram(program_.name());
+  glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
   glBindVertexArray(array_.name());
   const auto bind = [](GLint unit, GLenum format, const gl::GlTexture& texture, const gl::GlBuffer& buffer) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));

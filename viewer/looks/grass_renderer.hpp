@@ -18,9 +18,11 @@ class GrassRenderer : public SceneRenderer {
 
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
+  void set_blade_share(float share) override;
   bool is_field() const override { return true; }
 
  private:
+  meshes::GrassDetail detail_;
   meshes::Thinning thinning_;
   meshes::StrandTiles tiles_;
   const pose::StrandPose* latest_ = nullptr;  ///< of the picture being drawn

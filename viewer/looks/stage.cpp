@@ -151,11 +151,13 @@ void Stage::draw_sward(const meshes::View& view) {
       meadow_stand_ = stand_;
     }
     door_.open(tall_, tall_door_);
+    meadow_->set_blade_share(blade_share_);
     meadow_->draw(view, ground_.growth());
     door_.close();
   }
   if (tall_ < 1.0F) {
     if (!lawn_) lawn_.emplace(Sward::Kind::kLawn, stand_, grass_detail(quality_));
+    lawn_->set_blade_share(blade_share_);
     lawn_->draw(view, ground_.growth());
   }
 }
@@ -199,12 +201,14 @@ void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_s
 }
 
 void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target) {
-  meshes::View view = meshes::view_of(camera, target.width_px(), target.height_px());
+  meshes::View view = meshes::view_of(camera, target.drawn_width_px(), target.drawn_height_px());
   if (clock_ != nullptr) clock_->begin();
   const glm::vec3 to_sun(light_.to_sun);
   const bool has_shadows = to_sun.y > kLowestSun;
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    if (is_seen(moment, scene)) views_[scene]->renderer->move_to(moment.poses[scene]);
+    if (!is_seen(moment, scene)) continue;
+    views_[scene]->renderer->move_to(moment.poses[scene]);
+    views_[scene]->renderer->set_blade_share(blade_share_);
   }
   mark_pass("kinematics");
   if (has_shadows && shadow_map_) {

@@ -62,6 +62,7 @@ const meshes::GrassDetail& grass_detail(look::Quality quality) {
 Sward::Sward(Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& detail)
     : kind_(kind),
       blades_per_tile_(blades_a_tile(thinning_of(kind, stand, detail))),
+      detail_(detail),
       thinning_(thinning_of(kind, stand, detail)),
       tiles_(tiles_of(kind, blades_per_tile_, stand, detail)),
       program_(gl::link_program("sward", gl::shaders::kSwardVert, gl::shaders::kShadeFrag)) {
@@ -70,7 +71,6 @@ Sward::Sward(Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& d
   gl::set_sampler(program_, "tiles", kTileUnit);
   const auto place = [this](const char* name) { return glGetUniformLocation(program_.name(), name); };
   glUniform1i(place("blades_per_tile"), static_cast<GLint>(blades_per_tile_));
-  glUniform1f(place("thinning"), thinning_.factor());
   glUniform1f(place("tile_m"), meshes::SwardTiles::kTile_m);
   glUniform1f(place("reach_m"), detail_of(kind, detail).reach_m);
   glUniform1f(place("width_m"), width_m_of(kind, stand));
@@ -90,11 +90,17 @@ Sward::Sward(Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& d
   }
 }
 
+void Sward::set_blade_share(float share) {
+  thinning_.drawn_at_1m_per_m2 = share * detail_.drawn_at_1m_per_m2;
+  tiles_.set_thinning(thinning_);
+}
+
 void Sward::draw(const meshes::View& view, const meshes::GrowthMap& growth) {
   tiles_.choose(view, [&](const glm::vec2& low_m, const glm::vec2& high_m) {
     return growth.is_free(low_m, high_m, kind_ == Kind::kTall);
   });
   glUseProgram(program_.name());
+  glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
   glBindVertexArray(array_.name());
   glActiveTexture(GL_TEXTURE0 + kBladeUnit);
   glBindTexture(GL_TEXTURE_BUFFER, blade_texture_.name());

@@ -20,11 +20,14 @@ class Sward {
   enum class Kind : std::uint8_t { kTall, kLawn };
   Sward(Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& detail);
 
+  /// From now on only this share (0 to 1] of the detail's blades is drawn.
+  void set_blade_share(float share);
   void draw(const meshes::View& view, const meshes::GrowthMap& growth);
 
  private:
   Kind kind_;
   std::size_t blades_per_tile_;
+  meshes::GrassDetail detail_;
   meshes::Thinning thinning_;
   meshes::SwardTiles tiles_;
   gl::GlProgram program_;

@@ -53,6 +53,7 @@ class StrandTiles {
   std::span<const TiledBlade> blades() const { return blades_; }
   std::size_t most_strands_a_tile() const { return most_strands_; }
 
+  void set_thinning(const Thinning& thinning) { thinning_ = thinning; }
   /// Chooses what is drawn.
   void choose(const View& view);
   /// The blocks of blades() that hold it, those of a tile one behind the other.

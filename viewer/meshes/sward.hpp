@@ -70,6 +70,8 @@ class SwardTiles {
   SwardTiles(std::size_t blades, const Thinning& thinning, const GrassDetail& detail, float length_m, float height_m)
       : blades_(blades), thinning_(thinning), detail_(detail), length_m_(length_m), height_m_(height_m) {}
 
+  void set_thinning(const Thinning& thinning) { thinning_ = thinning; }
+
   /// `is_free`: of a rectangle of the ground (x, z, metres), may a blade stand in it?
   template <class IsFree>
   void choose(const View& view, IsFree&& is_free) {
