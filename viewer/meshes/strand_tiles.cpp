@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kStrandsPerTile = 200;  // on average
 constexpr float kReach = 1.1F;                // of a blade's length, around its root
-constexpr std::array<std::size_t, 6> kRings{8, 6, 4, 3, 2, 1};
+constexpr std::array<std::size_t, 9> kRings{12, 10, 8, 6, 5, 4, 3, 2, 1};
 
 /// Of the strands, in the order of their tiles and within a tile at random, each with its tile.
 struct Order {
@@ -88,6 +88,7 @@ StrandTiles::StrandTiles(const pose::StrandSkeleton& strands, const Thinning& th
       const glm::vec3 root_m(form.root_m[0], form.root_m[1], form.root_m[2]);
       tile.bounds = united(tile.bounds, {root_m, root_m});
       tile.length_m = std::max(tile.length_m, length_m);
+      tile.mean_length_m += length_m / static_cast<float>(padded);
       source_.push_back(static_cast<std::uint32_t>(strand));
       const glm::vec2 foot_rad = lean_of({strands.rest_x[strand], strands.rest_y[strand], strands.rest_z[strand]});
       blades_.push_back({.root_m = root_m,
@@ -130,7 +131,7 @@ void StrandTiles::choose(const View& view) {
     const auto drawn =
         static_cast<std::size_t>(std::ceil(static_cast<float>(tile.strands) * thinning_.share(distance_m)));
     const std::size_t strands = std::min(drawn, tile.strands);
-    const std::size_t rings = detail_.rings(tile.length_m, distance_m, view.eye_m.w);
+    const std::size_t rings = detail_.rings(tile.mean_length_m, distance_m, view.eye_m.w);
     std::size_t level = levels_.size() - 1;
     while (level > 0 && levels_[level].rings < rings) --level;
     levels_[level].tiles.push_back({.first_slot = blocks_.size() * pose::kStrandsPerBlock, .strands = strands});

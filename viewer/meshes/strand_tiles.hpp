@@ -67,7 +67,8 @@ class StrandTiles {
   struct Tile {
     Bounds bounds;
     std::size_t first_block = 0, strands = 0;
-    float length_m = 0.0F;
+    float length_m = 0.0F;  // of the longest
+    float mean_length_m = 0.0F;
   };
 
   Thinning thinning_;

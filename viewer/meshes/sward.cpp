@@ -50,7 +50,7 @@ std::vector<SwardBlade> sward_blades(std::size_t count) {
 
 std::size_t GrassDetail::rings(float length_m, float distance_m, float pixel_m) const {
   const float height_px = length_m / (pixel_m * std::max(distance_m, 1e-3F));
-  return static_cast<std::size_t>(std::clamp(height_px / ring_px, 1.0F, 1e6F));
+  return static_cast<std::size_t>(std::clamp(std::round(std::sqrt(height_px / (8.0F * off_px))), 1.0F, 1e6F));
 }
 
 void SwardTiles::find_in_view(const View& view) {

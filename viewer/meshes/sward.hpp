@@ -26,15 +26,16 @@ struct Thinning {
 /// How much is drawn of grass. The fewer blades, the nearer to the eye they are left out and the others drawn wider.
 struct GrassDetail {
   float drawn_at_1m_per_m2 = 0.0F;  ///< see Thinning
-  float ring_px = 24.0F;            ///< a ring of vertices for each of so many pixels of a blade's height
+  float off_px = 0.6F;              ///< as far an arc may be off its chords
   float reach_m = 60.0F;            ///< tall blades end there
 
-  /// Of a blade of this length at a distance, at least 1. `pixel_m`: the size of a pixel at one metre.
+  /// Of vertices of a blade of this length at a distance, at least 1: an arc that turns by a radian is an eighth of its
+  /// length off one chord, and off n of them by n^2 less. `pixel_m`: the size of a pixel at one metre.
   std::size_t rings(float length_m, float distance_m, float pixel_m) const;
 };
 inline constexpr GrassDetail kMuchGrass{.drawn_at_1m_per_m2 = 24'000.0F};
-inline constexpr GrassDetail kMediumGrass{.drawn_at_1m_per_m2 = 8'000.0F, .ring_px = 30.0F};
-inline constexpr GrassDetail kLittleGrass{.drawn_at_1m_per_m2 = 2'500.0F, .ring_px = 44.0F, .reach_m = 40.0F};
+inline constexpr GrassDetail kMediumGrass{.drawn_at_1m_per_m2 = 8'000.0F, .off_px = 1.0F};
+inline constexpr GrassDetail kLittleGrass{.drawn_at_1m_per_m2 = 2'000.0F, .off_px = 3.0F, .reach_m = 40.0F};
 
 /// A blade of the tile that the sward is laid of, as the shader reads it.
 struct SwardBlade {
@@ -63,7 +64,7 @@ class SwardTiles {
  public:
   static constexpr float kTile_m = 2.5F;
   /// Level i has kLevels - i rings of vertices.
-  static constexpr std::size_t kLevels = 4;
+  static constexpr std::size_t kLevels = 6;
 
   /// Tiles of the whole stand have `blades` each; none is laid farther from the eye than the detail's reach. Of
   /// `length_m` are most blades, and none reaches higher than `height_m`.

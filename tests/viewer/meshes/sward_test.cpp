@@ -65,8 +65,8 @@ bool everywhere(const glm::vec2&, const glm::vec2&) {
 
 TEST(GrassDetailTest, ABladeHasMoreRingsTheLargerItIsInThePicture) {
   EXPECT_EQ(kDetail.rings(0.7F, 1e9F, 0.001F), 1U);
-  EXPECT_EQ(kDetail.rings(0.7F, 10.0F, 0.001F), 2U);
-  EXPECT_EQ(kDetail.rings(0.7F, 10.0F, 0.0005F), 5U);
+  EXPECT_EQ(kDetail.rings(0.48F, 10.0F, 0.001F), 3U);  // 48 pixels high: a chord is off by 6, three by 0.7
+  EXPECT_EQ(kDetail.rings(0.48F, 10.0F, 0.0005F), 4U);
   EXPECT_GT(kDetail.rings(0.7F, 0.0F, 0.001F), 100U);
 }
 
