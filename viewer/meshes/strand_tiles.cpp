@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "viewer/meshes/blades.hpp"
 
@@ -74,6 +75,7 @@ StrandTiles::StrandTiles(const pose::StrandSkeleton& strands, const Thinning& th
   const std::vector<Blade> forms = blades_of(strands);
   const std::vector<Order> order = tile_order(strands);
   const math::RandomStream chance(0, math::stream_id("viewer blade kinds"));
+  const math::RandomStream facing(0, math::stream_id("viewer blade bearings"));
   for (std::size_t begin = 0; begin < order.size();) {
     std::size_t end = begin;
     while (end < order.size() && order[end].tile == order[begin].tile) ++end;
@@ -96,7 +98,7 @@ StrandTiles::StrandTiles(const pose::StrandSkeleton& strands, const Thinning& th
                          .foot_rad = foot_rad,
                          .turned_rad = tip_lean(strands, strand) - foot_rad,
                          .width_m = form.width_m,
-                         .facing_rad = form.facing_rad,
+                         .facing_rad = static_cast<float>(2.0 * kPi * facing.uniform(strand)),
                          .chance = static_cast<float>(chance.uniform(strand)),
                          .rank = (static_cast<float>(i) + 0.5F) / static_cast<float>(tile.strands)});
     }

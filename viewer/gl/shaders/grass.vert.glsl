@@ -5,7 +5,6 @@ uniform samplerBuffer blades;          // three texels a blade: TiledBlade
 uniform samplerBuffer streamed_bends;  // of the slots: east, south, radians
 uniform usamplerBuffer blocks;         // of the slots: the number of each block
 uniform float thinning;                // Thinning::factor()
-uniform float reach_m;                 // there are none beyond
 
 void main() {
   int corners = 2 * rings + 1;

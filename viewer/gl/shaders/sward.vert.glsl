@@ -7,7 +7,6 @@ uniform samplerBuffer tiles;    // SwardTile
 uniform int blades_per_tile;
 uniform float thinning;   // Thinning::factor()
 uniform float tile_m;
-uniform float reach_m;    // there are none beyond
 uniform float width_m;    // of a blade where none is left out
 uniform float tall;       // 1: tall grass; 0: a lawn
 
