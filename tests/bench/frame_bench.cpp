@@ -2,10 +2,11 @@
 // garden, drawn without a display on what graphics this machine has. It prints a table: the time to the last pixel, the
 // processor time of this thread (with its part of the former) and of all threads, which draw where there is no graphics
 // hardware, what is uploaded, and the time of each pass: of the graphics hardware, or of all threads where there is
-// none. Poses are made before; all are medians. Of other programs at work, the processor times feel least.
+// none. Poses are made before, and so is the moment between two frames of the stream: what that costs this thread is
+// the first of the passes, but in no sum. All are medians. Of other programs at work, the processor times feel least.
 //
-//   yuragi-frame-bench [--size 1280x720] [--pictures 30] [--samples 1] [--quality low] [--step 0] [--software] [--only
-//   100,000]
+//   yuragi-frame-bench [--size 1280x720] [--pictures 30] [--samples 1] [--quality low] [--step 0] [--software]
+//                      [--only 100,000]
 
 #include <algorithm>
 #include <chrono>
@@ -122,10 +123,20 @@ void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, g
   }
   stage.time_passes_with(nullptr);
 
+  // What comes before: the moment between two frames of the stream.
+  std::vector<double> blends_ms;
+  stream::PoseMoment between = moments[0];
+  for (int picture = 0; picture < options.pictures; ++picture) {
+    const double begin_ms = processor_time_ms(CLOCK_THREAD_CPUTIME_ID);
+    blend(moments[0], moments[1], 0.5, between);
+    blends_ms.push_back(processor_time_ms(CLOCK_THREAD_CPUTIME_ID) - begin_ms);
+  }
+
   const double time_ms = median(times_ms);
   fmt::print("{:>10} {:>10} {:>9.2f} {:>11.1f} {:>10.2f} {:>6.0f} % {:>11.2f} {:>10.2f}\n", row.name, options.size,
              time_ms, 1e3 / time_ms, median(thread_ms), 100.0 * median(thread_ms) / time_ms, median(process_ms),
              median(uploads_mb));
+  fmt::print("{:>31} {:>7.3f} ms\n", "between two frames", median(blends_ms));
   for (const std::string& name : pass_names) fmt::print("{:>31} {:>7.3f} ms\n", name, median(passes_ms[name]));
   std::fflush(stdout);
 }
