@@ -39,6 +39,9 @@ class SceneRenderer {
   /// The floor on which it stands, where it has one of its own.
   virtual std::optional<meshes::Floor> floor() const { return std::nullopt; }
 
+  /// From now on it draws only this share (0 to 1] of the blades of grass that it would.
+  virtual void set_blade_share(float) {}
+
   /// Does it cast a shadow? Then draw() is also called with a View that projects everything onto the ground.
   virtual bool casts_shadow() const { return false; }
 

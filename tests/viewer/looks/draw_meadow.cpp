@@ -1,6 +1,6 @@
 // The meadow from many places, in calm, a breeze and a storm with gusts; and what a picture of it costs.
 //
-//   draw_meadow FOLDER [WIDTHxHEIGHT [GRASS_PARAMETER=VALUE,... [PLACE,... [WEATHER,...]]]]
+//   draw_meadow FOLDER [WIDTHxHEIGHT [GRASS_PARAMETER=VALUE,... [PLACE,... [WEATHER,... [QUALITY]]]]]
 
 #include <cstdio>
 #include <ctime>
@@ -118,6 +118,7 @@ int draw_meadow(const std::vector<std::string>& words) {
   const viewer::gl::HeadlessContext context({.has_messages = true});
   viewer::gl::report_gl_errors();
   viewer::looks::Stage stage;
+  if (words.size() > 5) stage.set_quality(look::edited({}, std::vector{"quality=" + words[5]}).value().quality);
   viewer::gl::RenderTarget target(width_px, height_px, viewer::gl::is_software_renderer() ? 1 : 4);
   for (const auto& [weather, speed_m_s] : {std::pair{"calm", 0.0}, {"breeze", 4.0}, {"storm", 18.0}}) {
     if (!is_asked(words, 4, weather)) continue;

@@ -1,9 +1,10 @@
-// A blade's ribbon: a point of its middle line becomes a vertex with its light. Behind sward.part.glsl.
+// A blade: a ribbon along an arc, of which a vertex is put with its light. Behind sward.part.glsl.
 
 const float kFarFrom_m = 6.0;  // where that begins
 const float kFar_m = 20.0;     // from here on it is all
 const vec4 kNowhere = vec4(2.0, 2.0, 2.0, 1.0);  // outside of the picture: a blade without length would leave dots
-uniform bool is_far;           // every blade that is drawn is farther away than that
+uniform float reach_m;         // there are no blades beyond
+uniform int rings;             // of vertices above the root, two each, but one at the tip
 
 out vec3 shade;  // the screen's value; blades are so small that one for each vertex is exact enough
 
@@ -11,7 +12,33 @@ out vec3 shade;  // the screen's value; blades are so small that one for each ve
 bool is_seed(float chance) { return chance > 0.93; }
 bool is_flower(float chance, vec2 patch_at) { return chance < 0.10 * smoothstep(0.02, 0.22, patch_at.y - 0.6 * patch_at.x); }
 
-void put_vertex(vec3 place, vec3 along, float t, float side, float width_m, float facing_rad, float chance, vec2 patch_at, vec2 bend, float lean, float tall) {
+// A point of an arc of length 1, at part t of it, that leaves its foot leaning by `foot` and turns by `turned` up to its tip
+// (meshes/strand_tiles.hpp: arc_point()).
+vec3 arc_point(vec2 foot, vec2 turned, float t) {
+  float half_2 = 0.25 * t * t * dot(turned, turned);
+  return t * (1.0 - half_2 * (1.0 / 6.0 - half_2 / 120.0)) * leaning(foot + turned * (0.5 * t));
+}
+
+// Where a ring is on its blade, 0 foot to 1 tip. On a stem with a head, which begins at part `head_from`, most rings are in
+// the head; of a small one the head alone is drawn.
+float ring_at(int ring, float head_from) {
+  float s = 1.0 - float(ring) / float(rings);
+  if (head_from >= 1.0) return 1.0 - s * sqrt(s);  // closer to each other toward the tip
+  int stem = rings > 3 ? rings / 3 : 0;
+  return ring < stem ? head_from * float(ring) / float(stem) : mix(head_from, 1.0, float(ring - stem) / float(rings - stem));
+}
+
+// Corner v of a blade whose foot is here. `bend`: what the wind does to the grass around it.
+void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, float width_m, float facing_rad, float chance, vec2 patch_at, vec2 bend, float tall) {
+  bool has_seeds = is_seed(chance) && rings > 1;
+  bool has_petals = is_flower(chance, patch_at) && rings > 1;
+  float head_from = has_petals ? 1.0 - min(0.045 / length_m, 0.3) : has_seeds ? 0.72 : 1.0;
+  if (head_from < 1.0) turned *= 0.8;  // stems are stiffer
+  float side = v == 2 * rings ? 0.0 : float(v & 1) * 2.0 - 1.0;
+  float t = ring_at(v >> 1, head_from);
+  vec3 place = foot_m + length_m * arc_point(foot, turned, t);
+  vec3 along = leaning(foot + turned * max(t, 0.15));
+  float lean = mix(0.55, length(leaning(foot + turned * 0.5).xz), tall);
   vec3 to_eye = eye_m.xyz - place;
   float distance_m = length(to_eye);
   to_eye /= distance_m;
@@ -22,39 +49,48 @@ void put_vertex(vec3 place, vec3 along, float t, float side, float width_m, floa
   grown *= dot(grown, across_eye) < 0.0 ? -1.0 : 1.0;
   vec3 across = normalize(mix(across_eye, grown, 0.45));
 
-  // Widest above the foot, pointed at the tip; a stem with a spindle of seeds, or with petals. Nowhere else thinner than
-  // a pixel.
+  // Widest above the foot, pointed at the tip; a stem with a panicle of seeds, or with petals, whose outlines go in and out
+  // from ring to ring. Nowhere else thinner than a pixel.
   float profile = (0.72 + 0.85 * t) * sqrt(1.0 - t) * (1.0 - 0.35 * t * t);
   vec3 tint = tint_of(patch_at, chance);
   tint *= 0.8 + 0.4 * fract(chance * 61.0);
-  float head = 0.0;
-  if (is_seed(chance)) {
-    float from_head = (t - 0.87) * 9.0;
-    head = exp(-from_head * from_head);
-    profile = 0.30 * profile + 0.85 * head;
+  float head_m = 0.0;  // half as wide
+  float in_head = clamp((t - head_from) / max(1.0 - head_from, 0.01), 0.0, 1.0);
+  bool is_out = (v >> 1 & 1) == (rings & 1);
+  if (has_seeds) {
+    float head = smoothstep(0.0, 0.2, in_head);
+    profile *= 0.30;
+    head_m = 0.010 * length_m * head * (1.0 - 0.7 * in_head) * (is_out ? 1.0 : 0.35);
     tint = mix(tint, vec3(0.36, 0.27, 0.15), 0.35 + 0.65 * head);
-  } else if (is_flower(chance, patch_at)) {
-    head = smoothstep(0.80, 0.89, t) * (1.0 - smoothstep(0.96, 1.0, t));
-    profile = 0.28 * profile + 1.5 * head;
+  } else if (has_petals) {
+    float head = 1.0 - (2.0 * in_head - 1.0) * (2.0 * in_head - 1.0);
+    profile *= 0.28;
+    head_m = 0.5 * (1.0 - head_from) * length_m * sqrt(head) * (is_out ? 0.75 : 1.0);
     float hue = fract(chance * 977.0);
     vec3 petals = hue < 0.45 ? vec3(0.72, 0.70, 0.62) : hue < 0.75 ? vec3(0.70, 0.45, 0.05) : vec3(0.34, 0.14, 0.42);
-    tint = mix(tint, petals, smoothstep(0.78, 0.88, t));
+    tint = mix(tint, petals, smoothstep(0.0, 0.1, in_head));
+    tint = mix(tint, vec3(0.62, 0.42, 0.05), rings > 5 ? smoothstep(0.7, 1.0, head) : 0.0);  // the heart
   }
-  float half_width_m = max(0.5 * width_m * profile, 0.42 * eye_m.w * distance_m * min(1.0, 4.0 * (1.0 - t)));
+  float half_width_m = max(max(0.5 * width_m * profile, head_m), 0.42 * eye_m.w * distance_m * min(1.0, 4.0 * (1.0 - t)));
   place += across * (side * half_width_m);
   gl_Position = to_clip * vec4(place, 1.0);
 
   float sunlight = mix(kSunInShadow, 1.0, sunlight_near(place));
-  // Far away it takes on the light of the grass as a whole, as the ground behind it has it.
-  vec3 canopy = canopy_light(bend, to_eye, patch_at, (t - 0.55) * 0.6 + 0.35 * (fract(chance * 61.0) - 0.5), tall, sunlight);
-  if (is_far) {
-    shade = seen(canopy, place);
-    return;
+  float far = smoothstep(kFarFrom_m, kFar_m, distance_m);
+  vec3 light = vec3(0.0);
+  if (far < 1.0) {
+    // A blade is folded along its middle: the normals of its two edges differ a little.
+    vec3 normal = normalize(cross(across, along));
+    normal *= dot(normal, to_eye) < 0.0 ? -1.0 : 1.0;
+    normal = normalize(normal + across * (side * 0.55));
+    light = blade_light(to_eye, along, normal, t, tint, lean, sunlight);
   }
-  // A blade is folded along its middle: the normals of its two edges differ a little.
-  vec3 normal = normalize(cross(across, along));
-  normal *= dot(normal, to_eye) < 0.0 ? -1.0 : 1.0;
-  normal = normalize(normal + across * (side * 0.55));
-  vec3 light = blade_light(to_eye, along, normal, t, tint, lean, sunlight);
-  shade = seen(mix(light, canopy, smoothstep(kFarFrom_m, kFar_m, distance_m)), place);
+  // Far away it takes on the light of the grass as a whole, as the ground behind it has it.
+  if (far > 0.0) {
+    // Toward the last ones it is the ground's, so that no edge is seen where blades end.
+    float tufts = ((t - 0.55) * 0.6 + 0.35 * (fract(chance * 61.0) - 0.5)) * (1.0 - smoothstep(0.25 * reach_m, 0.8 * reach_m, distance_m));
+    vec3 canopy = canopy_light(bend, to_eye, patch_at, tufts, tall, sunlight);
+    light = mix(light, canopy, far);
+  }
+  shade = seen(light, place);
 }
