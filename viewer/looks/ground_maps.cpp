@@ -29,7 +29,7 @@ glm::vec2 mean_of(const pose::StrandPose& pose, std::size_t count) {
 
 bool is_same(const meshes::Standing& a, const meshes::Standing& b) {
   return a.kind == b.kind && a.bounds.low_m == b.bounds.low_m && a.bounds.high_m == b.bounds.high_m &&
-         a.opacity == b.opacity && a.blades == b.blades;
+         a.opacity == b.opacity && a.blades == b.blades && a.shore == b.shore;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "engine/look/look.hpp"
 #include "engine/wire/wire.hpp"
@@ -29,6 +30,12 @@ class SceneRenderer {
 
   /// Fills, in the stencil alone, the part of the ground that is open: under water.
   virtual void draw_hole() {}
+
+  /// The height of the level mirror that it is, metres; nothing where it is none.
+  virtual std::optional<float> mirror_m() const { return std::nullopt; }
+
+  /// Draws what is seen of it in a mirror.
+  virtual void draw_mirrored(const meshes::View& view) { draw(view); }
 
   /// Does it cast a shadow? Then draw() is also called with a View that projects everything onto the ground.
   virtual bool casts_shadow() const { return false; }

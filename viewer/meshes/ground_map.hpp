@@ -10,6 +10,7 @@
 
 #include "engine/pose/skeleton.hpp"
 #include "viewer/meshes/bounds.hpp"
+#include "viewer/meshes/shore.hpp"
 
 namespace yuragi::viewer::meshes {
 
@@ -51,6 +52,7 @@ struct Standing {
   Bounds bounds;
   float opacity = 1.0F;
   const pose::StrandSkeleton* blades = nullptr;  ///< of grass
+  const Shore* shore = nullptr;                  ///< of water; null: it fills its box
 };
 
 /// How tall grass grows, and where the ground is taken, by streamed blades: a square map around the middle of the

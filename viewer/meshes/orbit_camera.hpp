@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 
 #include "viewer/meshes/bounds.hpp"
+#include "viewer/meshes/shore.hpp"
 
 namespace yuragi::viewer::meshes {
 
@@ -63,5 +64,13 @@ CameraPlace place_across(const Bounds& bounds);
 /// A place outside of `bounds` from where all of it is in a picture of width / height `aspect`: at its broad side, a
 /// little from the corner, toward the evening sun's side.
 CameraPlace place_around(const Bounds& bounds, double aspect);
+
+/// A low place at the near shore of a pond, from where the water goes from the picture's lower edge to the far shore,
+/// and the horizon is in the picture: toward the evening sun's side.
+CameraPlace place_on_shore(const Shore& shore);
+
+/// A place so close to the broad side of something that bulges out of the ground that it fills the picture's lower part
+/// from side to side, lit from the side by the evening sun.
+CameraPlace place_beside(const Bounds& bounds);
 
 }  // namespace yuragi::viewer::meshes

@@ -1,11 +1,15 @@
 // Pictures of every scene of the engine, alone: calm, in a breeze, in a storm; without a daemon.
 //
-//   draw_scenes [--look=KEY=VALUE...] FOLDER [WIDTHxHEIGHT [KIND[,PARAMETER=VALUE...]...]]
+//   draw_scenes [--look=KEY=VALUE...] [--camera=HEADING,PITCH,DISTANCE] [--wind=M_S] FOLDER [WIDTHxHEIGHT
+//   [KIND[,PARAMETER=VALUE...]...]]
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -57,8 +61,21 @@ std::unique_ptr<scenes::Scene> made(const std::string& words) {
 /// Draws what the command line asks for. Returns the exit code.
 int draw_scenes(std::vector<std::string> words) {
   std::vector<std::string> edits;
-  while (!words.empty() && words.front().starts_with("--look=")) {
-    edits.push_back(words.front().substr(7));
+  std::optional<viewer::meshes::CameraPlace> given;  // around the scene's middle
+  std::vector<Weather> weathers{{"calm", 0.0}, {"breeze", 4.0}, {"storm", 18.0}};
+  while (!words.empty() && words.front().starts_with("--")) {
+    const std::string& word = words.front();
+    if (word.starts_with("--look=")) {
+      edits.push_back(word.substr(7));
+    } else if (word.starts_with("--wind=")) {
+      weathers = {{"wind", std::strtod(word.c_str() + 7, nullptr)}};
+    } else {
+      given.emplace();
+      if (std::sscanf(word.c_str(), "--camera=%lf,%lf,%lf", &given->heading_deg, &given->pitch_deg,
+                      &given->distance_m) != 3) {
+        return 64;
+      }
+    }
     words.erase(words.begin());
   }
 
@@ -80,13 +97,19 @@ int draw_scenes(std::vector<std::string> words) {
   stage.set_quality(look.quality);
   viewer::gl::RenderTarget target(width_px, height_px, 4);
   for (const std::string& kind : kinds) {
-    for (const auto& [name, speed_m_s] : {Weather{"calm", 0.0}, Weather{"breeze", 4.0}, Weather{"storm", 18.0}}) {
+    for (const auto& [name, speed_m_s] : weathers) {
       const std::unique_ptr<scenes::Scene> scene = made(kind);
       const std::vector<wire::SceneModel> models{{kind, kind.substr(0, kind.find(',')), scene->skeleton()}};
       for (int i = 0; i < kSettlingTicks; ++i) scene->tick(wind::wind_from(speed_m_s, kWindFrom_deg), kTick_s);
       stage.set_scenes(models);
       viewer::meshes::OrbitCamera camera;
-      camera.frame(stage.home(static_cast<double>(width_px) / height_px));
+      viewer::meshes::CameraPlace place = stage.home(static_cast<double>(width_px) / height_px);
+      if (given) {
+        const viewer::meshes::Bounds box = stage.bounds();
+        place = *given;
+        place.target_m = 0.5 * (glm::dvec3(box.low_m) + glm::dvec3(box.high_m));
+      }
+      camera.frame(place);
       viewer::stream::PoseMoment moment = viewer::stream::rest_moment(models);
       moment.poses[0] = scene->pose();
       stage.draw(moment, camera, target);
