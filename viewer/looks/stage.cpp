@@ -146,6 +146,8 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
         stand_ = *view.stand;
         near_by = std::get_if<pose::StrandPose>(&moment.poses[scene]);
       }
+    } else if (view.scene.kind == "fur") {
+      thing.kind = meshes::Standing::Kind::kFur;
     } else if (view.shore.is_pond()) {
       thing.kind = meshes::Standing::Kind::kWater;
       thing.shore = &view.shore;

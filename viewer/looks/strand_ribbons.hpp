@@ -10,7 +10,7 @@ namespace yuragi::viewer::looks {
 /// Strands on the GPU, each a ribbon along its joints, with more vertices the larger it is in the picture. Needs a
 /// current context.
 ///
-/// A shader finds an instance's Blade in the attributes 0 to 2, the joints in the sampler `joints` (unit 0, see
+/// A shader finds an instance's Blade in the attributes 0 to 3, the joints in the sampler `joints` (unit 0, see
 /// shaders/common.glsl), and the uniforms `links`, `rings` and `copies`.
 class StrandRibbons {
  public:

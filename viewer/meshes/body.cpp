@@ -14,6 +14,7 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr std::size_t kUnknowns = 7;
+constexpr float kBelow_m = 0.02F;
 constexpr std::size_t kSkinRows = 40;
 constexpr std::size_t kSkinColumns = 80;
 using Equations = std::array<std::array<double, kUnknowns + 1>, kUnknowns>;
@@ -77,7 +78,9 @@ Body body_of(const pose::StrandSkeleton& coat) {
   }
   const glm::vec3 half_m = glm::max((roots.high_m - roots.low_m) / 2.0F, glm::vec3(0.01F));
   const glm::vec3 middle_m = (roots.low_m + roots.high_m) / 2.0F;
-  if (!fit(coat, glm::dvec3(middle_m), std::max({half_m.x, half_m.y, half_m.z}), body)) {
+  body.low_m = roots.low_m.y;
+  body.is_known = fit(coat, glm::dvec3(middle_m), std::max({half_m.x, half_m.y, half_m.z}), body);
+  if (!body.is_known) {
     body.middle_m = middle_m;
     const glm::vec3 inverse = 1.0F / (half_m * half_m);
     body.shape = glm::mat3(inverse.x, 0.0F, 0.0F, 0.0F, inverse.y, 0.0F, 0.0F, 0.0F, inverse.z);
@@ -104,6 +107,8 @@ Skin skin_of(const Body& body) {
       const auto here = static_cast<std::uint32_t>(row * kSkinColumns + column);
       const auto beside = static_cast<std::uint32_t>(row * kSkinColumns + (column + 1) % kSkinColumns);
       constexpr auto kUp = static_cast<std::uint32_t>(kSkinColumns);
+      const auto is_low = [&](std::uint32_t i) { return skin.places_m[i].y < body.low_m - kBelow_m; };
+      if (is_low(here) && is_low(here + kUp)) continue;
       skin.triangles.insert(skin.triangles.end(), {here, beside, here + kUp, here + kUp, beside, beside + kUp});
     }
   }

@@ -13,7 +13,7 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr auto kTurn_rad = static_cast<float>(2.0 * kPi);
-constexpr float kSquareness = 2.6F;  // of the outline: 2 is an ellipse, more goes farther into the corners
+constexpr float kSquareness = 2.4F;  // of the outline: 2 is an ellipse, more goes farther into the corners
 constexpr float kBank_m = 0.42F;
 constexpr float kFullHalf_m = 3.5F;
 constexpr float kShelf = 0.10F;  // how fast the bed goes down at first

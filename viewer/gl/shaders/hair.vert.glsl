@@ -13,6 +13,7 @@ uniform float spacing_m;  // of the strands
 layout(location = 0) in vec4 root_width;   // metres
 layout(location = 1) in vec4 tint_facing;  // the coat's colour here
 layout(location = 2) in uint strand;
+layout(location = 3) in float whole_m;  // the strand's length
 
 out vec3 shade;
 
@@ -32,6 +33,17 @@ void main() {
   float which = chance_of(seed);
   float other = chance_of(seed + 31.7);
   bool is_guard = copy == 0 || which > 0.72;
+
+  // Farther away one hair stands for more and more of them.
+  float height_px = whole_m / (eye_m.w * distance(eye_m.xyz, root_width.xyz));
+  float near = smoothstep(20.0, 50.0, height_px);
+  float shown = copies > 1 ? 1.0 + float(copies - 1) * near : 1.0;
+  float is_up = clamp(shown - float(copy), 0.0, 1.0);
+  if (is_up <= 0.0) {
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    shade = vec3(0.0);
+    return;
+  }
 
   // Where it grows: beside the strand, on the skin.
   vec3 root = root_width.xyz;
@@ -55,15 +67,15 @@ void main() {
   // Underhair stands up more; hairs of a lock meet at their tips, and a few stray.
   vec3 grown = on_strand - root;
   float length_m = length(grown);
-  float stray = (fract(which * 91.0) - 0.5) * (is_guard ? 0.26 : 0.12);
+  float stray = (fract(which * 91.0) - 0.5) * mix(2.0, 1.0, near) * (is_guard ? 0.26 : 0.12);
   vec3 aside = cross(out_of_body, along);
-  vec3 place = mix(own_root, root, 0.30 * t) + grown * longer + (is_guard ? 0.0 : 0.12 * length_m) * out_of_body + aside * (stray * length_m);
+  vec3 place = mix(own_root, root, 0.30 * t) + grown * longer + (is_guard ? 0.12 * (1.0 - near) : 0.12) * length_m * t * out_of_body + aside * (stray * length_m);
 
   vec3 to_eye = eye_m.xyz - place;
   float distance_m = length(to_eye);
   to_eye /= distance_m;
-  float half_width = 0.5 * root_width.w * pow(float(copies), -0.36) * (is_guard ? 1.30 : 1.15) * sqrt(1.0 - t) * (1.0 - 0.2 * t);
-  half_width = max(half_width, 0.45 * eye_m.w * distance_m * min(1.0, 3.0 * (1.0 - t)));
+  float half_width = 0.5 * root_width.w * is_up * pow(shown, -0.36) * (is_guard ? 1.30 : 1.15) * sqrt(1.0 - t) * (1.0 - 0.2 * t);
+  half_width = max(half_width, is_up * mix(0.62, 0.45, near) * eye_m.w * distance_m * min(1.0, 3.0 * (1.0 - t)));
   place += normalize(cross(along, to_eye)) * (side * half_width);
   gl_Position = to_clip * vec4(place, 1.0);
 
@@ -73,8 +85,9 @@ void main() {
   vec3 albedo = mix(wool, coat, smoothstep(0.12, 0.50, t));
   if (is_guard) {
     float band = 0.80 + 0.10 * (other - 0.5);
-    albedo = mix(albedo, vec3(0.66, 0.49, 0.29), 0.85 * smoothstep(band - 0.20, band - 0.05, t));
-    albedo = mix(albedo, vec3(0.050, 0.032, 0.022), 0.90 * smoothstep(band + 0.01, band + 0.10, t) * step(0.35, fract(which * 7.0)));
+    // Far away the bands run together.
+    albedo = mix(albedo, vec3(0.66, 0.49, 0.29), mix(0.22, 0.85, near) * smoothstep(band - 0.20, band - 0.05, t));
+    albedo = mix(albedo, vec3(0.050, 0.032, 0.022), mix(0.25, 0.90, near) * smoothstep(band + 0.01, band + 0.10, t) * step(0.35, fract(which * 7.0)));
   } else {
     albedo = mix(albedo, mix(coat, vec3(0.52, 0.36, 0.20), 0.45), smoothstep(0.55, 1.0, t));
   }

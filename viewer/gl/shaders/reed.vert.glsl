@@ -48,6 +48,6 @@ void main() {
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
   float deep = 0.35 + 0.65 * smoothstep(0.0, 0.5, t);
   vec3 sum = tint * soft_light(vec3(0.0, 1.0, 0.0)) * 0.75;
-  sum += tint * sun_light.rgb * lit * (0.75 * max(facing, 0.0) + (1.0 - head) * vec3(1.15, 1.05, 0.45) * max(-facing, 0.12) * (0.3 + 1.2 * against * against));
+  sum += tint * sun_light.rgb * lit * (0.75 * max(facing, 0.0) + (1.0 - head) * vec3(1.15, 1.05, 0.45) * max(-facing, 0.12) * (0.28 + 0.62 * against * against));
   shade = seen(sum * deep, place);
 }

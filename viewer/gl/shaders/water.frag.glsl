@@ -33,12 +33,14 @@ void main() {
   vec2 uv = mat2(grid_axes.xy, grid_axes.zw) * (place_m.xz - grid_place.xy);
   vec3 waves = textureLod(slopes, uv, log2(max(pixel_m / grid_place.z, 1e-3))).rgb;
   float rough = textureLod(slopes, uv, 3.6).b;  // around here: where a gust touches the water
-  float fine = kFineShare * rough;
+  // A gust's paw has claws: streaks that run with the wind, finer than the streamed roughness.
+  float claws = textureLod(noise_tile, place_m.xz * 0.11 - drift.xy * 80.0, max(log2(pixel_m * 28.0), 0.0)).r;
+  float fine = kFineShare * rough * mix(0.25, 2.0, smoothstep(0.34, 0.66, claws));
 
   // Two layers of ripples run with the wind, one a little aside.
-  float lod = log2(max(pixel_m * 128.0 / 0.45, 1e-3));
-  vec2 drift_by = drift.xy * 100.0;
-  vec2 ripple = ripple_at(place_m.xz / 0.45 - drift_by, lod) + ripple_at(mat2(0.8, 0.6, -0.6, 0.8) * place_m.xz / 0.31 - mat2(0.92, -0.38, 0.38, 0.92) * drift_by, lod + 0.5);
+  float lod = log2(max(pixel_m * 128.0 / 0.83, 1e-3));
+  vec2 drift_by = drift.xy * 60.0;
+  vec2 ripple = ripple_at(place_m.xz / 0.83 - drift_by, lod) + ripple_at(mat2(0.8, 0.6, -0.6, 0.8) * place_m.xz / 0.51 - mat2(0.92, -0.38, 0.38, 0.92) * drift_by, lod + 0.7);
   float kept = 1.0 / (1.0 + exp2(2.0 * (lod - 2.0)));  // of their variance, on this level
   float strength = sqrt(0.25 * fine);
   vec2 slope = waves.xy + strength * ripple;
@@ -62,7 +64,9 @@ void main() {
   image.y = 2.0 * grid_place.w - image.y;
   vec4 at = to_clip * vec4(image, 1.0);
   vec2 off = at.xy / max(at.w, 0.01) / kMirrorMargin;
-  float blur = log2(max(1.2 * deviation * float(textureSize(mirror, 0).y) / (2.0 * up.w * kMirrorMargin), 1.0));
+  // A steep wave's image is drawn out.
+  float spread = sqrt(0.5 * unseen + 0.06 * dot(slope, slope));
+  float blur = log2(max(1.2 * spread * float(textureSize(mirror, 0).y) / (2.0 * up.w * kMirrorMargin), 1.0));
   vec3 sky = textureLod(mirror, 0.5 + 0.5 * off, min(blur, 4.0)).rgb;
   float beside = smoothstep(0.88, 1.0, max(abs(off.x), abs(off.y)));
   if (beside > 0.0 || at.w <= 0.01) sky = mix(sky, finish(air_light(up_ray)), at.w > 0.01 ? beside : 1.0);
