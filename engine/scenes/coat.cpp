@@ -58,19 +58,18 @@ Coat make_coat(const CoatSpec& spec) {
   const math::RandomStream random(spec.seed, math::stream_id("coat stray"));
 
   const double a_m = 0.5 * spec.body_length_m;
-  const double b_m = 0.5 * spec.body_height_m;
+  const double b_m = spec.body_height_m;
   const double c_m = 0.5 * spec.body_width_m;
   for (std::size_t hair = 0; hair < count; ++hair) {
     const std::size_t along = hair / spec.hairs_around;
     const std::size_t around = hair % spec.hairs_around;
     const auto [stray_u, stray_v] = random.uniform_pair(hair);
-    // Once around the body is once around the noises: no seam runs along it.
     const std::size_t on_noise = around * parting_noise.size / spec.hairs_around;
 
     // Place: even steps in height along the axis are even areas of a sphere (Archimedes), and nearly so here.
     const double u = 2.0 * (static_cast<double>(along) + stray_u) / static_cast<double>(spec.hairs_along) - 1.0;
     const double turn_rad =
-        2.0 * kPi * (static_cast<double>(around) + stray_v) / static_cast<double>(spec.hairs_around);
+        kPi * ((static_cast<double>(around) + stray_v) / static_cast<double>(spec.hairs_around) - 0.5);
     const double ring = std::sqrt(1.0 - u * u);
     const Vector root = {a_m * u, b_m * ring * std::cos(turn_rad), c_m * ring * std::sin(turn_rad)};
     const Vector normal = unit({root[0] / (a_m * a_m), root[1] / (b_m * b_m), root[2] / (c_m * c_m)});
@@ -89,7 +88,7 @@ Coat make_coat(const CoatSpec& spec) {
 
     pose::StrandSkeleton& skeleton = coat.skeleton;
     skeleton.root_x_m[hair] = static_cast<float>(root[0]);
-    skeleton.root_y_m[hair] = static_cast<float>(root[1] + b_m);
+    skeleton.root_y_m[hair] = static_cast<float>(root[1]);
     skeleton.root_z_m[hair] = static_cast<float>(root[2]);
     skeleton.rest_x[hair] = static_cast<float>(rest[0]);
     skeleton.rest_y[hair] = static_cast<float>(rest[1]);
@@ -105,8 +104,7 @@ Coat make_coat(const CoatSpec& spec) {
     skeleton.rest_curl_rad[hair] = static_cast<float>(spec.curl_deg * kRadPerDeg / links);
     coat.flexibility[hair] = static_cast<float>(longer);
     coat.place_x_m[hair] = static_cast<float>(root[0]);
-    const double from_ridge_rad = turn_rad < kPi ? turn_rad : turn_rad - 2.0 * kPi;
-    coat.place_z_m[hair] = static_cast<float>(from_ridge_rad * 0.5 * (b_m + c_m));
+    coat.place_z_m[hair] = static_cast<float>(turn_rad * 0.5 * (b_m + c_m));
     coat.normal_x[hair] = static_cast<float>(normal[0]);
     coat.normal_z[hair] = static_cast<float>(normal[2]);
   }

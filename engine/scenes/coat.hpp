@@ -8,14 +8,15 @@
 
 namespace yuragi::scenes {
 
-/// Parameters of a coat of fur, and of the body under it: an ellipsoid that lies along x, resting on the ground.
+/// Parameters of a coat of fur, and of the body under it: the upper half of an ellipsoid that lies along x, as the back
+/// of an animal that sleeps in the grass.
 struct CoatSpec {
   std::size_t hairs_along = 200;   ///< rows from one end of the body to the other
-  std::size_t hairs_around = 150;  ///< in each row
+  std::size_t hairs_around = 150;  ///< in each row, from the ground over the back to the ground
   std::size_t links = 10;          ///< a hair
-  double body_length_m = 1.6;
-  double body_height_m = 0.8;
-  double body_width_m = 0.7;
+  double body_length_m = 3.0;
+  double body_height_m = 0.75;
+  double body_width_m = 2.0;
   double length_m = 0.09;         ///< of a hair, on average
   double length_variation = 0.2;  ///< standard deviation, as a part of it
   double lie_deg = 55.0;          ///< how far a hair's foot lies over, from the body's normal

@@ -45,11 +45,12 @@ constexpr double kSheltered = 0.6;
 
 const std::array kFurParameters = {
     Parameter{"hairs_along", "", std::int64_t{200}, 1, 4096, "rows of hairs from one end of the body to the other"},
-    Parameter{"hairs_around", "", std::int64_t{150}, 1, 4096, "hairs in a row around the body"},
+    Parameter{"hairs_around", "", std::int64_t{150}, 1, 4096,
+              "hairs in a row over the body, from the ground to the ground"},
     Parameter{"links", "", std::int64_t{10}, 1, 64, "links of a hair"},
-    Parameter{"body_length", "m", 1.6, 0.05, 20, "the body from end to end; it lies from west to east"},
-    Parameter{"body_height", "m", 0.8, 0.05, 20, "the body from the ground up"},
-    Parameter{"body_width", "m", 0.7, 0.05, 20, "the body from flank to flank"},
+    Parameter{"body_length", "m", 3.0, 0.05, 20, "the body from end to end; it lies from west to east"},
+    Parameter{"body_height", "m", 0.75, 0.05, 20, "the body from the ground up: a back that rises out of the grass"},
+    Parameter{"body_width", "m", 2.0, 0.05, 20, "the body from flank to flank"},
     Parameter{"hair_length", "m", 0.09, 0.002, 1, "length of a hair, on average"},
     Parameter{"hair_length_variation", "", 0.2, 0, 0.5, "standard deviation of the length, as a part of it"},
     Parameter{"lie", "deg", 55.0, 0, 85, "how far a hair's foot lies over in calm air"},

@@ -27,7 +27,7 @@ constexpr std::array kFurBounds = {
     Bound{"hair tip, speed / the number before", "", 2, {{kAny, at_least(2), at_least(1.2), at_least(1)}}},
 };
 
-/// Where a hair stands on the body, as its roots show it: an ellipsoid that lies from west to east.
+/// Where a hair stands on the body, as its roots show it: the upper half of an ellipsoid that lies from west to east.
 struct HairPlace {
   std::array<double, 3> normal = {};  ///< of the skin: unit vector
   double along_body_m = 0.0;          ///< to the east
@@ -42,14 +42,13 @@ class Body {
       const auto [least, most] = std::minmax_element(place_m.begin(), end);
       return 0.5 * static_cast<double>(*most - *least);
     };
-    half_m_ = {half_range(hairs.root_x_m), half_range(hairs.root_y_m), half_range(hairs.root_z_m)};
+    half_m_ = {half_range(hairs.root_x_m), 0.0, half_range(hairs.root_z_m)};
     const auto end = hairs.root_y_m.begin() + static_cast<std::ptrdiff_t>(hairs.strand_count);
-    middle_y_m_ = static_cast<double>(*std::min_element(hairs.root_y_m.begin(), end)) + half_m_[1];
+    half_m_[1] = static_cast<double>(*std::max_element(hairs.root_y_m.begin(), end));
   }
 
   HairPlace place(const pose::StrandSkeleton& hairs, std::size_t hair) const {
-    const std::array at_m = {static_cast<double>(hairs.root_x_m[hair]),
-                             static_cast<double>(hairs.root_y_m[hair]) - middle_y_m_,
+    const std::array at_m = {static_cast<double>(hairs.root_x_m[hair]), static_cast<double>(hairs.root_y_m[hair]),
                              static_cast<double>(hairs.root_z_m[hair])};
     HairPlace place;
     for (std::size_t axis = 0; axis < 3; ++axis) place.normal[axis] = at_m[axis] / (half_m_[axis] * half_m_[axis]);
@@ -64,7 +63,6 @@ class Body {
 
  private:
   std::array<double, 3> half_m_ = {};
-  double middle_y_m_ = 0.0;
 };
 
 class FurMeter final : public Meter {
@@ -153,7 +151,7 @@ class FurMeter final : public Meter {
     const Body body(strands);
     std::vector<HairPlace> places;
     for (std::size_t i = 0; i < strands.strand_count; ++i) places.push_back(body.place(strands, i));
-    const double reach_m = 0.5 * std::numbers::pi * (body.half_m()[1] + body.half_m()[2]);
+    const double reach_m = 0.25 * std::numbers::pi * (body.half_m()[1] + body.half_m()[2]);
     std::vector<std::size_t> hairs;
     for (const double part : {-0.7, -0.45, -0.15, 0.15, 0.45, 0.7}) {
       for (double around_m = -reach_m; around_m < reach_m; around_m += kPitch_m) {
@@ -183,7 +181,7 @@ class FurMeter final : public Meter {
 SceneTable fur_table() {
   return {.name = "fur",
           .scene = "fur",
-          .parameters = {{"hairs_along", std::int64_t{80}}, {"hairs_around", std::int64_t{80}}},
+          .parameters = {{"hairs_along", std::int64_t{120}}, {"hairs_around", std::int64_t{80}}},
           .bounds = {kFurBounds.begin(), kFurBounds.end()},
           .make_meter = [](const pose::Skeleton& skeleton) -> std::unique_ptr<Meter> {
             return std::make_unique<FurMeter>(skeleton);

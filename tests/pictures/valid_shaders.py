@@ -16,7 +16,7 @@ VALIDATOR = "glslangValidator"
 def expanded(file):
     """A shader's text with its parts, as viewer/gl/CMakeLists.txt puts it together."""
     text = file.read_text()
-    for line, part in enumerate(("sward", "blade"), start=2):
+    for line, part in enumerate(("sward", "blade", "shore"), start=2):
         included = (file.parent / f"{part}.part.glsl").read_text()
         text = text.replace(f'#include "{part}.part.glsl"\n', f"#line {line}0001\n{included}#line {line}\n")
     return text

@@ -78,6 +78,8 @@ inline constexpr GLuint kGroundBinding = 2;
 /// The texture units of the shadow map, in every program: compared with a depth, and as depths.
 inline constexpr GLuint kShadowUnit = 6;
 inline constexpr GLuint kShadowDepthUnit = 7;
+/// And of what water mirrors (Mirror).
+inline constexpr GLuint kMirrorUnit = 8;
 
 /// Compiles and links. Each stage begins with #version and shaders/common.glsl. On an error throws std::runtime_error
 /// with `name` and the compiler's message. The uniform blocks and the samplers of shadows are bound as above.

@@ -8,6 +8,8 @@ namespace yuragi::viewer::gl::shaders {
 
 extern const std::string_view kCommon;  ///< in front of each of the others
 extern const std::string_view kShadeFrag;
+extern const std::string_view kBankVert;
+extern const std::string_view kBankFrag;
 extern const std::string_view kBarkVert;
 extern const std::string_view kBarkFrag;
 extern const std::string_view kClothVert;
@@ -31,12 +33,16 @@ extern const std::string_view kGroundVert;
 extern const std::string_view kGroundFrag;
 extern const std::string_view kHairVert;
 extern const std::string_view kHillsVert;
+extern const std::string_view kHoleVert;
+extern const std::string_view kHoleFrag;
 extern const std::string_view kLeafVert;
+extern const std::string_view kReedVert;
+extern const std::string_view kSkinVert;
+extern const std::string_view kSkinFrag;
 extern const std::string_view kSkyVert;
 extern const std::string_view kSkyFrag;
 extern const std::string_view kSolidVert;
 extern const std::string_view kSolidFrag;
-extern const std::string_view kUndercoatVert;
 extern const std::string_view kWaterVert;
 extern const std::string_view kWaterFrag;
 

@@ -1,45 +1,50 @@
 #include "viewer/looks/fur_renderer.hpp"
 
-#include <cmath>
-
-#include <glm/common.hpp>
-
+#include "viewer/gl/noise_texture.hpp"
 #include "viewer/gl/shaders.hpp"
+#include "viewer/meshes/body.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
 
-constexpr float kDiscPerSpacing = 1.5F;  // so that discs overlap although roots are unevenly spread
-constexpr GLsizei kDiscCorners = 6;
+/// Hairs a strand.
+GLint hairs_of(look::Quality quality) {
+  if (quality == look::Quality::kLow) return 3;
+  return quality == look::Quality::kMedium ? 6 : 10;
+}
 
-/// Sets a program's uniforms of the body: the ellipsoid in the box around the roots.
-void set_body(const gl::GlProgram& program, const pose::StrandSkeleton& strands) {
-  meshes::Bounds roots{glm::vec3(1e9F), glm::vec3(-1e9F)};
-  for (std::size_t i = 0; i < strands.strand_count; ++i) {
-    const glm::vec3 root(strands.root_x_m[i], strands.root_y_m[i], strands.root_z_m[i]);
-    roots = united(roots, {root, root});
-  }
-  const glm::vec3 middle = (roots.low_m + roots.high_m) / 2.0F;
-  const glm::vec3 radius = glm::max((roots.high_m - roots.low_m) / 2.0F, glm::vec3(0.01F));
+void set_body(const gl::GlProgram& program, const meshes::Body& body) {
   glUseProgram(program.name());
-  glUniform3f(glGetUniformLocation(program.name(), "body_middle_m"), middle.x, middle.y, middle.z);
-  glUniform3f(glGetUniformLocation(program.name(), "body_radius_m"), radius.x, radius.y, radius.z);
-
-  // The roots cover about the upper half of the ellipsoid.
-  const float area_m2 = 2.0F * (radius.x * radius.y + radius.y * radius.z + radius.z * radius.x);
-  const auto count = static_cast<float>(std::max<std::size_t>(1, strands.strand_count));
-  glUniform1f(glGetUniformLocation(program.name(), "disc_m"), kDiscPerSpacing * std::sqrt(area_m2 / count));
+  glUniform3f(glGetUniformLocation(program.name(), "body_middle_m"), body.middle_m.x, body.middle_m.y, body.middle_m.z);
+  glUniformMatrix3fv(glGetUniformLocation(program.name(), "body_shape"), 1, GL_FALSE, &body.shape[0][0]);
 }
 
 }  // namespace
 
-FurRenderer::FurRenderer(const pose::StrandSkeleton& strands)
-    : ribbons_(strands),
+FurRenderer::FurRenderer(const pose::StrandSkeleton& strands, look::Quality quality)
+    : ribbons_(strands, hairs_of(quality)),
       hair_(gl::link_program("hair", gl::shaders::kHairVert, gl::shaders::kShadeFrag)),
-      undercoat_(gl::link_program("undercoat", gl::shaders::kUndercoatVert, gl::shaders::kShadeFrag)) {
+      skin_(gl::link_program("skin", gl::shaders::kSkinVert, gl::shaders::kSkinFrag)),
+      noise_(gl::make_noise_texture()) {
   gl::set_sampler(hair_, "joints", 0);
-  set_body(hair_, strands);
-  set_body(undercoat_, strands);
+  gl::set_sampler(skin_, "noise_tile", 0);
+  const meshes::Body body = meshes::body_of(strands);
+  set_body(hair_, body);
+  glUniform1f(glGetUniformLocation(hair_.name(), "spacing_m"), body.spacing_m);
+  set_body(skin_, body);
+
+  if (strands.strand_count == 0) return;
+  const meshes::Skin skin = meshes::skin_of(body);
+  skin_count_ = static_cast<GLsizei>(skin.triangles.size());
+  glBindVertexArray(skin_array_.name());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, skin_indices_.name());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(skin.triangles.size() * sizeof(std::uint32_t)),
+               skin.triangles.data(), GL_STATIC_DRAW);
+  glBindBuffer(GL_ARRAY_BUFFER, skin_buffer_.name());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(skin.places_m.size() * sizeof(glm::vec3)), skin.places_m.data(),
+               GL_STATIC_DRAW);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(glm::vec3), nullptr);
+  glEnableVertexAttribArray(0);
 }
 
 void FurRenderer::move_to(const pose::Pose& pose) {
@@ -48,7 +53,11 @@ void FurRenderer::move_to(const pose::Pose& pose) {
 
 void FurRenderer::draw(const meshes::View& view) {
   ribbons_.draw(hair_, view);
-  ribbons_.draw_fans(undercoat_, kDiscCorners);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, noise_.name());
+  glUseProgram(skin_.name());
+  glBindVertexArray(skin_array_.name());
+  glDrawElements(GL_TRIANGLES, skin_count_, GL_UNSIGNED_INT, nullptr);
 }
 
 }  // namespace yuragi::viewer::looks

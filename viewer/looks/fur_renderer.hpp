@@ -5,11 +5,12 @@
 
 namespace yuragi::viewer::looks {
 
-/// Draws strands as the coat of an animal: fine hairs over a dark undercoat that hides the body's inside.
+/// Draws strands as the coat of an animal: underhair and guard hairs, several around each strand, over a pale skin that
+/// is seen where the coat parts.
 class FurRenderer : public SceneRenderer {
  public:
-  /// `strands` must outlive this.
-  explicit FurRenderer(const pose::StrandSkeleton& strands);
+  /// `strands` must outlive this. The better the quality, the more hairs.
+  FurRenderer(const pose::StrandSkeleton& strands, look::Quality quality);
 
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
@@ -18,7 +19,11 @@ class FurRenderer : public SceneRenderer {
  private:
   StrandRibbons ribbons_;
   gl::GlProgram hair_;
-  gl::GlProgram undercoat_;
+  gl::GlProgram skin_;
+  GLsizei skin_count_ = 0;
+  gl::GlTexture noise_;
+  gl::GlVertexArray skin_array_;
+  gl::GlBuffer skin_buffer_, skin_indices_;
 };
 
 }  // namespace yuragi::viewer::looks

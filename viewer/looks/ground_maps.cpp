@@ -29,7 +29,7 @@ glm::vec2 mean_of(const pose::StrandPose& pose, std::size_t count) {
 
 bool is_same(const meshes::Standing& a, const meshes::Standing& b) {
   return a.kind == b.kind && a.bounds.low_m == b.bounds.low_m && a.bounds.high_m == b.bounds.high_m &&
-         a.opacity == b.opacity && a.blades == b.blades && a.floor == b.floor;
+         a.opacity == b.opacity && a.blades == b.blades && a.floor == b.floor && a.shore == b.shore;
 }
 
 }  // namespace
@@ -45,7 +45,8 @@ GroundMaps::GroundMaps() : noise_(gl::make_noise_texture()) {
   }
   constexpr float side_m = meshes::GrowthMap::kSide_m;
   ground_.growth_place = {-0.5F * side_m, -0.5F * side_m, 1.0F / side_m, 1.0F / side_m};
-  set_standing({{.kind = meshes::Standing::Kind::kGrass, .bounds = {}, .opacity = 0.0F, .blades = nullptr, .floor = {}}});
+  set_standing(
+      {{.kind = meshes::Standing::Kind::kGrass, .bounds = {}, .opacity = 0.0F, .blades = nullptr, .floor = {}}});
   move_to({}, nullptr, nullptr);
 }
 

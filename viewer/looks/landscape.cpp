@@ -39,7 +39,11 @@ void Landscape::draw() {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   }
   glDisable(GL_STENCIL_TEST);
+  draw_sky();
+}
 
+void Landscape::draw_sky() {
+  glBindVertexArray(no_attributes_.name());
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, noise_.name());
   // From near to far; the sky is at the far end of the depth range.

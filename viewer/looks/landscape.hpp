@@ -13,6 +13,8 @@ class Landscape {
   /// The View (ViewBuffer::set) and the GroundMaps are bound. The ground has holes and shadows where the stencil has
   /// kHole and kShadow.
   void draw();
+  /// The hills and the sky alone.
+  void draw_sky();
 
  private:
   gl::GlTexture noise_;

@@ -22,7 +22,7 @@ class GroundNodes : public SceneRenderer {
 
 std::unique_ptr<SceneRenderer> renderer_of(const pose::StrandSkeleton& strands, const wire::SceneModel& scene,
                                            look::Quality quality) {
-  if (scene.kind == "fur") return std::make_unique<FurRenderer>(strands);
+  if (scene.kind == "fur") return std::make_unique<FurRenderer>(strands, quality);
   if (meshes::bend_grid_of(strands).columns > 0) return std::make_unique<GroundNodes>();
   return std::make_unique<GrassRenderer>(strands, grass_detail(quality));
 }

@@ -42,6 +42,12 @@ class SceneRenderer {
   /// From now on it draws only this share (0 to 1] of the blades of grass that it would.
   virtual void set_blade_share(float) {}
 
+  /// The height of the level mirror that it is, metres; nothing where it is none.
+  virtual std::optional<float> mirror_m() const { return std::nullopt; }
+
+  /// Draws what is seen of it in a mirror.
+  virtual void draw_mirrored(const meshes::View& view) { draw(view); }
+
   /// Does it cast a shadow? Then draw() is also called with a View that projects everything onto the ground.
   virtual bool casts_shadow() const { return false; }
 

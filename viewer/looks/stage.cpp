@@ -1,6 +1,7 @@
 #include "viewer/looks/stage.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "engine/pose/pose_arrays.hpp"
@@ -12,6 +13,8 @@ namespace {
 constexpr meshes::Bounds kPartOfGround{glm::vec3(-4.0F, 0.0F, -4.0F), glm::vec3(4.0F, 0.8F, 4.0F)};
 constexpr int kMediumTexels = 1024;
 constexpr int kHighTexels = 2048;
+constexpr int kMirror = 2;           // a mirror's pixel is as large as so many of the picture, across and upright
+constexpr int kLowMirror = 4;        // with quality low
 constexpr float kLowestSun = 0.02F;  // the sine of its height: below it shadows have no end
 
 bool is_alike(const meshes::Stand& a, const meshes::Stand& b) {
@@ -42,6 +45,8 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
         view->grid = meshes::bend_grid_of(*strands);
         if (view->renderer->is_field() && !view->renderer->is_ground()) view->stand = meshes::stand_of(*strands);
       }
+      const auto* surface = std::get_if<pose::SurfaceSkeleton>(&view->scene.skeleton);
+      if (surface != nullptr && surface->ramp_rgba.empty()) view->shore = meshes::Shore(*surface);
       views_.push_back(std::move(view));
     }
     scenes_.push_back(&views_.back()->scene);
@@ -80,7 +85,18 @@ meshes::CameraPlace Stage::home(double aspect) const {
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     is_all_field = is_all_field && (!is_chosen(scene) || views_[scene]->renderer->is_field());
   }
-  return is_all_field ? meshes::place_across(bounds()) : meshes::place_around(bounds(), aspect);
+  if (is_all_field) return meshes::place_across(bounds());
+  const auto chosen = [this](std::size_t scene) { return is_chosen(scene) && !views_[scene]->renderer->is_ground(); };
+  std::size_t scene = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    if (!chosen(i)) continue;
+    scene = i;
+    ++count;
+  }
+  if (count == 1 && views_[scene]->shore.is_pond()) return meshes::place_on_shore(views_[scene]->shore);
+  if (count == 1 && views_[scene]->scene.kind == "fur") return meshes::place_beside(bounds());
+  return meshes::place_around(bounds(), aspect);
 }
 
 std::optional<meshes::Bounds> Stage::bounds_of(std::string_view scene) const {
@@ -139,9 +155,11 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
         stand_ = *view.stand;
         near_by = std::get_if<pose::StrandPose>(&moment.poses[scene]);
       }
-    } else if (const auto* surface = std::get_if<pose::SurfaceSkeleton>(&view.scene.skeleton);
-               surface != nullptr && surface->ramp_rgba.empty()) {
+    } else if (view.scene.kind == "fur") {
+      thing.kind = meshes::Standing::Kind::kFur;
+    } else if (view.shore.is_pond()) {
       thing.kind = meshes::Standing::Kind::kWater;
+      thing.shore = &view.shore;
     }
   }
   if (is_bare && ground_opacity > 0.0F) {
@@ -209,6 +227,45 @@ void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_s
   meshes::add_shadows(view, shadows, shadow_map_->texels());
 }
 
+/// Draws what the water in view mirrors, with less work than the picture is.
+void Stage::draw_mirror(const stream::PoseMoment& moment, const meshes::View& view, const gl::RenderTarget& target) {
+  const std::array<glm::vec4, 5> planes = meshes::side_planes(view);
+  std::optional<float> height_m;
+  for (std::size_t scene = 0; scene < views_.size() && !height_m; ++scene) {
+    const meshes::Bounds& box = views_[scene]->bounds;
+    if (!is_seen(moment, scene) || !meshes::is_in_view(planes, box.low_m, box.high_m)) continue;
+    height_m = views_[scene]->renderer->mirror_m();
+  }
+  if (!height_m) return;
+  const int smaller = quality_ == look::Quality::kLow ? kLowMirror : kMirror;
+  const int width_px = std::max(1, target.drawn_width_px() / smaller);
+  const int height_px = std::max(1, target.drawn_height_px() / smaller);
+  if (!mirror_ || mirror_->width_px() != width_px || mirror_->height_px() != height_px) {
+    mirror_.reset();
+    mirror_.emplace(width_px, height_px);
+  }
+  const meshes::View image = meshes::mirrored(view, *height_m, 1.0F / static_cast<float>(smaller));
+  view_buffer_.set(image);
+  mirror_->begin();
+  // With low quality the sky and the hills alone.
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    SceneRenderer& renderer = *views_[scene]->renderer;
+    if (!is_seen(moment, scene) || renderer.is_field()) continue;
+    if (quality_ == look::Quality::kLow && !renderer.mirror_m()) continue;
+    door_.open(moment.opacities[scene], scene);
+    renderer.draw_mirrored(image);
+    door_.close();
+  }
+  if (quality_ == look::Quality::kHigh || quality_ == look::Quality::kAuto) draw_sward(image);
+  landscape_.draw_sky();
+  for (std::size_t scene = 0; scene < views_.size() && quality_ != look::Quality::kLow; ++scene) {
+    if (is_seen(moment, scene)) views_[scene]->renderer->draw_light();
+  }
+  mirror_->end();
+  view_buffer_.set(view);
+  mark_pass("mirror");
+}
+
 void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target) {
   meshes::View view = meshes::view_of(camera, target.drawn_width_px(), target.drawn_height_px());
   if (clock_ != nullptr) clock_->begin();
@@ -228,16 +285,16 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   const meshes::View flat = has_flat_shadows ? meshes::laid_flat(view, to_sun) : view;
   view_buffer_.set(view);
   view_buffer_.set(light_);
-  target.begin();
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
-
   move_ground(moment);
   mark_pass("ground maps");
+  draw_mirror(moment, view, target);
+  target.begin();
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
     SceneRenderer& renderer = *views_[scene]->renderer;

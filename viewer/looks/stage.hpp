@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/look/look.hpp"
+#include "viewer/gl/mirror.hpp"
 #include "viewer/gl/pass_clock.hpp"
 #include "viewer/gl/render_target.hpp"
 #include "viewer/gl/screen_door.hpp"
@@ -16,6 +17,7 @@
 #include "viewer/looks/landscape.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/sward.hpp"
+#include "viewer/meshes/shore.hpp"
 #include "viewer/meshes/view.hpp"
 #include "viewer/stream/pose_moment.hpp"
 
@@ -66,12 +68,14 @@ class Stage {
     std::unique_ptr<SceneRenderer> renderer;
     meshes::BendGrid grid;               // of the ground
     std::optional<meshes::Stand> stand;  // of grass
+    meshes::Shore shore;                 // of water
   };
 
   bool is_chosen(std::size_t scene) const { return !only_ || scenes_[scene]->name == *only_; }
   template <class IsChosen>
   std::optional<meshes::Bounds> around(IsChosen&& is_chosen) const;
   bool is_seen(const stream::PoseMoment& moment, std::size_t scene) const;
+  void draw_mirror(const stream::PoseMoment& moment, const meshes::View& view, const gl::RenderTarget& target);
   void draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view);
   void mark_pass(std::string_view name) {
     if (clock_ != nullptr) clock_->mark(name);
@@ -96,6 +100,7 @@ class Stage {
   float blade_share_ = 1.0F;
   look::Quality quality_ = look::Quality::kLow;
   std::optional<gl::ShadowMap> shadow_map_;  // nothing: hard shadows
+  std::optional<gl::Mirror> mirror_;         // made when water is first seen
   gl::PassClock* clock_ = nullptr;
 };
 

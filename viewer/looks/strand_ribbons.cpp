@@ -5,6 +5,8 @@
 namespace yuragi::viewer::looks {
 namespace {
 
+constexpr GLuint kAttributes = 4;
+
 void describe_blade(const gl::GlVertexArray& array, const gl::GlBuffer& buffer) {
   // OpenGL takes an offset in a buffer as a pointer.
   // NOLINTNEXTLINE(performance-no-int-to-ptr)
@@ -14,16 +16,16 @@ void describe_blade(const gl::GlVertexArray& array, const gl::GlBuffer& buffer) 
   glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(meshes::Blade), at(offsetof(meshes::Blade, root_m)));
   glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(meshes::Blade), at(offsetof(meshes::Blade, tint)));
   glVertexAttribIPointer(2, 1, GL_UNSIGNED_INT, sizeof(meshes::Blade), at(offsetof(meshes::Blade, strand)));
-  for (GLuint attribute = 0; attribute < 3; ++attribute) {
+  glVertexAttribPointer(3, 1, GL_FLOAT, GL_FALSE, sizeof(meshes::Blade), at(offsetof(meshes::Blade, length_m)));
+  for (GLuint attribute = 0; attribute < kAttributes; ++attribute) {
     glEnableVertexAttribArray(attribute);
-    glVertexAttribDivisor(attribute, 1);
   }
 }
 
 }  // namespace
 
-StrandRibbons::StrandRibbons(const pose::StrandSkeleton& strands)
-    : strands_(&strands), sorter_(strands), joints_(strands) {
+StrandRibbons::StrandRibbons(const pose::StrandSkeleton& strands, GLint copies)
+    : strands_(&strands), copies_(copies), sorter_(strands), joints_(strands) {
   describe_blade(blade_array_, blade_buffer_);
   glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // creates the buffer, even if no pose is ever taken
 }
@@ -38,6 +40,7 @@ void StrandRibbons::move_to(const pose::StrandPose& pose) {
 void StrandRibbons::draw(const gl::GlProgram& program, const meshes::View& view) {
   glUseProgram(program.name());
   glUniform1i(glGetUniformLocation(program.name(), "links"), static_cast<GLint>(strands_->links_per_strand));
+  const GLint copies_place = glGetUniformLocation(program.name(), "copies");
   const GLint rings_place = glGetUniformLocation(program.name(), "rings");
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_BUFFER, joint_texture_.name());
@@ -49,19 +52,14 @@ void StrandRibbons::draw(const gl::GlProgram& program, const meshes::View& view)
   for (const meshes::DetailLevel& level : sorter_.levels()) {
     if (level.blades.empty()) continue;
     gl::stream_to(GL_ARRAY_BUFFER, blade_buffer_, std::span(level.blades));
+    const GLint copies = level.is_far ? 1 : copies_;
+    for (GLuint attribute = 0; attribute < kAttributes; ++attribute) {
+      glVertexAttribDivisor(attribute, static_cast<GLuint>(copies));
+    }
+    glUniform1i(copies_place, copies);
     glUniform1i(rings_place, static_cast<GLint>(level.rings));
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, static_cast<GLsizei>(2 * (level.rings + 1)),
-                          static_cast<GLsizei>(level.blades.size()));
-  }
-}
-
-void StrandRibbons::draw_fans(const gl::GlProgram& program, GLsizei corners) {
-  glUseProgram(program.name());
-  glBindVertexArray(blade_array_.name());
-  for (const meshes::DetailLevel& level : sorter_.levels()) {
-    if (level.blades.empty()) continue;
-    gl::stream_to(GL_ARRAY_BUFFER, blade_buffer_, std::span(level.blades));
-    glDrawArraysInstanced(GL_TRIANGLE_FAN, 0, corners, static_cast<GLsizei>(level.blades.size()));
+                          static_cast<GLsizei>(level.blades.size()) * copies);
   }
 }
 

@@ -10,22 +10,21 @@ namespace yuragi::viewer::looks {
 /// Strands on the GPU, each a ribbon along its joints, with more vertices the larger it is in the picture. Needs a
 /// current context.
 ///
-/// A shader finds an instance's Blade in the attributes 0 to 2, the joints in the sampler `joints` (unit 0, see
-/// shaders/common.glsl), and the uniforms `links` and `rings`.
+/// A shader finds an instance's Blade in the attributes 0 to 3, the joints in the sampler `joints` (unit 0, see
+/// shaders/common.glsl), and the uniforms `links`, `rings` and `copies`.
 class StrandRibbons {
  public:
-  /// `strands` must outlive this.
-  explicit StrandRibbons(const pose::StrandSkeleton& strands);
+  /// `strands` must outlive this. Each is drawn as so many ribbons: instance i is ribbon i % copies.
+  StrandRibbons(const pose::StrandSkeleton& strands, GLint copies);
 
   /// Computes and uploads the joints of this pose.
   void move_to(const pose::StrandPose& pose);
   /// Draws what is in view, near ones first, with `program`.
   void draw(const gl::GlProgram& program, const meshes::View& view);
-  /// Draws `corners` vertices, as a fan, for each strand in view of the last draw().
-  void draw_fans(const gl::GlProgram& program, GLsizei corners);
 
  private:
   const pose::StrandSkeleton* strands_;
+  GLint copies_;
   meshes::BladeSorter sorter_;
   pose::JointPositions joints_;
   gl::GlBuffer joint_buffer_;

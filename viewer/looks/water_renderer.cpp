@@ -1,88 +1,185 @@
 #include "viewer/looks/water_renderer.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
 
-#include <glm/geometric.hpp>
+#include <glm/mat2x2.hpp>
+#include <glm/matrix.hpp>
 
+#include "viewer/gl/ripple_texture.hpp"
 #include "viewer/gl/shaders.hpp"
+#include "viewer/looks/ground_maps.hpp"
+#include "viewer/meshes/grid_mesh.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
 
-const glm::vec3 kStone(0.23F, 0.21F, 0.18F);
-constexpr float kHalfRimPerSide = 0.02F;  // half the rim's width, of the longest side
-constexpr float kRimRise_m = 0.06F;       // above the water at rest
-constexpr float kBasinDepth_m = 0.6F;
+// Behind the units of the shadows and of the mirror.
+constexpr GLint kSlopesUnit = 9;
+constexpr GLint kRipplesUnit = 10;
+constexpr GLsizei kReedRings = 6;
+constexpr float kUnderBank_m = 0.15F;  // so far the sheet goes on where the bank hides it
 
-std::array<glm::vec3, 4> corners_of(const pose::SurfaceSkeleton& surface) {
-  const std::size_t columns = surface.columns;
-  const std::size_t last = columns * (surface.rows - 1);
-  const auto corner = [&](std::size_t i) {
-    return glm::vec3(surface.rest_x_m[i], surface.rest_y_m[i], surface.rest_z_m[i]);
-  };
-  return {corner(0), corner(columns - 1), corner(last + columns - 1), corner(last)};
+void describe(GLuint attribute, GLint numbers, GLsizei stride, std::size_t offset) {
+  // OpenGL takes an offset in a buffer as a pointer.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr)
+  glVertexAttribPointer(attribute, numbers, GL_FLOAT, GL_FALSE, stride, reinterpret_cast<const void*>(offset));
+  glEnableVertexAttribArray(attribute);
 }
 
-bool is_open_sheet(const pose::SurfaceSkeleton& surface) {
-  return surface.columns > 1 && surface.rows > 1 && !surface.is_closed;
+template <class T>
+void fill(GLenum target, const gl::GlBuffer& buffer, const std::vector<T>& content) {
+  glBindBuffer(target, buffer.name());
+  glBufferData(target, static_cast<GLsizeiptr>(content.size() * sizeof(T)), content.data(), GL_STATIC_DRAW);
 }
 
 }  // namespace
 
-meshes::SolidMesh water_basin(const pose::SurfaceSkeleton& surface) {
-  meshes::SolidMesh basin;
-  if (!is_open_sheet(surface)) return basin;
-  const std::array<glm::vec3, 4> corners = corners_of(surface);
-  const glm::vec3 middle = (corners[0] + corners[2]) / 2.0F;
-  const float side_m = std::max(glm::distance(corners[0], corners[1]), glm::distance(corners[1], corners[2]));
-  const float half_m = std::clamp(kHalfRimPerSide * side_m, 0.02F, 0.2F);
-  const float low_m = std::min(0.0F, middle.y) - kBasinDepth_m;
-
-  // The rim stands outside of the water: its inner side is the water's edge.
-  for (std::size_t i = 0; i < 4; ++i) {
-    const glm::vec3 along = corners[(i + 1) % 4] - corners[i];
-    if (glm::length(along) <= 0.0F) continue;
-    const glm::vec3 forward = half_m * glm::normalize(along);
-    glm::vec3 out(-forward.z, 0.0F, forward.x);
-    if (glm::dot(out, corners[i] - middle) < 0.0F) out = -out;
-    basin.add_beam(corners[i] + out - 2.0F * forward, corners[(i + 1) % 4] + out + 2.0F * forward, half_m, low_m,
-                   middle.y + kRimRise_m, kStone);
-  }
-  return basin;
-}
-
-meshes::SolidMesh water_hole(const pose::SurfaceSkeleton& surface) {
-  meshes::SolidMesh hole;
-  if (!is_open_sheet(surface)) return hole;
-  std::array<glm::vec3, 4> corners = corners_of(surface);
-  for (glm::vec3& corner : corners) corner.y = 0.0F;
-  hole.add_quad(corners, {});
-  return hole;
-}
-
 WaterRenderer::WaterRenderer(const pose::SurfaceSkeleton& surface)
     : surface_(&surface),
+      shore_(surface),
       points_(surface),
-      sheet_(meshes::layout_of(surface)),
-      basin_(water_basin(surface)),
-      hole_(water_hole(surface)),
-      program_(gl::link_program("water", gl::shaders::kWaterVert, gl::shaders::kWaterFrag)) {}
+      waves_(surface, shore_),
+      water_(gl::link_program("water", gl::shaders::kWaterVert, gl::shaders::kWaterFrag)),
+      bank_(gl::link_program("bank", gl::shaders::kBankVert, gl::shaders::kBankFrag)),
+      hole_(gl::link_program("hole", gl::shaders::kHoleVert, gl::shaders::kHoleFrag)),
+      reed_(gl::link_program("reed", gl::shaders::kReedVert, gl::shaders::kShadeFrag)),
+      ripples_(gl::make_ripple_texture()) {
+  for (const gl::GlProgram* program : {&water_, &bank_, &hole_, &reed_}) GroundMaps::set_samplers(*program);
+  if (!shore_.is_pond()) return;
+  make_sheet();
+  make_shore();
+}
+
+void WaterRenderer::make_sheet() {
+  // Cells that the bank hides are left out.
+  const std::size_t count = surface_->columns * surface_->rows;
+  std::vector<glm::vec3> rest;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::vec2 at_m(surface_->rest_x_m[i], surface_->rest_z_m[i]);
+    rest.emplace_back(at_m, shore_.bed_m(at_m));
+  }
+  const auto is_hidden = [&](std::uint32_t i) {
+    return shore_.out_m(glm::vec2(rest[i])) > kUnderBank_m * shore_.scale();
+  };
+  std::vector<std::uint32_t> triangles;
+  const std::vector<std::uint32_t> all = meshes::grid_triangles(meshes::layout_of(*surface_));
+  for (std::size_t i = 0; i < all.size(); i += 3) {
+    if (is_hidden(all[i]) && is_hidden(all[i + 1]) && is_hidden(all[i + 2])) continue;
+    triangles.insert(triangles.end(), {all[i], all[i + 1], all[i + 2]});
+  }
+  sheet_count_ = static_cast<GLsizei>(triangles.size());
+  glBindVertexArray(sheet_array_.name());
+  fill(GL_ELEMENT_ARRAY_BUFFER, sheet_indices_, triangles);
+  fill(GL_ARRAY_BUFFER, rest_buffer_, rest);
+  describe(0, 3, sizeof(glm::vec3), 0);
+  glBindBuffer(GL_ARRAY_BUFFER, height_buffer_.name());
+  describe(1, 1, sizeof(float), 0);
+
+  glBindTexture(GL_TEXTURE_2D, slopes_.name());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  gl::set_sampler(water_, "slopes", kSlopesUnit);
+  gl::set_sampler(water_, "ripples", kRipplesUnit);
+  gl::set_sampler(water_, "mirror", static_cast<GLint>(gl::kMirrorUnit));
+  // A point of the grid is in the middle of its texel.
+  const glm::vec2 cells(static_cast<float>(surface_->columns - 1), static_cast<float>(surface_->rows - 1));
+  const glm::vec2 texel_m = 2.0F * shore_.half_m() / cells;
+  const glm::vec2 along_m = shore_.along() * texel_m.x;
+  const glm::vec2 across_m = shore_.across() * texel_m.y;
+  const glm::vec2 corner_m = glm::vec2(rest[0]) - 0.5F * (along_m + across_m);
+  const glm::mat2 to_parts = glm::inverse(
+      glm::mat2(along_m * static_cast<float>(surface_->columns), across_m * static_cast<float>(surface_->rows)));
+  glUseProgram(water_.name());
+  glUniform4f(glGetUniformLocation(water_.name(), "grid_place"), corner_m.x, corner_m.y, std::min(texel_m.x, texel_m.y),
+              *mirror_m());
+  glUniform4f(glGetUniformLocation(water_.name(), "grid_axes"), to_parts[0].x, to_parts[0].y, to_parts[1].x,
+              to_parts[1].y);
+}
+
+void WaterRenderer::make_shore() {
+  const meshes::BankMesh mesh = meshes::bank_of(shore_);
+  hole_count_ = static_cast<GLsizei>(mesh.hole.size());
+  bank_count_ = static_cast<GLsizei>(mesh.bank.size());
+  fill(GL_ARRAY_BUFFER, bank_buffer_, mesh.vertices);
+  for (const bool is_hole : {true, false}) {
+    glBindVertexArray(is_hole ? hole_array_.name() : bank_array_.name());
+    fill(GL_ELEMENT_ARRAY_BUFFER, is_hole ? hole_indices_ : bank_indices_, is_hole ? mesh.hole : mesh.bank);
+    glBindBuffer(GL_ARRAY_BUFFER, bank_buffer_.name());
+    describe(0, 3, sizeof(meshes::BankVertex), offsetof(meshes::BankVertex, place_m));
+    describe(1, 3, sizeof(meshes::BankVertex), offsetof(meshes::BankVertex, normal));
+    describe(2, 1, sizeof(meshes::BankVertex), offsetof(meshes::BankVertex, edge));
+  }
+  glUseProgram(bank_.name());
+  glUniform1f(glGetUniformLocation(bank_.name(), "water_m"), *mirror_m());
+
+  const std::vector<meshes::Reed> reeds = meshes::reeds_of(shore_);
+  reed_count_ = static_cast<GLsizei>(reeds.size());
+  glBindVertexArray(reed_array_.name());
+  fill(GL_ARRAY_BUFFER, reed_buffer_, reeds);
+  describe(0, 4, sizeof(meshes::Reed), offsetof(meshes::Reed, root_m));
+  describe(1, 4, sizeof(meshes::Reed), offsetof(meshes::Reed, heading_rad));
+  for (const GLuint attribute : {0U, 1U}) glVertexAttribDivisor(attribute, 1);
+  glUseProgram(reed_.name());
+  glUniform1i(glGetUniformLocation(reed_.name(), "rings"), kReedRings);
+}
+
+std::optional<float> WaterRenderer::mirror_m() const {
+  if (!shore_.is_pond()) return std::nullopt;
+  return surface_->rest_y_m[0] - meshes::Shore::kSunk_m;
+}
 
 void WaterRenderer::move_to(const pose::Pose& pose) {
   const auto* const waves = std::get_if<pose::SurfacePose>(&pose);
   const pose::SurfaceKinematicsJob job{.skeleton = surface_, .pose = waves, .points = &points_};
-  if (job.run() == pose::SurfaceKinematicsJob::Problem::kNone) sheet_.move_to(std::as_const(points_).data());
+  if (!shore_.is_pond() || job.run() != pose::SurfaceKinematicsJob::Problem::kNone) return;
+  const std::size_t count = surface_->columns * surface_->rows;
+  waves_.move_to(std::as_const(points_).data().data() + count);  // all x, then all y
+  gl::stream_to(GL_ARRAY_BUFFER, height_buffer_, std::span<const float>(waves_.heights_m()));
+  glActiveTexture(GL_TEXTURE0 + kSlopesUnit);
+  glBindTexture(GL_TEXTURE_2D, slopes_.name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB16F, static_cast<GLsizei>(surface_->columns),
+               static_cast<GLsizei>(surface_->rows), 0, GL_RGB, GL_FLOAT, waves_.slopes().data());
+  gl::count_upload(waves_.slopes().size() * sizeof(float));
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glActiveTexture(GL_TEXTURE0);
+}
+
+void WaterRenderer::draw_reeds() const {
+  glUseProgram(reed_.name());
+  glBindVertexArray(reed_array_.name());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kReedRings + 1), reed_count_);
 }
 
 void WaterRenderer::draw(const meshes::View&) {
-  glUseProgram(program_.name());
-  sheet_.draw();
-  basin_.draw();
+  if (!shore_.is_pond()) return;
+  draw_reeds();
+  glUseProgram(bank_.name());
+  glBindVertexArray(bank_array_.name());
+  glDrawElements(GL_TRIANGLES, bank_count_, GL_UNSIGNED_INT, nullptr);
+
+  glUseProgram(water_.name());
+  glActiveTexture(GL_TEXTURE0 + kSlopesUnit);
+  glBindTexture(GL_TEXTURE_2D, slopes_.name());
+  glActiveTexture(GL_TEXTURE0 + kRipplesUnit);
+  glBindTexture(GL_TEXTURE_2D, ripples_.name());
+  glActiveTexture(GL_TEXTURE0);
+  glBindVertexArray(sheet_array_.name());
+  glDrawElements(GL_TRIANGLES, sheet_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+void WaterRenderer::draw_mirrored(const meshes::View&) {
+  if (shore_.is_pond()) draw_reeds();
 }
 
 void WaterRenderer::draw_hole() {
-  hole_.draw();
+  if (!shore_.is_pond()) return;
+  glUseProgram(hole_.name());
+  glBindVertexArray(hole_array_.name());
+  glDrawElements(GL_TRIANGLES, hole_count_, GL_UNSIGNED_INT, nullptr);
 }
 
 }  // namespace yuragi::viewer::looks

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "engine/pose/point_kinematics.hpp"
-#include "viewer/looks/grid_sheet.hpp"
+#include "viewer/gl/gl.hpp"
 #include "viewer/looks/scene_renderer.hpp"
-#include "viewer/looks/solids.hpp"
+#include "viewer/meshes/shore.hpp"
 
 namespace yuragi::viewer::looks {
 
-/// Draws a surface as water in a stone basin, with the evening sky in it.
+/// Draws a surface as a pond with a natural shore, in which sky and things are mirrored.
 class WaterRenderer : public SceneRenderer {
  public:
   /// `surface` must outlive this.
@@ -16,18 +16,25 @@ class WaterRenderer : public SceneRenderer {
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
   void draw_hole() override;
+  std::optional<float> mirror_m() const override;
+  /// The reeds.
+  void draw_mirrored(const meshes::View& view) override;
 
  private:
-  const pose::SurfaceSkeleton* surface_;
-  pose::PointPositions points_;
-  GridSheet sheet_;
-  Solids basin_;
-  Solids hole_;
-  gl::GlProgram program_;
-};
+  void make_sheet();
+  void make_shore();
+  void draw_reeds() const;
 
-/// A rim of stone around the surface's four corners, from below the ground; and the ground that it takes away. Pure.
-meshes::SolidMesh water_basin(const pose::SurfaceSkeleton& surface);
-meshes::SolidMesh water_hole(const pose::SurfaceSkeleton& surface);
+  const pose::SurfaceSkeleton* surface_;
+  meshes::Shore shore_;
+  pose::PointPositions points_;
+  meshes::WaveSlopes waves_;
+  GLsizei sheet_count_ = 0, hole_count_ = 0, bank_count_ = 0, reed_count_ = 0;
+  gl::GlProgram water_, bank_, hole_, reed_;
+  gl::GlTexture slopes_, ripples_;
+  gl::GlVertexArray sheet_array_, hole_array_, bank_array_, reed_array_;
+  gl::GlBuffer sheet_indices_, rest_buffer_, height_buffer_;
+  gl::GlBuffer bank_buffer_, hole_indices_, bank_indices_, reed_buffer_;
+};
 
 }  // namespace yuragi::viewer::looks

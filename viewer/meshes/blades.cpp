@@ -16,6 +16,8 @@ constexpr float kWidthPerSpacing = 0.26F;
 constexpr float kMinWidthPerLength = 0.012F;
 constexpr float kMaxWidthPerLength = 0.055F;
 constexpr float kCullMargin = 1.3F;  // of a blade's length, around its root
+/// The sine of the angle below a body's horizon from which on not even the tips of its hairs are seen.
+constexpr float kBehind = 0.5F;
 
 /// A few broad waves over the ground, from -1 to 1: the meadow's patches.
 float patch(float x_m, float z_m) {
@@ -48,12 +50,12 @@ std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton) {
     Blade& blade = blades[i];
     blade.root_m = {skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]};
     blade.strand = static_cast<std::uint32_t>(i);
-    blade.facing_rad = static_cast<float>(first * 2.0 * kPi);
 
-    const float length_m = skeleton.link_length_m[i] * static_cast<float>(skeleton.links_per_strand);
-    blade.width_m =
-        std::clamp(kWidthPerSpacing * spacing_m, kMinWidthPerLength * length_m, kMaxWidthPerLength * length_m) *
-        static_cast<float>(0.7 + 0.6 * second);
+    blade.facing_rad = static_cast<float>(first * 2.0 * kPi);
+    blade.length_m = skeleton.link_length_m[i] * static_cast<float>(skeleton.links_per_strand);
+    blade.width_m = std::clamp(kWidthPerSpacing * spacing_m, kMinWidthPerLength * blade.length_m,
+                               kMaxWidthPerLength * blade.length_m) *
+                    static_cast<float>(0.7 + 0.6 * second);
 
     const auto spread = static_cast<float>(third - 0.5);
     const float light = static_cast<float>(0.8 + 0.4 * fourth);
@@ -64,32 +66,42 @@ std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton) {
   return blades;
 }
 
-BladeSorter::BladeSorter(const pose::StrandSkeleton& skeleton) : blades_(blades_of(skeleton)) {
+BladeSorter::BladeSorter(const pose::StrandSkeleton& skeleton)
+    : blades_(blades_of(skeleton)), body_(body_of(skeleton)) {
   const std::size_t links = skeleton.links_per_strand;
-  for (std::size_t i = 0; i < blades_.size(); ++i) {
-    length_m_.push_back(skeleton.link_length_m[i] * static_cast<float>(links));
+  for (std::size_t rings = links; rings >= std::min(links, kMinRings) && rings > 0; --rings) {
+    levels_.push_back({rings, false, {}});
   }
-  for (std::size_t rings = links; rings >= std::min(links, kMinRings) && rings > 0; --rings)
-    levels_.push_back({rings, {}});
+  levels_.push_back({std::min(links, kFarRings), true, {}});
 }
 
 void BladeSorter::sort(const View& view) {
   for (DetailLevel& level : levels_) level.blades.clear();
 
   const std::array<glm::vec4, 5> planes = side_planes(view);
+  const std::size_t most = levels_.front().rings;
+  const std::size_t fewest = levels_[levels_.size() - 2].rings;
   for (std::size_t i = 0; i < blades_.size(); ++i) {
     const Blade& blade = blades_[i];
     const glm::vec4 root(blade.root_m[0], blade.root_m[1], blade.root_m[2], 1.0F);
-    const float reach_m = kCullMargin * length_m_[i];
+    const float reach_m = kCullMargin * blade.length_m;
     if (std::any_of(planes.begin(), planes.end(),
                     [&](const glm::vec4& plane) { return glm::dot(plane, root) < -reach_m; })) {
       continue;
     }
-    const float distance_m = glm::length(glm::vec3(view.eye_m) - glm::vec3(root));
-    const float height_px = length_m_[i] / (view.eye_m.w * std::max(distance_m, 1e-3F));
+    const glm::vec3 to_eye = glm::vec3(view.eye_m) - glm::vec3(root);
+    const float distance_m = std::max(glm::length(to_eye), 1e-3F);
+    if (body_.is_known) {
+      const glm::vec3 out = body_.shape * (glm::vec3(root) - body_.middle_m);
+      if (glm::dot(out, to_eye) < -kBehind * distance_m * glm::length(out)) continue;
+    }
+    const float height_px = blade.length_m / (view.eye_m.w * distance_m);
+    if (height_px < kFarPx) {
+      if (height_px >= kTinyPx || i % 2 == 0) levels_.back().blades.push_back(blade);
+      continue;
+    }
     const auto rings = static_cast<std::size_t>(std::min(height_px / kRingPx, 1e6F));
-    levels_[levels_.front().rings - std::clamp(rings, levels_.back().rings, levels_.front().rings)].blades.push_back(
-        blade);
+    levels_[most - std::clamp(rings, fewest, most)].blades.push_back(blade);
   }
 }
 

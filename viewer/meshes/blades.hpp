@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/pose/skeleton.hpp"
+#include "viewer/meshes/body.hpp"
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/view.hpp"
 
@@ -20,6 +21,7 @@ struct Blade {
   std::array<float, 3> tint{};  ///< of its tip, linear light
   float facing_rad = 0.0F;      ///< bearing of its flat side
   std::uint32_t strand = 0;
+  float length_m = 0.0F;
 };
 
 /// A blade (or hair) for each strand: wide enough for the strands' spacing to cover the ground, tinted as a coat is, by
@@ -29,15 +31,20 @@ std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton);
 /// Blades of one level of detail.
 struct DetailLevel {
   std::size_t rings = 1;      ///< of vertices above the root; at most the links
+  bool is_far = false;        ///< they are so small that one ribbon a strand is enough
   std::vector<Blade> blades;  ///< in view
 };
 
 /// Sorts blades by how large they are in the picture: a large one gets a ring of vertices a link, a small one fewer.
-/// Blades outside the picture are left out. Pure; does not allocate once it has seen all blades in each level.
+/// Blades outside the picture are left out, those that a body hides (body.hpp), and every second very small one. Pure;
+/// does not allocate once it has seen all blades in each level.
 class BladeSorter {
  public:
   static constexpr float kRingPx = 22.0F;      ///< a ring for each of so many pixels of a blade's height
   static constexpr std::size_t kMinRings = 3;  ///< where there are as many links
+  static constexpr float kFarPx = 20.0F;       ///< smaller ones are far; hair.vert.glsl has the same number
+  static constexpr float kTinyPx = 8.0F;       ///< of smaller ones, every second is drawn
+  static constexpr std::size_t kFarRings = 2;
 
   explicit BladeSorter(const pose::StrandSkeleton& skeleton);
 
@@ -48,7 +55,7 @@ class BladeSorter {
 
  private:
   std::vector<Blade> blades_;
-  std::vector<float> length_m_;
+  Body body_;
   std::vector<DetailLevel> levels_;
 };
 

@@ -115,12 +115,25 @@ void GrowthMap::make(std::span<const Standing> things) {
         const glm::vec2 out =
             glm::max(glm::max(glm::vec2(box.low_m.x, box.low_m.z) - at, at - glm::vec2(box.high_m.x, box.high_m.z)),
                      glm::vec2(0.0F));
-        const float out_m = glm::length(out);
-        float growth = kLawn + (1.0F - kLawn) * smooth((out_m - kMargin_m) / kSlope_m);
-        if ((is_water && out_m <= kShore_m) || (thing.floor && is_on(*thing.floor, at, kFloorEdge_m))) {
-          float& water = water_[row * kTexels + column];
-          water = std::max(water, thing.opacity);
+        float out_m = glm::length(out);
+        float is_taken =
+            (is_water && out_m <= kShore_m) || (thing.floor && is_on(*thing.floor, at, kFloorEdge_m)) ? 1.0F : 0.0F;
+        if (is_water && thing.shore != nullptr) {
+          // Fewer and fewer blades down the bank. A shore is finer than a texel, but not than what lies between two.
+          out_m = thing.shore->out_m(at) - 0.6F * thing.shore->bank_m(at);
+          is_taken = std::clamp(0.4F - out_m / kTexel_m, 0.0F, 1.0F);
         }
+        float growth = kLawn + (1.0F - kLawn) * smooth((out_m - kMargin_m) / kSlope_m);
+        if (thing.kind == Standing::Kind::kFur) {
+          // An animal lies in the tall grass: its body is round.
+          const glm::vec2 half_m =
+              glm::max(0.5F * glm::vec2(box.high_m.x - box.low_m.x, box.high_m.z - box.low_m.z), 0.1F);
+          const glm::vec2 off_m = at - glm::vec2(box.low_m.x, box.low_m.z) - half_m;
+          growth = kLawn + (1.0F - kLawn) *
+                               smooth((glm::length(off_m / half_m) - 0.7F) * std::min(half_m.x, half_m.y) / kTexel_m);
+        }
+        float& water = water_[row * kTexels + column];
+        water = std::max(water, is_taken * thing.opacity);
         float& there = growth_[row * kTexels + column];
         there = std::min(there, 1.0F + thing.opacity * (growth - 1.0F));
       }

@@ -12,6 +12,7 @@
 #include "engine/pose/skeleton.hpp"
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/floor.hpp"
+#include "viewer/meshes/shore.hpp"
 
 namespace yuragi::viewer::meshes {
 
@@ -48,17 +49,19 @@ BendGrid bend_grid_of(const pose::StrandSkeleton& skeleton);
 
 /// What stands on the ground, with how much of it is to be seen (0 to 1).
 struct Standing {
-  enum class Kind : std::uint8_t { kGrass, kWater, kOther };
+  enum class Kind : std::uint8_t { kGrass, kWater, kFur, kOther };
   Kind kind = Kind::kOther;
   Bounds bounds;
   float opacity = 1.0F;
   const pose::StrandSkeleton* blades = nullptr;  ///< of grass
   std::optional<Floor> floor = std::nullopt;     ///< that it stands on
+  const Shore* shore = nullptr;                  ///< of water; null: it fills its box
 };
 
 /// How tall grass grows, and where the ground is taken, by streamed blades: a square map around the middle of the
-/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things. Where there is
-/// water or a floor no blade of the viewer's own stands, either. Beyond the map it is as on its edge.
+/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things, but grows up to
+/// fur. Where there is water or a floor no blade of the viewer's own stands, either. Beyond the map it is as on its
+/// edge.
 class GrowthMap {
  public:
   static constexpr std::size_t kTexels = 256;  ///< a side

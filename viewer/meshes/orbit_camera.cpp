@@ -28,6 +28,13 @@ constexpr double kFilled = 0.95;         // of the picture
 constexpr double kUsualAspect = 16.0 / 9.0;
 constexpr double kMinFieldOfView_deg = 2.0;
 constexpr double kMaxFieldOfView_deg = 120.0;
+constexpr double kShorePitch_deg = 11.0;
+constexpr double kShoreEye_m = 0.85;
+constexpr float kFromShore = 0.1F;
+constexpr double kBesidePitch_deg = 5.0;
+constexpr double kBesideTurn_deg = 20.0;
+constexpr double kBeside = 0.45;        // of half the depth, from the side
+constexpr double kBesideTarget = 0.66;  // of the height
 
 glm::dvec3 direction(const CameraPlace& place) {
   const double heading = glm::radians(place.heading_deg);
@@ -182,6 +189,37 @@ CameraPlace place_around(const Bounds& bounds, double aspect) {
     place.pitch_deg = std::max(glm::degrees(std::asin(sine)), -kLowestHorizon * up_deg);
   }
   place.distance_m = distance_to_see(bounds, place, aspect);
+  return limited(place);
+}
+
+CameraPlace place_on_shore(const Shore& shore) {
+  // Across the longer side, from where the evening sun is not behind.
+  const bool is_along = shore.half_m().x >= shore.half_m().y;
+  glm::dvec2 ahead(is_along ? shore.along() : shore.across());
+  if (ahead.x - ahead.y > 0.0) ahead = -ahead;  // toward the south-west
+  const glm::dvec2 half_m(shore.half_m());
+  const double bearing_rad = std::atan2(-glm::dot(ahead, glm::dvec2(shore.across())) / half_m.y,
+                                        -glm::dot(ahead, glm::dvec2(shore.along())) / half_m.x);
+  const glm::dvec2 eye_m(shore.at(static_cast<float>(bearing_rad), kFromShore * shore.scale()));
+  const double height_m = kShoreEye_m * static_cast<double>(shore.scale());
+  CameraPlace place;
+  place.heading_deg = glm::degrees(std::atan2(ahead.x, -ahead.y));
+  place.pitch_deg = kShorePitch_deg;
+  place.distance_m = 0.8 * height_m / std::sin(glm::radians(kShorePitch_deg));
+  place.target_m = glm::dvec3(eye_m.x, height_m, eye_m.y) + direction(place) * place.distance_m;
+  return limited(place);
+}
+
+CameraPlace place_beside(const Bounds& bounds) {
+  const glm::dvec3 size_m = glm::dvec3(bounds.high_m) - glm::dvec3(bounds.low_m);
+  const bool is_long_in_x = size_m.x >= size_m.z;
+  const double half_depth_m = 0.5 * std::min(size_m.x, size_m.z);
+  CameraPlace place;
+  place.heading_deg = is_long_in_x ? 180.0 - kBesideTurn_deg : 270.0 - kBesideTurn_deg;
+  place.pitch_deg = kBesidePitch_deg;
+  place.distance_m = kBeside * half_depth_m + 0.9 * size_m.y;
+  place.target_m = glm::dvec3(bounds.low_m) + 0.5 * size_m;
+  place.target_m.y = static_cast<double>(bounds.low_m.y) + kBesideTarget * size_m.y;
   return limited(place);
 }
 

@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 
 #include "viewer/meshes/bounds.hpp"
+#include "viewer/meshes/shore.hpp"
 
 namespace yuragi::viewer::meshes {
 
@@ -81,5 +82,13 @@ double distance_to_see(const Bounds& bounds, const CameraPlace& place, double as
 /// of what stands is in a picture of width / height `aspect`, before the sky; what is flat, as water, fills the picture
 /// from side to side.
 CameraPlace place_around(const Bounds& bounds, double aspect);
+
+/// A low place at the near shore of a pond, from where the water goes from the picture's lower edge to the far shore,
+/// and the horizon is in the picture: toward the evening sun's side.
+CameraPlace place_on_shore(const Shore& shore);
+
+/// A place so close to the broad side of something that bulges out of the ground that it fills the picture's lower part
+/// from side to side, lit from the side by the evening sun.
+CameraPlace place_beside(const Bounds& bounds);
 
 }  // namespace yuragi::viewer::meshes

@@ -39,6 +39,22 @@ bool is_in_view(const std::array<glm::vec4, 5>& planes, const glm::vec3& low_m, 
   });
 }
 
+View mirrored(const View& view, float height_m, float pixels) {
+  glm::mat4 mirror(1.0F);
+  mirror[1].y = -1.0F;
+  mirror[3].y = 2.0F * height_m;
+  glm::mat4 margin(1.0F);
+  margin[0].x = margin[1].y = 1.0F / kMirrorMargin;
+  View image = view;
+  image.to_clip = margin * view.to_clip * mirror;
+  image.eye_m.y = 2.0F * height_m - view.eye_m.y;
+  image.eye_m.w *= kMirrorMargin / pixels;
+  image.right.w *= kMirrorMargin;
+  image.up.w *= kMirrorMargin;
+  for (glm::vec4* axis : {&image.right, &image.up, &image.forward}) axis->y = -axis->y;
+  return image;
+}
+
 View laid_flat(const View& view, const glm::vec3& to_sun) {
   // Each point moves along the ray until its height is 0.
   glm::mat4 flatten(1.0F);

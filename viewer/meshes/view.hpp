@@ -34,6 +34,12 @@ std::array<glm::vec4, 5> side_planes(const View& view);
 /// May a box be in view, as far as these planes say?
 bool is_in_view(const std::array<glm::vec4, 5>& planes, const glm::vec3& low_m, const glm::vec3& high_m);
 
+/// The same view of what is seen in a level mirror at this height, with a margin all around: a thing is where its image
+/// in the mirror is in `view`, its distance from the middle divided by kMirrorMargin. `pixels`: for each pixel of
+/// `view`.
+inline constexpr float kMirrorMargin = 1.25F;  // water.frag.glsl has the same number
+View mirrored(const View& view, float height_m, float pixels);
+
 /// The same view of everything projected onto the ground along the rays from `to_sun`, which is above the horizon: of
 /// its shadows.
 View laid_flat(const View& view, const glm::vec3& to_sun);

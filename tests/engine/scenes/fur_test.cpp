@@ -28,15 +28,16 @@ TEST(FurTest, RootsAreOnTheBodyAndHairsLeaveItOutward) {
   const Coat coat = make_coat({.seed = 4});
   const pose::StrandSkeleton& hairs = coat.skeleton;
   for (std::size_t i = 0; i < hairs.strand_count; ++i) {
-    const double x = static_cast<double>(hairs.root_x_m[i]) / 0.8;
-    const double y = (static_cast<double>(hairs.root_y_m[i]) - 0.4) / 0.4;
-    const double z = static_cast<double>(hairs.root_z_m[i]) / 0.35;
+    const double x = static_cast<double>(hairs.root_x_m[i]) / 1.5;
+    const double y = static_cast<double>(hairs.root_y_m[i]) / 0.75;
+    const double z = static_cast<double>(hairs.root_z_m[i]) / 1.0;
     EXPECT_NEAR(x * x + y * y + z * z, 1.0, 1e-5);
+    EXPECT_GE(hairs.root_y_m[i], 0.0F);  // none grows under the ground
 
-    const double length = std::sqrt(x * x / 0.64 + y * y / 0.16 + z * z / 0.1225);
+    const double length = std::sqrt(x * x / 2.25 + y * y / 0.5625 + z * z);
     const double outward =
-        (static_cast<double>(hairs.rest_x[i]) * x / 0.8 + static_cast<double>(hairs.rest_y[i]) * y / 0.4 +
-         static_cast<double>(hairs.rest_z[i]) * z / 0.35) /
+        (static_cast<double>(hairs.rest_x[i]) * x / 1.5 + static_cast<double>(hairs.rest_y[i]) * y / 0.75 +
+         static_cast<double>(hairs.rest_z[i]) * z) /
         length;
     EXPECT_GT(outward, 0.08);  // cos 85 deg
     const double rest = static_cast<double>(std::hypot(hairs.rest_x[i], hairs.rest_y[i], hairs.rest_z[i]));
@@ -95,12 +96,12 @@ TEST(FurTest, StrokesRunOverTheRidgeWithoutASeam) {
   for (int tick = 0; tick < 600; ++tick) scene->tick(wind::WindVector{0.0, -8.0}, 1.0 / 60.0);
   const auto& pose = std::get<pose::StrandPose>(scene->pose());
   double largest_rad = 0.0;
-  // The first and the last hair of a ring stand to either side of the ridge.
+  // Two hairs in the middle of a row stand to either side of the ridge.
   for (std::size_t ring = 40; ring < 160; ++ring) {
-    const std::size_t first = 150 * ring;
+    const std::size_t first = 150 * ring + 74;
     largest_rad = std::max(
-        largest_rad, static_cast<double>(std::hypot(pose.bend_east_rad[first] - pose.bend_east_rad[first + 149],
-                                                    pose.bend_south_rad[first] - pose.bend_south_rad[first + 149])));
+        largest_rad, static_cast<double>(std::hypot(pose.bend_east_rad[first] - pose.bend_east_rad[first + 1],
+                                                    pose.bend_south_rad[first] - pose.bend_south_rad[first + 1])));
   }
   EXPECT_LT(largest_rad, 12.0 * kRadPerDeg);
 }
@@ -115,7 +116,7 @@ TEST(FurTest, PartingsOpenInTheWind) {
     // Near the ridge, where the skin is level and the bend would be the same.
     std::size_t count = 0;
     for (std::size_t ring = 70; ring < 130; ++ring) {
-      for (std::size_t hair = 0; hair < 8; ++hair, ++count) {
+      for (std::size_t hair = 71; hair < 79; ++hair, ++count) {
         const auto bend = static_cast<double>(pose.bend_south_rad[150 * ring + hair]);
         sum += bend;
         squares += bend * bend;

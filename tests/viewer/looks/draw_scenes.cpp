@@ -1,14 +1,18 @@
 // Pictures of every scene of the engine, alone: calm, in a breeze, in a storm; without a daemon.
 //
-//   draw_scenes [--look=KEY=VALUE...] [--camera=HEADING,PITCH,DISTANCE[,X,Y,Z]] [--weather=NAME] FOLDER
+//   draw_scenes [--look=KEY=VALUE...] [--camera=HEADING,PITCH,DISTANCE[,X,Y,Z]] [--weather=NAME] [--wind=M_S] FOLDER
 //               [WIDTHxHEIGHT [KIND[,PARAMETER=VALUE...]...]]
 //
-// --camera: degrees and metres, around the scene's middle or that place; --weather: that one alone.
+// --camera: degrees and metres, around the scene's middle or that place; --weather: that one alone; --wind: this speed
+// alone.
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -69,6 +73,7 @@ int draw_scenes(std::vector<std::string> words) {
   std::vector<std::string> edits;
   std::string wanted_camera;
   std::string wanted_weather;
+  std::vector<Weather> weathers{{"calm", 0.0}, {"breeze", 4.0}, {"storm", 18.0}};
   while (!words.empty() && words.front().starts_with("--")) {
     const std::string value = words.front().substr(std::min(words.front().find('='), words.front().size() - 1) + 1);
     if (words.front().starts_with("--look=")) {
@@ -77,6 +82,8 @@ int draw_scenes(std::vector<std::string> words) {
       wanted_camera = value;
     } else if (words.front().starts_with("--weather=")) {
       wanted_weather = value;
+    } else if (words.front().starts_with("--wind=")) {
+      weathers = {{"wind", std::strtod(value.c_str(), nullptr)}};
     } else {
       return 64;
     }
@@ -101,14 +108,19 @@ int draw_scenes(std::vector<std::string> words) {
   stage.set_quality(look.quality);
   viewer::gl::RenderTarget target(width_px, height_px, 4);
   for (const std::string& kind : kinds) {
-    for (const auto& [name, speed_m_s] : {Weather{"calm", 0.0}, Weather{"breeze", 4.0}, Weather{"storm", 18.0}}) {
+    for (const auto& [name, speed_m_s] : weathers) {
       if (!wanted_weather.empty() && wanted_weather != name) continue;
       const std::unique_ptr<scenes::Scene> scene = made(kind);
       const std::vector<wire::SceneModel> models{{kind, kind.substr(0, kind.find(',')), scene->skeleton()}};
       for (int i = 0; i < kSettlingTicks; ++i) scene->tick(wind::wind_from(speed_m_s, kWindFrom_deg), kTick_s);
       stage.set_scenes(models);
       viewer::meshes::OrbitCamera camera;
-      camera.frame(camera_place(wanted_camera, stage.home(static_cast<double>(width_px) / height_px)));
+      viewer::meshes::CameraPlace place = stage.home(static_cast<double>(width_px) / height_px);
+      if (!wanted_camera.empty()) {
+        const viewer::meshes::Bounds box = stage.bounds();
+        place.target_m = 0.5 * (glm::dvec3(box.low_m) + glm::dvec3(box.high_m));
+      }
+      camera.frame(camera_place(wanted_camera, place));
       viewer::stream::PoseMoment moment = viewer::stream::rest_moment(models);
       moment.poses[0] = scene->pose();
       stage.draw(moment, camera, target);

@@ -325,6 +325,7 @@ TEST_F(StageTest, AClothHasTheColorsAndThePictureThatAreWanted) {
 TEST_F(StageTest, OpensTheGroundOverWater) {
   // Troughs go below the ground, and are seen: no turf in the middle of the pond.
   show({test_model("ripple")});
+  camera_.frame({{0.0, 0.0, 0.0}, 200.0, 60.0, 6.0});
   const Pixels calm = draw(0.0, 1.0F);
   const Pixels storm = draw(1.0, 1.0F);
   std::size_t green = 0;

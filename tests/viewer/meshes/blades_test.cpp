@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/test_meadow.hpp"
+#include "tests/viewer/test_models.hpp"
 
 namespace yuragi::viewer::meshes {
 namespace {
@@ -68,13 +69,28 @@ TEST_F(BladesTest, AreLeftOutBehindTheCamera) {
 TEST_F(BladesTest, AreDrawnMoreFinelyTheNearerTheyAre) {
   sorter_.sort(view({{0.0, 0.5, 0.0}, 0.0, 10.0, 3.0}));
   EXPECT_EQ(sorter_.levels().front().rings, strands_.links_per_strand);
-  EXPECT_EQ(sorter_.levels().back().rings, BladeSorter::kMinRings);
+  EXPECT_EQ(sorter_.levels().back().rings, BladeSorter::kFarRings);
+  EXPECT_TRUE(sorter_.levels().back().is_far);
   EXPECT_FALSE(sorter_.levels().front().blades.empty());
 
   // From afar, all with few.
-  sorter_.sort(view({{0.0, 0.5, 0.0}, 0.0, 30.0, 100.0}));
+  sorter_.sort(view({{0.0, 0.5, 0.0}, 0.0, 30.0, 150.0}));
   EXPECT_TRUE(sorter_.levels().front().blades.empty());
-  EXPECT_EQ(sorter_.levels().back().blades.size(), strands_.strand_count);
+  EXPECT_EQ(sorter_.levels().back().blades.size(), (strands_.strand_count + 1) / 2);
+  for (std::size_t i = 0; i + 1 < sorter_.levels().size(); ++i) EXPECT_TRUE(sorter_.levels()[i].blades.empty());
+}
+
+TEST_F(BladesTest, AreLeftOutBehindTheBodyThatTheyStandOn) {
+  const auto coat = std::get<pose::StrandSkeleton>(test_model("fur").skeleton);
+  BladeSorter sorter(coat);
+  sorter.sort(view({{0.0, 0.4, 0.0}, 0.0, 5.0, 4.0}));  // looks north
+  std::size_t drawn = 0;
+  for (const DetailLevel& level : sorter.levels()) {
+    drawn += level.blades.size();
+    for (const Blade& blade : level.blades) EXPECT_GT(blade.root_m[2], -0.36F);
+  }
+  EXPECT_GT(drawn, coat.strand_count / 2);
+  EXPECT_LT(drawn, coat.strand_count * 9 / 10);
 }
 
 TEST(Blades, OfOneLinkAndOfNoStrandsAreNoTrouble) {
@@ -84,8 +100,8 @@ TEST(Blades, OfOneLinkAndOfNoStrandsAreNoTrouble) {
   OrbitCamera camera;
   camera.frame(place_across(bounds_of(empty)));
   none.sort(view_of(camera, 100, 100));
-  ASSERT_EQ(none.levels().size(), 1U);
-  EXPECT_TRUE(none.levels()[0].blades.empty());
+  ASSERT_EQ(none.levels().size(), 2U);
+  for (const DetailLevel& level : none.levels()) EXPECT_TRUE(level.blades.empty());
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/viewer/test_models.hpp"
+
 namespace yuragi::viewer::meshes {
 namespace {
 
@@ -152,6 +154,32 @@ TEST(PlaceAcross, HasTheWholeOfThingsOfAnySizeInFrontOfItFromALowPlace) {
     EXPECT_LT(std::abs(middle.y), middle.w);
     EXPECT_LT(middle.z, middle.w);
   }
+}
+
+TEST(PlaceOnShore, StandsAtTheWaterAndLooksOverItToTheHorizon) {
+  const Shore shore(std::get<pose::SurfaceSkeleton>(test_model("ripple").skeleton));
+  OrbitCamera camera;
+  camera.frame(place_on_shore(shore));
+  const glm::dvec3 eye_m = camera.eye_m();
+  EXPECT_NEAR(static_cast<double>(shore.out_m({eye_m.x, eye_m.z})), 0.1, 0.1);
+  EXPECT_GT(eye_m.y, 0.3);
+  EXPECT_LT(eye_m.y, 1.5);
+  // Ahead is the middle of the water, and the horizon is in the picture.
+  const glm::dvec2 ahead =
+      glm::normalize(glm::dvec2(camera.place().target_m.x, camera.place().target_m.z) - glm::dvec2(eye_m.x, eye_m.z));
+  const glm::dvec2 to_middle = glm::normalize(glm::dvec2(shore.middle_m()) - glm::dvec2(eye_m.x, eye_m.z));
+  EXPECT_GT(glm::dot(ahead, to_middle), 0.97);
+  EXPECT_LT(camera.place().pitch_deg, 0.5 * OrbitCamera::kFieldOfView_deg);
+}
+
+TEST(PlaceBeside, LooksUpToTheRidgeFromOutside) {
+  const Bounds back{{-1.5F, 0.0F, -1.0F}, {1.5F, 0.8F, 1.0F}};
+  OrbitCamera camera;
+  camera.frame(place_beside(back));
+  const glm::dvec3 eye_m = camera.eye_m();
+  EXPECT_LT(eye_m.y, 0.8);
+  EXPECT_GT(std::abs(eye_m.z), 0.9);
+  EXPECT_LT(std::abs(eye_m.x), 0.8);
 }
 
 TEST(PlaceAround, HasEveryCornerInThePictureAndLooksAtTheBroadSide) {

@@ -47,6 +47,23 @@ TEST(ShadowView, HasAShadowBehindWhatCastsIt) {
   EXPECT_GT(shadow.z, caster.z);
 }
 
+TEST(Mirrored, HasEachThingWhereItsImageIsInThePicture) {
+  OrbitCamera camera;
+  camera.frame({{1.0, 0.5, -2.0}, 210.0, 12.0, 6.0});
+  const View view = view_of(camera, 640, 360);
+  const View image = mirrored(view, -0.12F, 0.5F);
+  for (const glm::vec3 place_m : {glm::vec3(0.0F, 2.0F, 0.0F), glm::vec3(-1.0F, 0.4F, 1.5F)}) {
+    const glm::vec4 seen = image.to_clip * glm::vec4(place_m, 1.0F);
+    const glm::vec4 expected = view.to_clip * glm::vec4(place_m.x, -0.24F - place_m.y, place_m.z, 1.0F);
+    EXPECT_NEAR(seen.x / seen.w, expected.x / expected.w / kMirrorMargin, 1e-4F);
+    EXPECT_NEAR(seen.y / seen.w, expected.y / expected.w / kMirrorMargin, 1e-4F);
+  }
+  EXPECT_NEAR(image.eye_m.y, -0.24F - view.eye_m.y, 1e-5F);
+  // A ray that goes down to the water in the picture goes up in the mirror.
+  EXPECT_NEAR(image.forward.y, -view.forward.y, 1e-6F);
+  EXPECT_GT(image.eye_m.w, 2.0F * view.eye_m.w);
+}
+
 TEST(ShadowView, IsFiniteForABoxOfNothing) {
   const View view = shadow_view({}, {0.0F, 1.0F, 0.0F}, 64);
   for (int column = 0; column < 4; ++column) EXPECT_TRUE(std::isfinite(view.to_clip[column].x));

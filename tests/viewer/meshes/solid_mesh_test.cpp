@@ -5,7 +5,6 @@
 
 #include "tests/viewer/test_models.hpp"
 #include "viewer/looks/flame_renderer.hpp"
-#include "viewer/looks/water_renderer.hpp"
 
 namespace yuragi::viewer::meshes {
 namespace {
@@ -58,22 +57,6 @@ TEST(SolidMesh, PiecesOfNoSizeAreLeftOut) {
   mesh.add_beam({1, 1, 1}, {1, 2, 1}, 0.1F, 0.0F, 1.0F, {});
   mesh.add_quad({glm::vec3(0), glm::vec3(0), glm::vec3(0), glm::vec3(0)}, {});
   EXPECT_TRUE(mesh.vertices().empty());
-}
-
-TEST(WaterBasin, StandsAroundTheWaterAndOpensTheGroundUnderIt) {
-  const auto water = std::get<pose::SurfaceSkeleton>(test_model("ripple").skeleton);
-  const SolidMesh basin = looks::water_basin(water);
-  expect_sound(basin);
-  for (const SolidVertex& vertex : basin.vertices()) {
-    const float reach_m = std::max(std::abs(vertex.place_m.x), std::abs(vertex.place_m.z));
-    EXPECT_GT(reach_m, 2.5F - 1e-3F);
-    EXPECT_LT(reach_m, 3.0F);
-  }
-  const SolidMesh hole = looks::water_hole(water);
-  ASSERT_EQ(hole.vertices().size(), 4U);
-  for (const SolidVertex& vertex : hole.vertices()) EXPECT_EQ(vertex.place_m.y, 0.0F);
-  EXPECT_TRUE(looks::water_basin({}).vertices().empty());
-  EXPECT_TRUE(looks::water_hole({}).vertices().empty());
 }
 
 TEST(FlameBowl, IsUnderTheFlame) {

@@ -238,6 +238,15 @@ TEST(GrowthMapTest, IsShortAroundThingsTallElsewhereAndTakenByWater) {
   }
 }
 
+TEST(GrowthMapTest, IsTallUpToFur) {
+  GrowthMap map;
+  const Bounds box{{-1.5F, 0.0F, -1.0F}, {1.5F, 0.7F, 1.0F}};
+  map.make(std::vector<Standing>{{.kind = Standing::Kind::kFur, .bounds = box}});
+  EXPECT_LT(map.growth_at(0.0F, 0.0F), 0.3F);
+  EXPECT_EQ(map.growth_at(2.2F, 0.0F), 1.0F);
+  EXPECT_EQ(map.growth_at(0.0F, -1.6F), 1.0F);
+}
+
 TEST(GrowthMapTest, KnowsWhereStreamedBladesStand) {
   const pose::Skeleton meadow = test_meadow(60, 8.0);
   const std::vector<Standing> things{

@@ -1,52 +1,116 @@
-// A hair: a thin ribbon along a strand's joints that faces the eye, with its light (after Kajiya and Kay 1989, "Rendering fur with
-// three dimensional textures").
+// A hair: a thin ribbon along a strand's joints that faces the eye. Around each strand more hairs stand that bend as it does:
+// soft underhair, and guard hairs that are longer, stiffer and banded (agouti), as of wild animals.
+//
+// Its light after J. Kajiya and T. Kay 1989, "Rendering fur with three dimensional textures", with the two highlights of S.
+// Marschner and others 2003, "Light scattering from human hair fibers": that of the surface, moved to the root, and that
+// from within, coloured and moved to the tip.
 uniform int rings;
+uniform int copies;  // hairs a strand
 uniform vec3 body_middle_m;
-uniform vec3 body_radius_m;
+uniform mat3 body_shape;
+uniform float spacing_m;  // of the strands
 
 layout(location = 0) in vec4 root_width;   // metres
-layout(location = 1) in vec4 tint_facing;  // the tip's colour
+layout(location = 1) in vec4 tint_facing;  // the coat's colour here
 layout(location = 2) in uint strand;
+layout(location = 3) in float whole_m;  // the strand's length
 
 out vec3 shade;
 
+float chance_of(float seed) { return fract(sin(seed * 12.9898 + float(strand % 8191u) * 0.7548777) * 43758.5453); }
+
+float lobe(vec3 along, vec3 half_way, float sharpness) {
+  float across = dot(along, half_way);
+  return pow(max(1.0 - across * across, 0.0), sharpness);
+}
+
 void main() {
+  int copy = gl_InstanceID % copies;
   int ring = gl_VertexID >> 1;
   float side = float(gl_VertexID & 1) * 2.0 - 1.0;
+  float t = float(ring) / float(rings);
+  float seed = float(copy) + 1.0;
+  float which = chance_of(seed);
+  float other = chance_of(seed + 31.7);
+  bool is_guard = copy == 0 || which > 0.72;
+
+  // Farther away one hair stands for more and more of them.
+  float height_px = whole_m / (eye_m.w * distance(eye_m.xyz, root_width.xyz));
+  float near = smoothstep(20.0, 50.0, height_px);
+  float shown = copies > 1 ? 1.0 + float(copies - 1) * near : 1.0;
+  float is_up = clamp(shown - float(copy), 0.0, 1.0);
+  if (is_up <= 0.0) {
+    gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+    shade = vec3(0.0);
+    return;
+  }
+
+  // Where it grows: beside the strand, on the skin.
+  vec3 root = root_width.xyz;
+  vec3 out_of_body = normalize(body_shape * (root - body_middle_m));
+  vec3 own_root = root;
+  if (copy > 0) {
+    vec3 east = normalize(cross(out_of_body, vec3(0.31, 0.17, 0.93)));
+    float turn = 6.2831853 * other;
+    own_root += (east * cos(turn) + cross(out_of_body, east) * sin(turn)) * (1.15 * spacing_m * sqrt(fract(other * 57.0)));
+    vec3 off = own_root - body_middle_m;
+    own_root = body_middle_m + off * inversesqrt(dot(off, body_shape * off));
+  }
+  float longer = is_guard ? 0.85 + 0.35 * which : 0.50 + 0.38 * fract(which * 17.0);
+
   int link = ring * links / rings;
   int link_below = (ring - 1) * links / rings;
-  vec3 place = ring > 0 ? joint(0, strand, link - 1) : root_width.xyz;
+  vec3 on_strand = ring > 0 ? joint(0, strand, link - 1) : root;
   vec3 along =
-      ring > 1 ? place - joint(0, strand, link_below - 1) : (ring > 0 ? place : joint(0, strand, links / rings - 1)) - root_width.xyz;
+      ring > 1 ? on_strand - joint(0, strand, link_below - 1) : (ring > 0 ? on_strand : joint(0, strand, links / rings - 1)) - root;
   along = normalize(along);
-  float t = float(ring) / float(rings);
+  // Underhair stands up more; hairs of a lock meet at their tips, and a few stray.
+  vec3 grown = on_strand - root;
+  float length_m = length(grown);
+  float stray = (fract(which * 91.0) - 0.5) * mix(2.0, 1.0, near) * (is_guard ? 0.26 : 0.12);
+  vec3 aside = cross(out_of_body, along);
+  vec3 place = mix(own_root, root, 0.30 * t) + grown * longer + (is_guard ? 0.12 * (1.0 - near) : 0.12) * length_m * t * out_of_body + aside * (stray * length_m);
 
   vec3 to_eye = eye_m.xyz - place;
   float distance_m = length(to_eye);
   to_eye /= distance_m;
-  float half_width = 0.5 * root_width.w * sqrt(1.0 - t) * (1.0 - 0.3 * t);
-  half_width = max(half_width, 0.40 * eye_m.w * distance_m * min(1.0, 3.0 * (1.0 - t)));
+  float half_width = 0.5 * root_width.w * is_up * pow(shown, -0.36) * (is_guard ? 1.30 : 1.15) * sqrt(1.0 - t) * (1.0 - 0.2 * t);
+  half_width = max(half_width, is_up * mix(0.62, 0.45, near) * eye_m.w * distance_m * min(1.0, 3.0 * (1.0 - t)));
   place += normalize(cross(along, to_eye)) * (side * half_width);
   gl_Position = to_clip * vec4(place, 1.0);
 
-  // The body's normal shades the hair; it is dark deep in the coat and pale at the tip.
-  vec3 out_of_body = normalize((root_width.xyz - body_middle_m) / (body_radius_m * body_radius_m));
-  float lit = smoothstep(-0.35, 0.75, dot(out_of_body, to_sun.xyz));
-  vec3 albedo = mix(tint_facing.rgb * 0.30, tint_facing.rgb, smoothstep(0.0, 0.8, t));
-  albedo = mix(albedo, vec3(0.62, 0.50, 0.36), 0.45 * smoothstep(0.62, 1.0, t));
+  // Pale at the root; a guard hair has a light band below its dark tip.
+  vec3 wool = vec3(0.52, 0.38, 0.245) * (0.85 + 0.3 * other);
+  vec3 coat = tint_facing.rgb * (0.80 + 0.4 * fract(other * 13.0));
+  vec3 albedo = mix(wool, coat, smoothstep(0.12, 0.50, t));
+  if (is_guard) {
+    float band = 0.80 + 0.10 * (other - 0.5);
+    // Far away the bands run together.
+    albedo = mix(albedo, vec3(0.66, 0.49, 0.29), mix(0.22, 0.85, near) * smoothstep(band - 0.20, band - 0.05, t));
+    albedo = mix(albedo, vec3(0.050, 0.032, 0.022), mix(0.25, 0.90, near) * smoothstep(band + 0.01, band + 0.10, t) * step(0.35, fract(which * 7.0)));
+  } else {
+    albedo = mix(albedo, mix(coat, vec3(0.52, 0.36, 0.20), 0.45), smoothstep(0.55, 1.0, t));
+  }
+
+  // How deep in the coat it is, and how far the light comes to it there: less from low above the skin.
+  float sun_up = dot(out_of_body, to_sun.xyz);
+  float deep = (1.0 - t * mix(0.8, 1.0, longer)) * (is_guard ? 0.85 : 1.0);
+  float lit = smoothstep(-0.30, 0.35, sun_up) * exp(-1.55 * deep / (0.35 + max(sun_up, 0.0)));
+  lit *= mix(0.2, 1.0, sunlight_near(own_root + 0.15 * out_of_body));
+  float open_sky = 0.34 + 0.66 * (1.0 - deep) * (1.0 - deep) + 0.15 * (1.0 - deep);
+
   float along_sun = dot(along, to_sun.xyz);
   float across_sun = sqrt(max(1.0 - along_sun * along_sun, 0.0));
-  float along_eye = dot(along, to_eye);
-  float shine = max(across_sun * sqrt(max(1.0 - along_eye * along_eye, 0.0)) - along_sun * along_eye, 0.0);
-  shine *= shine;
-  shine *= shine;
-  shine *= shine;
-  float deep = 0.25 + 0.75 * t;
-  vec3 sum = albedo * soft_light(out_of_body) * 1.5 * deep;
-  sum += albedo * sun_light.rgb * 0.75 * across_sun * lit * deep;
-  sum += sun_light.rgb * vec3(0.10, 0.085, 0.065) * shine * shine * lit * t;
-  float rim = 1.0 - abs(dot(out_of_body, to_eye));
+  vec3 half_way = normalize(to_sun.xyz + to_eye);
+  float wander = 0.16 * (other - 0.5);
+  float surface = lobe(normalize(along + (0.12 + wander) * out_of_body), half_way, 55.0);
+  float within = lobe(normalize(along - (0.20 + wander) * out_of_body), half_way, 13.0);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
-  sum += albedo * sun_light.rgb * 0.9 * rim * rim * against * against * t;
+  float rim = 1.0 - abs(dot(out_of_body, to_eye));
+
+  vec3 sum = albedo * mix(vec3(1.0), vec3(1.10, 0.92, 0.76), deep) * soft_light(out_of_body) * open_sky;  // coloured by the hairs that it passes
+  sum += albedo * sun_light.rgb * (0.80 * across_sun * lit);
+  sum += sun_light.rgb * lit * (vec3(0.085) * surface + albedo * (0.55 * within)) * smoothstep(-0.1, 0.3, sun_up);
+  sum += albedo * sun_light.rgb * (0.9 * rim * rim * against * against * t * mix(0.4, 1.0, lit));
   shade = seen(sum, place);
 }

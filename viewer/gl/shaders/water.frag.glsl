@@ -1,30 +1,105 @@
-// Water: the sky and the far hills in it, reflected more at flat angles (Schlick 1994, "An inexpensive BRDF model for
-// physically-based rendering"); the water's own green at steep ones.
+#include "shore.part.glsl"
+// Water: the streamed waves, and ripples that are too small for their grid on them; sky and things mirrored in it, the
+// bed seen through it, and the sun's glitter.
+//
+// Slopes are averaged over a pixel together with their squares, so that waves that are smaller than it still make it
+// rough (M. Olano, D. Baker 2010, "LEAN mapping"); how much of the light a rough surface mirrors, and how the sun
+// glitters on it, after E. Bruneton, F. Neyret, N. Holzschuch 2010, "Real-time realistic ocean lighting using seamless
+// transitions from geometry to BRDF", with the slopes' distribution of C. Cox and W. Munk 1954.
+uniform sampler2D slopes;   // along x, along z, and the sum of their squares
+uniform sampler2D ripples;
+uniform sampler2D mirror;
+uniform vec4 grid_place;    // x, z of the middle of the first texel's corner; size of a texel, metres; the water's height
+uniform vec4 grid_axes;     // a matrix: from metres behind that place to parts of the grid's sides
 in vec3 place_m;
-in vec3 normal;
+in float bed_m;
 out vec4 color;
 
+const float kMirrorMargin = 1.25;      // view.hpp
+const float kRippleDeviation = 0.16;   // ripple_texture.hpp
+const float kFineShare = 0.67;         // the slopes' variance that the grid cannot hold, over what it holds (ripple.cpp: 0.6 of all)
+const float kMirrored_m = 60.0;        // about as far as what is mirrored: level water mirrors near things as exactly
+const float kPi = 3.14159265;
+
+vec2 ripple_at(vec2 at, float lod) { return (textureLod(ripples, at, lod).rg - 0.5) / kRippleDeviation; }
+
 void main() {
-  vec3 from_eye = normalize(place_m - eye_m.xyz);
-  vec3 up_facing = normalize(normal);
-  up_facing *= up_facing.y < 0.0 ? -1.0 : 1.0;
-  float cosine = clamp(-dot(up_facing, from_eye), 0.0, 1.0);
-  float missing = 1.0 - cosine;
+  vec3 ray = place_m - eye_m.xyz;
+  float distance_m = length(ray);
+  vec3 from_eye = ray / distance_m;
+  float steep = max(-from_eye.y, 0.02);
+  float pixel_m = eye_m.w * distance_m * inversesqrt(steep);
+
+  vec2 uv = mat2(grid_axes.xy, grid_axes.zw) * (place_m.xz - grid_place.xy);
+  vec3 waves = textureLod(slopes, uv, log2(max(pixel_m / grid_place.z, 1e-3))).rgb;
+  float rough = textureLod(slopes, uv, 3.6).b;  // around here: where a gust touches the water
+  // A gust's paw has claws: streaks that run with the wind, finer than the streamed roughness.
+  float claws = textureLod(noise_tile, place_m.xz * 0.11 - drift.xy * 80.0, max(log2(pixel_m * 28.0), 0.0)).r;
+  float fine = kFineShare * rough * mix(0.25, 2.0, smoothstep(0.34, 0.66, claws));
+
+  // Two layers of ripples run with the wind, one a little aside.
+  float lod = log2(max(pixel_m * 128.0 / 0.83, 1e-3));
+  vec2 drift_by = drift.xy * 60.0;
+  vec2 ripple = ripple_at(place_m.xz / 0.83 - drift_by, lod) + ripple_at(mat2(0.8, 0.6, -0.6, 0.8) * place_m.xz / 0.51 - mat2(0.92, -0.38, 0.38, 0.92) * drift_by, lod + 0.7);
+  float kept = 1.0 / (1.0 + exp2(2.0 * (lod - 2.0)));  // of their variance, on this level
+  float strength = sqrt(0.25 * fine);
+  vec2 slope = waves.xy + strength * ripple;
+  float unseen = max(waves.z - dot(waves.xy, waves.xy), 0.0) + fine * (1.0 - kept) + 0.0002;
+
+  vec3 normal = normalize(vec3(-slope.x, 1.0, -slope.y));
+  float cosine = dot(normal, -from_eye);
+  if (cosine < 0.04) {
+    // One does not see the far side of a wave.
+    normal = normalize(normal - from_eye * (0.04 - cosine));
+    cosine = dot(normal, -from_eye);
+  }
+  float deviation = sqrt(0.5 * unseen);
+  float mirrored = 0.02 + 0.98 * pow(1.0 - cosine, 5.0 * exp(-2.69 * deviation)) / (1.0 + 22.7 * pow(deviation, 1.5));
+
+  // What is mirrored. Of a rough surface one sees more of what is turned to the eye: it mirrors what is higher.
+  vec3 up_ray = reflect(from_eye, normal);
+  up_ray.y = abs(up_ray.y) + 2.0 * unseen;
+  up_ray = normalize(up_ray);
+  vec3 image = place_m + up_ray * kMirrored_m;
+  image.y = 2.0 * grid_place.w - image.y;
+  vec4 at = to_clip * vec4(image, 1.0);
+  vec2 off = at.xy / max(at.w, 0.01) / kMirrorMargin;
+  // A steep wave's image is drawn out.
+  float spread = sqrt(0.5 * unseen + 0.06 * dot(slope, slope));
+  float blur = log2(max(1.2 * spread * float(textureSize(mirror, 0).y) / (2.0 * up.w * kMirrorMargin), 1.0));
+  vec3 sky = textureLod(mirror, 0.5 + 0.5 * off, min(blur, 4.0)).rgb;
+  float beside = smoothstep(0.88, 1.0, max(abs(off.x), abs(off.y)));
+  if (beside > 0.0 || at.w <= 0.01) sky = mix(sky, finish(air_light(up_ray)), at.w > 0.01 ? beside : 1.0);
+
+  // What is seen through it: the bed, and the light that the water itself scatters.
+  float lit = mix(0.15, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
+  const vec3 kAbsorbed = vec3(1.9, 0.85, 1.25);  // per metre
+  vec3 down = refract(from_eye, normal, 0.752);
+  float depth_m = max(place_m.y - bed_m, 0.0);
+  float path_m = depth_m / max(-down.y, 0.35);
+  vec3 left = exp(-kAbsorbed * path_m);
+  vec3 sun = sun_light.rgb * lit * max(to_sun.y, 0.0);
+  vec3 within = vec3(0.036, 0.050, 0.029) * (sky_light.rgb + 1.2 * sun) * (1.0 - left.g);
+  if (left.g > 0.04) {
+    float height;
+    vec3 earth = earth_at(place_m.xz + down.xz * path_m, bed_m - grid_place.w, pixel_m, height);
+    // Waves gather the sun's light on the bed.
+    float gathered = 1.0 + clamp(1.2 * (ripple.x + ripple.y) * strength / 0.05, -0.4, 0.9) * smoothstep(0.02, 0.12, depth_m);
+    within += earth * (0.4 + 0.6 * height) * (sky_light.rgb + sun * gathered) * exp(-kAbsorbed * depth_m) * left;
+  }
+
+  // The sun's glitter: the share of slopes that mirror it.
+  vec3 half_way = normalize(to_sun.xyz - from_eye);
+  vec2 from_mean = -half_way.xz / max(half_way.y, 0.05) - slope;
+  float variance = 0.5 * unseen + 0.0006;
+  float steepness = exp(-0.5 * dot(from_mean, from_mean) / variance) / (2.0 * kPi * variance);
+  float missing = 1.0 - max(dot(half_way, to_sun.xyz), 0.0);
   float missing_2 = missing * missing;
-  float mirrored = 0.02 + 0.98 * missing_2 * missing_2 * missing;
+  float glitter = (0.02 + 0.98 * missing_2 * missing_2 * missing) * steepness / (4.0 * half_way.y * half_way.y * half_way.y * half_way.y * max(cosine, 0.05));
+  vec3 own = within * (1.0 - mirrored) + sun_light.rgb * (lit * min(glitter * max(to_sun.y, 0.0) * kPi, 6.0));
 
-  vec3 up_ray = reflect(from_eye, up_facing);
-  up_ray.y = abs(up_ray.y);
-  vec3 sky = air_light(up_ray);
-  vec3 hills = mix(air_light(normalize(vec3(up_ray.x, 0.02, up_ray.z))), vec3(0.087, 0.113, 0.074) * sky_light.rgb, 0.70);
-  sky = mix(hills, sky, smoothstep(0.0, 0.11, up_ray.y));
-  float glint = max(dot(up_ray, to_sun.xyz), 0.0);
-  glint = pow(glint, 200.0);
-
-  // Light scattered in the water: more where a wave's slope faces the sun.
-  float sun = max(dot(up_facing, to_sun.xyz), 0.0);
-  float against = max(dot(from_eye, to_sun.xyz), 0.0);
-  vec3 within = vec3(0.022, 0.073, 0.057) * sky_light.rgb + vec3(0.003, 0.020, 0.026) * sun_light.rgb * (sun + 0.7 * against * missing);
-  vec3 light = mix(within, sky, mirrored) + sun_light.rgb * 1.3 * glint;
-  color = vec4(seen(light, place_m), 1.0);
+  // The mirror has the screen's values: they are mixed as light, nearly.
+  vec3 value = seen(own, place_m);
+  value = sqrt(value * value + sky * sky * mirrored);
+  color = vec4(dithered(min(value, 1.0), gl_FragCoord.xy), 1.0);
 }

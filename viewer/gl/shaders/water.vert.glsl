@@ -1,15 +1,11 @@
-layout(location = 0) in float x_m;
-layout(location = 1) in float y_m;
-layout(location = 2) in float z_m;
-layout(location = 3) in float normal_x;
-layout(location = 4) in float normal_y;
-layout(location = 5) in float normal_z;
+layout(location = 0) in vec3 rest;     // x, z, metres; the height of the bed
+layout(location = 1) in float high_m;
 
 out vec3 place_m;
-out vec3 normal;
+out float bed_m;
 
 void main() {
-  place_m = vec3(x_m, y_m, z_m);
-  normal = vec3(normal_x, normal_y, normal_z);
+  place_m = vec3(rest.x, high_m, rest.y);
+  bed_m = rest.z;
   gl_Position = to_clip * vec4(place_m, 1.0);
 }

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "engine/pose/skeleton.hpp"
+
+namespace yuragi::viewer::meshes {
+
+/// The shore of a pond: an irregular line within the rectangle of a level surface, a bank that goes up from it to the
+/// ground, and a bed that goes down. The same surface always has the same shore. Pure.
+class Shore {
+ public:
+  /// So far below the ground is the water.
+  static constexpr float kSunk_m = 0.12F;
+
+  /// No shore, all of the ground is land: for a surface of less than two columns or rows.
+  Shore() = default;
+  explicit Shore(const pose::SurfaceSkeleton& surface);
+
+  bool is_pond() const { return half_m_.x > 0.0F; }
+
+  /// How far out of the water a place (x, z) is, metres, about: less than 0 in the water.
+  float out_m(const glm::vec2& at_m) const;
+  /// How wide the bank is there: out_m() of the place where it comes up to the ground.
+  float bank_m(const glm::vec2& at_m) const;
+  /// The height of the bed or of the bank, above the ground.
+  float bed_m(const glm::vec2& at_m) const;
+  /// How high waves are there, as a part of what they are where the water is deep.
+  float wave_share(const glm::vec2& at_m) const;
+
+  /// The place at a bearing (radians, along the surface's own sides), so far out of the water.
+  glm::vec2 at(float bearing_rad, float out_m) const;
+
+  /// How large everything at the shore is: 1 at a pond of 7 metres, less at a smaller one.
+  float scale() const { return scale_; }
+  const glm::vec2& middle_m() const { return middle_m_; }
+  /// Unit vectors along the rows and the columns, and half of the rectangle's sides along them.
+  const glm::vec2& along() const { return along_; }
+  const glm::vec2& across() const { return across_; }
+  const glm::vec2& half_m() const { return half_m_; }
+
+ private:
+  /// The shore at a bearing, as a part of the rectangle's side.
+  float reach(float bearing_rad) const;
+  float bank_at(float bearing_rad) const;
+  float bearing_of(const glm::vec2& off_m) const;
+
+  glm::vec2 middle_m_{0.0F}, along_{1.0F, 0.0F}, across_{0.0F, 1.0F};
+  glm::vec2 half_m_{0.0F};
+  float scale_ = 0.0F;
+  float turn_rad_ = 0.0F;  ///< another at each pond
+};
+
+/// A vertex of the bank, in the layout that the shader reads.
+struct BankVertex {
+  glm::vec3 place_m{0.0F};
+  glm::vec3 normal{0.0F};
+  float edge = 0.0F;  ///< 0 at the water, 1 where it comes up to the ground
+};
+
+/// The bank, from a little below the water to a little under the ground around it, and the ground that is open over it
+/// and the water: its triangles come first. Empty without a pond.
+struct BankMesh {
+  std::vector<BankVertex> vertices;
+  std::vector<std::uint32_t> hole;  ///< indices: to be drawn at the ground's height
+  std::vector<std::uint32_t> bank;
+};
+BankMesh bank_of(const Shore& shore);
+
+/// A reed at the shore, in the layout that the shader reads.
+struct Reed {
+  glm::vec3 root_m{0.0F};
+  float length_m = 0.0F;
+  float heading_rad = 0.0F;  ///< where it leans to
+  float lean_rad = 0.0F;
+  float width_m = 0.0F;
+  float chance = 0.0F;  ///< 0 to 1: what it looks like
+};
+
+/// In tufts that stand together along parts of the shore, and leave others free. Empty without a pond.
+std::vector<Reed> reeds_of(const Shore& shore);
+
+/// The slope of a pond's waves at each point of its grid, where they have the height `y_m`: along x, along z, and the
+/// sum of both squares; three numbers a point.
+class WaveSlopes {
+ public:
+  WaveSlopes(const pose::SurfaceSkeleton& surface, const Shore& shore);
+
+  /// Takes the heights (a number for each point), makes waves lower toward the shore, and computes the slopes.
+  void move_to(const float* y_m);
+  const std::vector<float>& heights_m() const { return heights_m_; }
+  const std::vector<float>& slopes() const { return slopes_; }
+
+ private:
+  std::size_t columns_, rows_;
+  glm::vec2 along_per_m_, across_per_m_;  ///< from the difference of two neighbours but one to a slope
+  std::vector<float> share_, rest_y_m_;
+  std::vector<float> heights_m_, slopes_;
+};
+
+}  // namespace yuragi::viewer::meshes
