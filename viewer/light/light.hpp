@@ -23,6 +23,7 @@ struct Light {
   glm::vec4 moon_disc{0.0F, 1.0F, 0.0F, 0.0F};  ///< the same of the moon
   glm::vec4 air{0.0F};    ///< exposure; haze, per metre; where clouds begin (of the noise); how bright the stars are
   glm::vec4 drift{0.0F};  ///< x, y: how far the clouds have drifted, east and south, in heights of theirs
+  glm::vec4 colors{1.0F, 1.0F, 0.0F, 0.0F};  ///< how colorful the picture is, 0 to 1; and what is dark in it
 };
 
 /// From `a` (share 0) to `b` (share 1). Where their suns stand far apart, the one's light ends before the other's

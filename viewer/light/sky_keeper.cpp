@@ -20,7 +20,7 @@ constexpr SkyPlace kEveningSun{8.5, 239.0};
 constexpr double kEveningExposure = 0.545;
 constexpr double kEveningBrightness = 1.65;
 constexpr double kFollowing = 0.62;
-constexpr double kFollowingInTheDark = 0.74;  // but a night is to be seen
+constexpr double kFollowingInTheDark = 0.77;  // but a night is to be seen
 constexpr double kAdapting_s = 12.0;
 
 // Clouds are carried by a wind that is about twice as fast as the one at the ground.

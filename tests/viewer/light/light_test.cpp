@@ -62,6 +62,20 @@ TEST(Daylight, IsTheMoonsByNight) {
   EXPECT_EQ(sum(daylight({.sun = {-40.0, 0.0}}).sun_light), 0.0F) << "no moon";
 }
 
+TEST(Daylight, LosesItsColorsInTheDark) {
+  EXPECT_EQ(daylight({.sun = {20.0, 200.0}}).colors.y, 1.0F);
+  EXPECT_LT(daylight({.sun = {-20.0, 200.0}}).colors.y, 0.7F);
+}
+
+TEST(Daylight, HasNoCloudsWhereNoneAreAsked) {
+  // The noise that clouds are made of goes from 0 to 1.
+  EXPECT_GE(daylight({.sun = {20.0, 200.0}, .clouds = 0.0}).air.z, 1.0F);
+  EXPECT_LE(daylight({.sun = {20.0, 200.0}, .clouds = 1.0}).air.z, 0.0F);
+  for (double clouds = 0.0; clouds < 0.995; clouds += 0.01) {
+    ASSERT_GT(daylight({.clouds = clouds}).air.z, daylight({.clouds = clouds + 0.01}).air.z) << clouds;
+  }
+}
+
 TEST(SkyKeeper, BeginsWithTheLookAtOnce) {
   SkyKeeper keeper;
   keeper.start({.sun = look::SunChoice::kTime, .solar_time_h = 12.0});

@@ -78,6 +78,8 @@ vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float
   vec3 through = vec3(1.20, 1.05, 0.40) * albedo * (0.30 + 1.5 * against * against);
   vec3 sum = albedo * sky_light.rgb * (0.25 + 0.75 * deep) * (0.40 + 1.0 * max(normal.y, 0.0));
   sum += sun * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
+  // A high sun comes down between the blades, and from one to the next.
+  sum += sun * albedo * (0.55 * max(to_sun.y, 0.0) * deep);
 
   // A sheen along it, which makes the wind's waves visible.
   float sheen_side = dot(along, normalize(to_sun.xyz + to_eye));
