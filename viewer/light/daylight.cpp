@@ -158,8 +158,8 @@ float rise(double low, double high, double value) {
 
 // Outside of the air, in Light's unit: the evening's sun is as bright as its sky was painted.
 constexpr glm::vec3 kSunOutside(13.9F, 12.4F, 11.4F);
-// Of air straight overhead, in the red, green and blue of a screen (610, 540 and 465 nm): molecules, ozone and a little
-// dust.
+// Of air straight overhead, in the red, green and blue of a screen (610, 540 and 465 nm; w: their wavelength in
+// micrometres): molecules, 0.008735 w^-4.08; 0.3 cm of ozone; a little dust, 0.05 w^-1.3.
 constexpr glm::vec3 kAirDepth(0.196F, 0.244F, 0.334F);
 // Brighter than it is, by some thousand times, as a night in a film: a picture of a real one would be black beside a
 // lamp.
@@ -214,7 +214,7 @@ Light daylight(const Sky& sky) {
   set(light.turf_light, kTurf * (0.35F * glm::vec3(light.sun_light) + 2.2F * glm::vec3(light.sky_light)));
 
   const float dark = rise(-4.0, -12.0, sky.sun.height_deg);
-  light.colors = {1.0F, 1.0F - 0.52F * dark, 0.0F, 0.0F};
+  light.colors.y = 1.0F - 0.52F * dark;
   const double haze_per_m = 0.00008 * std::exp(7.6 * sky.haze);
   const double clouds_begin = 0.73 - 0.62 * sky.clouds + 3.0 * std::max(0.0, 0.1 - sky.clouds) -
                               0.28 * static_cast<double>(rise(0.65, 1.0, sky.clouds));

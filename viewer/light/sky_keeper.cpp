@@ -6,6 +6,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "viewer/light/palettes.hpp"
+
 namespace yuragi::viewer::light {
 namespace {
 
@@ -20,7 +22,7 @@ constexpr SkyPlace kEveningSun{8.5, 239.0};
 constexpr double kEveningExposure = 0.545;
 constexpr double kEveningBrightness = 1.65;
 constexpr double kFollowing = 0.62;
-constexpr double kFollowingInTheDark = 0.77;  // but a night is to be seen
+constexpr double kFollowingInTheDark = 0.74;  // but a night is to be seen
 constexpr double kAdapting_s = 12.0;
 
 // Clouds are carried by a wind that is about twice as fast as the one at the ground.
@@ -108,6 +110,7 @@ const Light& SkyKeeper::advance(double utc_s, double dt_s, const glm::dvec2& win
 
   Light now = daylight(sky_of(look_, utc_s));
   now.drift = {drift_.x, drift_.y, 0.0F, 0.0F};
+  set_colors(look_, now);
   const double wanted_log = exposure_log_for(now);
   // While the look fades, the exposure goes with the fade: what was asked for is not answered by a slow eye.
   const bool follows_at_once = !has_light_ || fade_s_ < kFade_s;

@@ -139,7 +139,7 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
     tall_ = ground_opacity;
     stand_ = {};
   }
-  ground_.set_standing(standing_);
+  ground_.set_standing(standing_, light_.colors.z);
   ground_.move_to(grid, nodes, near_by);
   ground_.bind(stand_, tall_, tall_door_);
 }

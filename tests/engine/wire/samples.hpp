@@ -341,7 +341,10 @@ inline wire::Sensors sensors() {
                              .clouds = 0.75,
                              .haze = 0.5,
                              .exposure_ev = -1.5,
-                             .quality = look::Quality::kMedium}};
+                             .quality = look::Quality::kMedium,
+                             .palette = look::Palette::kWinter,
+                             .ground = look::GroundKind::kSand,
+                             .density = 0.75}};
 }
 
 inline wire::RawTrace raw_trace() {

@@ -9,7 +9,7 @@ out vec3 shade;  // the screen's value; blades are so small that one for each ve
 
 // Some blades bear seed heads, and some are flowers, in patches.
 bool is_seed(float chance) { return chance > 0.93; }
-bool is_flower(float chance, vec2 patch_at) { return chance < 0.10 * smoothstep(0.02, 0.22, patch_at.y - 0.6 * patch_at.x); }
+bool is_flower(float chance, vec2 patch_at) { return chance < 0.10 * grass_fresh.w * smoothstep(0.02, 0.22, patch_at.y - 0.6 * patch_at.x); }
 
 void put_vertex(vec3 place, vec3 along, float t, float side, float width_m, float facing_rad, float chance, vec2 patch_at, vec2 bend, float lean, float tall) {
   vec3 to_eye = eye_m.xyz - place;
@@ -32,13 +32,13 @@ void put_vertex(vec3 place, vec3 along, float t, float side, float width_m, floa
     float from_head = (t - 0.87) * 9.0;
     head = exp(-from_head * from_head);
     profile = 0.30 * profile + 0.85 * head;
-    tint = mix(tint, vec3(0.36, 0.27, 0.15), 0.35 + 0.65 * head);
+    tint = mix(tint, 1.1 * grass_straw.rgb, 0.35 + 0.65 * head);
   } else if (is_flower(chance, patch_at)) {
     head = smoothstep(0.80, 0.89, t) * (1.0 - smoothstep(0.96, 1.0, t));
     profile = 0.28 * profile + 1.5 * head;
     float hue = fract(chance * 977.0);
-    vec3 petals = hue < 0.45 ? vec3(0.72, 0.70, 0.62) : hue < 0.75 ? vec3(0.70, 0.45, 0.05) : vec3(0.34, 0.14, 0.42);
-    tint = mix(tint, petals, smoothstep(0.78, 0.88, t));
+    vec3 petal = hue < 0.45 ? petals[0].rgb : hue < 0.75 ? petals[1].rgb : petals[2].rgb;
+    tint = mix(tint, petal, smoothstep(0.78, 0.88, t));
   }
   float half_width_m = max(0.5 * width_m * profile, 0.42 * eye_m.w * distance_m * min(1.0, 4.0 * (1.0 - t)));
   place += across * (side * half_width_m);

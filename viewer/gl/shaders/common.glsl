@@ -29,7 +29,15 @@ layout(std140) uniform Light {
   vec4 moon_disc;
   vec4 air;           // exposure; haze, per metre; where clouds begin; stars
   vec4 drift;         // of the clouds
-  vec4 colors;        // how colorful the picture is, and what is dark in it
+  vec4 colors;        // how colorful the picture is, and what is dark in it; how tall grass may grow
+  vec4 grass_lush;    // w: more straw above 0
+  vec4 grass_fresh;   // w: how many flowers
+  vec4 grass_straw;
+  vec4 grass_foot;
+  vec4 petals[3];
+  vec4 leaves;        // factors
+  vec4 woods;         // w: snow on hills
+  vec4 earth;         // the bare ground; w: how uneven it looks
 };
 
 // The light of the air along a unit direction, without clouds and hills: another at the horizon than above, and a glow
@@ -61,7 +69,7 @@ vec3 far_haze(vec3 place_m) {
 }
 
 // The transfer curve of screens (IEC 61966-2-1, sRGB) of values from 0 to 1, to a hundredth, by square roots (I. Taylor
-// 2012, "Approximating sRGB").
+// 2012, "sRGB approximations for HLSL", chilliant.blogspot.com); near black it is straight.
 vec3 screen_value(vec3 light) {
   vec3 root_2 = sqrt(light);
   vec3 root_4 = sqrt(root_2);
