@@ -23,6 +23,7 @@ struct OverlayFacts {
   std::span<const float> opacities;              ///< one a scene
   const light::Sky* sky = nullptr;               ///< null: not known
   look::Quality quality = look::Quality::kHigh;  ///< in which it is drawn
+  float drawn_side = 1.0F;                       ///< the part of the picture's width and height that is
   double heading_deg = 0.0;                      ///< of the camera: up on the compass
 };
 

@@ -13,6 +13,7 @@
 #include "viewer/light/sky_keeper.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/overlay.hpp"
+#include "viewer/pace_keeper.hpp"
 #include "viewer/picture_file.hpp"
 #include "viewer/quality.hpp"
 #include "viewer/stream/scene_timeline.hpp"
@@ -79,7 +80,8 @@ class Viewer::Show {
 #ifdef YURAGI_GL_DEBUG
     gl::report_gl_errors();
 #endif
-    const bool is_slow = gl::is_software_renderer() && options.screenshot.empty();
+    is_software_ = gl::is_software_renderer();
+    const bool is_slow = is_software_ && options.screenshot.empty();
     samples_ = options.samples.value_or(is_slow ? 1 : kSamples);
     stage_.emplace();
     dimmer_.emplace();
@@ -103,6 +105,8 @@ class Viewer::Show {
       draw(size);
       target_->show(size.width_px, size.height_px);
       window_->swap();
+      // Where the processor draws the picture is done now.
+      if (is_drawn_for_pace()) pace_.advance(picture_passed_s_, now_s() - last_s_);
       keep_pace();
     }
   }
@@ -204,6 +208,7 @@ class Viewer::Show {
     const double now = now_s();
     const double passed_s = now - last_s_;
     last_s_ = now;
+    picture_passed_s_ = passed_s;
     follow_opening_hours(is_first_status ? kDimming_s : passed_s);
     camera_.advance(passed_s);
     moment_ = &timeline_.advance(now);
@@ -217,7 +222,7 @@ class Viewer::Show {
     }
     const wind::WindVector& wind = moment_->wind.wind;
     stage_->set_light(sky_.advance(utc_s_, passed_s, {wind.u_m_s, -wind.v_m_s}));
-    use_quality(quality_for(sky_.look().quality, gl::is_software_renderer()));
+    use_quality(quality_for(sky_.look().quality, is_software_));
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
   }
 
@@ -231,6 +236,9 @@ class Viewer::Show {
     if (!target_ || PixelSize{target_->width_px(), target_->height_px()} != size) {
       target_.emplace(size.width_px, size.height_px, samples_);
     }
+    const DrawnPart part = is_drawn_for_pace() ? pace_.drawn() : DrawnPart{};
+    stage_->set_blade_share(part.blades * static_cast<float>(sky_.look().density));
+    target_->set_drawn_side(part.side);
     stage_->draw(*moment_, camera_, *target_);
     dimmer_->draw(static_cast<float>(brightness_));
     if (!has_overlay_) return;
@@ -245,7 +253,13 @@ class Viewer::Show {
                           .opacities = moment_->opacities,
                           .sky = &sky,
                           .quality = quality_,
+                          .drawn_side = part.side,
                           .heading_deg = camera_.place().heading_deg});
+  }
+
+  /// Is less drawn where that keeps the pace? Where the processor draws into a window, in quality low.
+  bool is_drawn_for_pace() const {
+    return is_software_ && window_ && quality_ == look::Quality::kLow;
   }
 
   /// Waits where the driver does not wait for the screen: no more pictures than the screen can show.
@@ -267,6 +281,8 @@ class Viewer::Show {
   meshes::OrbitCamera camera_;
   bool has_framed_ = false;
   light::SkyKeeper sky_;
+  bool is_software_ = false;
+  PaceKeeper pace_;
   look::Quality quality_ = look::Quality::kAuto;
   double utc_s_ = 0.0;  // the daemon's clock: of the newest frame
   stream::SceneTimeline timeline_;
@@ -274,6 +290,7 @@ class Viewer::Show {
   std::optional<wire::Sensors> sensors_;
   double began_s_;
   double last_s_;
+  double picture_passed_s_ = 0.0;  // since the picture before
   double picture_s_ = 1.0 / 60.0;  // between pictures, smoothed
   double brightness_;              // of the picture, 0 to 1
   bool has_overlay_;

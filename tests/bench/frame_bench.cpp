@@ -1,10 +1,11 @@
 // yuragi-frame-bench: what a picture of the viewer costs, for meadows of 10,000, 100,000 and 1,000,000 blades and the
 // garden, drawn without a display on what graphics this machine has. It prints a table: the time to the last pixel, the
 // processor time of this thread (with its part of the former) and of all threads, which draw where there is no graphics
-// hardware, what is uploaded, and on graphics hardware the time of each pass. Poses are made before; all are medians.
-// Of other programs at work, the processor times feel least.
+// hardware, what is uploaded, and the time of each pass: of the graphics hardware, or of all threads where there is
+// none. Poses are made before; all are medians. Of other programs at work, the processor times feel least.
 //
-//   yuragi-frame-bench [--size 1280x720] [--pictures 30] [--samples 1] [--software] [--only 100,000]
+//   yuragi-frame-bench [--size 1280x720] [--pictures 30] [--samples 1] [--quality low] [--step 0] [--software] [--only
+//   100,000]
 
 #include <algorithm>
 #include <chrono>
@@ -21,6 +22,8 @@
 #include "tests/support/places.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
+#include "viewer/pace_keeper.hpp"
+#include "viewer/quality.hpp"
 
 namespace {
 
@@ -34,6 +37,8 @@ struct BenchOptions {
   int pictures = 30;
   int samples = 1;
   bool is_software = false;
+  std::string quality = "auto";
+  std::size_t step = 0;
   std::string only;
 };
 
@@ -83,25 +88,32 @@ void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, g
   meshes::OrbitCamera camera;
   camera.frame(stage.home(static_cast<double>(options.width_px) / options.height_px));
 
-  gl::PassClock clock;
-  if (!gl::is_software_renderer()) stage.time_passes_with(&clock);
   std::vector<double> times_ms, thread_ms, process_ms, uploads_mb;
-  std::map<std::string, std::vector<double>> passes_ms;
-  std::vector<std::string> pass_names;
+  const auto draw = [&](int picture) {
+    stage.draw(moments[static_cast<std::size_t>(picture + kWarmUp) % kMoments], camera, target);
+  };
   for (int picture = -kWarmUp; picture < options.pictures; ++picture) {
     glFinish();
     const auto begin = std::chrono::steady_clock::now();
     const double thread_begin_ms = processor_time_ms(CLOCK_THREAD_CPUTIME_ID);
     const double process_begin_ms = processor_time_ms(CLOCK_PROCESS_CPUTIME_ID);
     const std::size_t uploaded = gl::uploaded_bytes();
-    stage.draw(moments[static_cast<std::size_t>(picture + kWarmUp) % kMoments], camera, target);
+    draw(picture);
     glFinish();
     if (picture < 0) continue;
     times_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
     thread_ms.push_back(processor_time_ms(CLOCK_THREAD_CPUTIME_ID) - thread_begin_ms);
     process_ms.push_back(processor_time_ms(CLOCK_PROCESS_CPUTIME_ID) - process_begin_ms);
     uploads_mb.push_back(1e-6 * static_cast<double>(gl::uploaded_bytes() - uploaded));
-    if (gl::is_software_renderer()) continue;
+  }
+
+  // Pictures of their own for the passes: their clock waits.
+  gl::PassClock clock(gl::is_software_renderer() ? gl::PassClock::By::kProcessor : gl::PassClock::By::kGpu);
+  stage.time_passes_with(&clock);
+  std::map<std::string, std::vector<double>> passes_ms;
+  std::vector<std::string> pass_names;
+  for (int picture = 0; picture < options.pictures; ++picture) {
+    draw(picture);
     for (const gl::PassClock::Pass& pass : clock.passes()) {
       std::vector<double>& of_pass = passes_ms[pass.name];
       if (of_pass.empty()) pass_names.push_back(pass.name);
@@ -127,16 +139,29 @@ int main(int argc, char** argv) {
     app.add_option("--size", options.size, "WIDTHxHEIGHT, pixels")->capture_default_str();
     app.add_option("--pictures", options.pictures, "of each row")->check(CLI::Range(1, 100000))->capture_default_str();
     app.add_option("--samples", options.samples, "a pixel")->check(CLI::Range(1, 16))->capture_default_str();
+    app.add_option("--quality", options.quality, "of the look")
+        ->check(CLI::IsMember(std::vector<std::string>{"auto", "low", "medium", "high"}))
+        ->capture_default_str();
+    app.add_option("--step", options.step, "how much is drawn, of PaceKeeper::kSteps")
+        ->check(CLI::Range(std::size_t{0}, PaceKeeper::kSteps.size() - 1))
+        ->capture_default_str();
     app.add_flag("--software", options.is_software, "by the processor, even where there is graphics hardware");
     app.add_option("--only", options.only, "one row: 10,000 or 100,000 or 1,000,000 or garden");
     CLI11_PARSE(app, argc, argv);
     if (std::sscanf(options.size.c_str(), "%dx%d", &options.width_px, &options.height_px) != 2) return 64;
 
     const gl::HeadlessContext context({.is_software = options.is_software});
+    const look::Look look = look::edited({}, std::vector<std::string>{"quality=" + options.quality}).value();
+    const look::Quality quality = quality_for(look.quality, gl::is_software_renderer());
     looks::Stage stage;
+    stage.set_quality(quality);
     gl::RenderTarget target(options.width_px, options.height_px, options.samples);
-    fmt::print("{}, {} samples a pixel, medians of {} pictures\n",
-               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(), options.pictures);
+    const DrawnPart part = PaceKeeper::kSteps[options.step];
+    stage.set_blade_share(part.blades);
+    target.set_drawn_side(part.side);
+    fmt::print("{}, {} samples a pixel, {}, medians of {} pictures\n",
+               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(),
+               quality_text(quality, part.side), options.pictures);
     fmt::print("{:>10} {:>10} {:>9} {:>11} {:>10} {:>8} {:>11} {:>10}\n", "blades", "size", "frame ms", "pictures/s",
                "thread ms", "share", "process ms", "upload MB");
     for (const Row& row : rows()) {

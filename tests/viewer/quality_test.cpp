@@ -14,6 +14,8 @@ TEST(Quality, IsLowByItselfOnlyWithoutGraphicsHardware) {
 TEST(Quality, SaysWhatItLeavesOut) {
   EXPECT_EQ(quality_text(look::Quality::kHigh), "quality high");
   EXPECT_EQ(quality_text(look::Quality::kLow), "quality low: hard shadows, on the ground only; fewer, wider blades");
+  EXPECT_EQ(quality_text(look::Quality::kLow, 0.72F),
+            "quality low: hard shadows, on the ground only; fewer, wider blades; 72 % as wide and high, for the pace");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "viewer/gl/pass_clock.hpp"
 
 #include <algorithm>
+#include <ctime>
 
 namespace yuragi::viewer::gl {
 namespace {
@@ -18,6 +19,11 @@ PassClock::~PassClock() {
 }
 
 void PassClock::put_timestamp() {
+  if (by_ == By::kProcessor) {
+    glFinish();
+    times_ms_.push_back(1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
+    return;
+  }
   const std::size_t number = names_.size();
   if (number == queries_.size()) glGenQueries(1, &queries_.emplace_back(0));
   glQueryCounter(queries_[number], GL_TIMESTAMP);
@@ -25,6 +31,7 @@ void PassClock::put_timestamp() {
 
 void PassClock::begin() {
   names_.clear();
+  times_ms_.clear();
   put_timestamp();
 }
 
@@ -36,7 +43,9 @@ void PassClock::mark(std::string_view name) {
 std::vector<PassClock::Pass> PassClock::passes() const {
   std::vector<Pass> passes;
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const double time_ms = 1e-6 * static_cast<double>(time_of(queries_[i + 1]) - time_of(queries_[i]));
+    const double time_ms = by_ == By::kProcessor
+                               ? times_ms_[i + 1] - times_ms_[i]
+                               : 1e-6 * static_cast<double>(time_of(queries_[i + 1]) - time_of(queries_[i]));
     const auto same = std::ranges::find(passes, names_[i], &Pass::name);
     same == passes.end() ? passes.push_back({names_[i], time_ms}) : void(same->time_ms += time_ms);
   }

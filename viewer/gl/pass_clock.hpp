@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,11 +9,15 @@
 
 namespace yuragi::viewer::gl {
 
-/// How long the GPU works on each pass of a picture, by timestamps between them (GL_TIMESTAMP). For measurements:
-/// reading waits for the GPU. Where the processor draws, passes are drawn together at the end and cannot be told apart.
+/// How long each pass of a picture takes. For measurements: it waits.
+///
+/// By the GPU: by timestamps between the passes (GL_TIMESTAMP), read when the picture is done. By the processor, where
+/// that draws (which otherwise draws all passes together at the end): each pass is waited for, and its time is that of
+/// all threads of the process.
 class PassClock {
  public:
-  PassClock() = default;
+  enum class By : std::uint8_t { kGpu, kProcessor };
+  explicit PassClock(By by) : by_(by) {}
   ~PassClock();
   PassClock(const PassClock&) = delete;
   PassClock& operator=(const PassClock&) = delete;
@@ -33,7 +37,9 @@ class PassClock {
  private:
   void put_timestamp();
 
-  std::vector<GLuint> queries_;  // one more than names_ while a picture is drawn; those behind are for later
+  By by_;
+  std::vector<GLuint> queries_;   // one more than names_ while a picture is drawn; those behind are for later
+  std::vector<double> times_ms_;  // likewise, of the processor
   std::vector<std::string> names_;
 };
 

@@ -1,6 +1,7 @@
 #include "viewer/gl/render_target.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace yuragi::viewer::gl {
@@ -28,7 +29,11 @@ void require_complete() {
 }  // namespace
 
 RenderTarget::RenderTarget(int width_px, int height_px, int samples)
-    : width_px_(width_px), height_px_(height_px), samples_(supported_samples(samples)) {
+    : width_px_(width_px),
+      height_px_(height_px),
+      samples_(supported_samples(samples)),
+      drawn_width_px_(width_px),
+      drawn_height_px_(height_px) {
   glBindFramebuffer(GL_FRAMEBUFFER, sampled_.name());
   attach(GL_COLOR_ATTACHMENT0, sampled_color_, GL_RGBA8, samples_, width_px, height_px);
   attach(GL_DEPTH_STENCIL_ATTACHMENT, sampled_depth_, GL_DEPTH24_STENCIL8, samples_, width_px, height_px);
@@ -38,17 +43,29 @@ RenderTarget::RenderTarget(int width_px, int height_px, int samples)
   require_complete();
 }
 
+void RenderTarget::set_drawn_side(float part) {
+  if (samples_ > 1) return;
+  const auto part_of = [part](int size_px) {
+    return std::clamp(static_cast<int>(std::lround(part * static_cast<float>(size_px))), 1, size_px);
+  };
+  drawn_width_px_ = part_of(width_px_);
+  drawn_height_px_ = part_of(height_px_);
+}
+
 void RenderTarget::begin() {
   glBindFramebuffer(GL_FRAMEBUFFER, sampled_.name());
-  glViewport(0, 0, width_px_, height_px_);
+  glViewport(0, 0, drawn_width_px_, drawn_height_px_);
   glEnable(GL_MULTISAMPLE);
 }
 
 void RenderTarget::resolve() {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, sampled_.name());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.name());
-  glBlitFramebuffer(0, 0, width_px_, height_px_, 0, 0, width_px_, height_px_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  const bool is_whole = drawn_width_px_ == width_px_ && drawn_height_px_ == height_px_;
+  glBlitFramebuffer(0, 0, drawn_width_px_, drawn_height_px_, 0, 0, width_px_, height_px_, GL_COLOR_BUFFER_BIT,
+                    is_whole ? GL_NEAREST : GL_LINEAR);
   glBindFramebuffer(GL_FRAMEBUFFER, resolved_.name());
+  glViewport(0, 0, width_px_, height_px_);
 }
 
 void RenderTarget::show(int window_width_px, int window_height_px) {

@@ -18,6 +18,12 @@ class RenderTarget {
   int height_px() const { return height_px_; }
   int samples() const { return samples_; }
 
+  /// From the next begin() on only this part (0 to 1] of the pixels of the width and of the height is drawn, and
+  /// resolve() fills in those between. Not with several samples a pixel: then it stays 1.
+  void set_drawn_side(float part);
+  int drawn_width_px() const { return drawn_width_px_; }
+  int drawn_height_px() const { return drawn_height_px_; }
+
   /// What is drawn from now on goes into the samples.
   void begin();
   /// Resolves the samples to pixels; what is drawn from now on (the overlay) goes over these.
@@ -31,6 +37,8 @@ class RenderTarget {
   int width_px_;
   int height_px_;
   int samples_;
+  int drawn_width_px_;
+  int drawn_height_px_;
   GlFramebuffer sampled_;
   GlRenderbuffer sampled_color_;
   GlRenderbuffer sampled_depth_;

@@ -33,6 +33,7 @@ void ScreenDoor::open(float opacity, std::size_t number) {
 }
 
 void ScreenDoor::begin_mark(GLuint bit) {
+  glEnable(GL_STENCIL_TEST);
   glStencilMask(bit);
   glStencilFunc(GL_EQUAL, static_cast<GLint>(bit), kBehindDoor);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
@@ -49,6 +50,10 @@ void ScreenDoor::end_mark() {
 }
 
 void ScreenDoor::draw_on_open() {
+  if (!is_half_open_) {
+    glDisable(GL_STENCIL_TEST);
+    return;
+  }
   glStencilMask(0);
   glStencilFunc(GL_EQUAL, 0, kBehindDoor);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);

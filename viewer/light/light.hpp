@@ -25,7 +25,8 @@ struct Light {
   glm::vec4 moon_disc{0.0F, 1.0F, 0.0F, 0.0F};  ///< the same of the moon
   glm::vec4 air{0.0F};    ///< exposure; haze, per metre; where clouds begin (of the noise); how bright the stars are
   glm::vec4 drift{0.0F};  ///< x, y: how far the clouds have drifted, east and south, in heights of theirs
-  /// How colorful the picture is, 0 to 1; and what is dark in it; how tall grass may grow, 0.25 (a lawn) to 1, 0: none
+  /// How colorful the picture is, 0 to 1; and what is dark in it; how tall grass may grow, 0.25 (a lawn) to 1, 0: none;
+  /// how many doublings brighter the palette is
   glm::vec4 colors{1.0F, 1.0F, 1.0F, 0.0F};
 
   // What reflects light (palettes.cpp).

@@ -17,10 +17,11 @@ struct Palette {
   float dryness;    ///< more straw above 0, less below it; -1 to 1
   float flowers;    ///< how many there are: 1 as in a meadow
   std::array<glm::vec3, 3> petals;
-  glm::vec3 leaves;  ///< factor on the leaves of trees, but not on blossom
-  glm::vec3 woods;   ///< factor on the woods far away
-  float snow;        ///< on hills and mountains, 0 to 1
-  float colorful;    ///< of the whole picture: 0 is black and white
+  glm::vec3 leaves;   ///< factor on the leaves of trees, but not on blossom
+  glm::vec3 woods;    ///< factor on the woods far away
+  float snow;         ///< on hills and mountains, 0 to 1
+  float colorful;     ///< of the whole picture: 0 is black and white
+  float exposure_ev;  ///< brighter by so many doublings
 };
 
 // In the order of look::Palette.
@@ -36,7 +37,8 @@ constexpr std::array<Palette, 6> kPalettes{{
      .leaves = {1.0F, 1.0F, 1.0F},
      .woods = {1.0F, 1.0F, 1.0F},
      .snow = 0.0F,
-     .colorful = 1.0F},
+     .colorful = 1.0F,
+     .exposure_ev = 0.0F},
     // spring: young green, many white and yellow flowers
     {.lush = {0.065F, 0.160F, 0.032F},
      .fresh = {0.150F, 0.250F, 0.038F},
@@ -48,7 +50,8 @@ constexpr std::array<Palette, 6> kPalettes{{
      .leaves = {1.25F, 1.30F, 0.85F},
      .woods = {1.35F, 1.45F, 0.85F},
      .snow = 0.0F,
-     .colorful = 1.0F},
+     .colorful = 1.0F,
+     .exposure_ev = 0.0F},
     // summer-dry: gold, with green only in the hollows
     {.lush = {0.150F, 0.150F, 0.045F},
      .fresh = {0.310F, 0.250F, 0.090F},
@@ -60,7 +63,8 @@ constexpr std::array<Palette, 6> kPalettes{{
      .leaves = {1.20F, 1.0F, 0.70F},
      .woods = {1.55F, 1.15F, 0.75F},
      .snow = 0.0F,
-     .colorful = 1.0F},
+     .colorful = 1.0F,
+     .exposure_ev = 0.0F},
     // autumn: russet and ochre
     {.lush = {0.110F, 0.105F, 0.028F},
      .fresh = {0.260F, 0.160F, 0.040F},
@@ -72,7 +76,8 @@ constexpr std::array<Palette, 6> kPalettes{{
      .leaves = {3.9F, 1.05F, 0.35F},
      .woods = {3.6F, 1.45F, 0.75F},
      .snow = 0.0F,
-     .colorful = 1.0F},
+     .colorful = 1.0F,
+     .exposure_ev = 0.0F},
     // winter: pale stalks under frost
     {.lush = {0.330F, 0.345F, 0.340F},
      .fresh = {0.470F, 0.470F, 0.450F},
@@ -84,7 +89,8 @@ constexpr std::array<Palette, 6> kPalettes{{
      .leaves = {2.2F, 1.35F, 1.3F},
      .woods = {1.9F, 1.35F, 1.8F},
      .snow = 0.85F,
-     .colorful = 0.85F},
+     .colorful = 0.85F,
+     .exposure_ev = -0.35F},
     // ink: brush and paper
     {.lush = {0.060F, 0.060F, 0.060F},
      .fresh = {0.160F, 0.160F, 0.160F},
@@ -96,7 +102,8 @@ constexpr std::array<Palette, 6> kPalettes{{
      .leaves = {0.7F, 0.7F, 0.7F},
      .woods = {0.8F, 0.8F, 0.8F},
      .snow = 0.0F,
-     .colorful = 0.06F},
+     .colorful = 0.06F,
+     .exposure_ev = 0.7F},
 }};
 
 /// Of what the ground is made, where no grass grows.
@@ -109,9 +116,9 @@ struct Earth {
 // In the order of look::GroundKind.
 constexpr std::array<Earth, 5> kEarths{{{.color = {0.070F, 0.050F, 0.030F}, .relief = 0.5F, .growth = 1.0F},
                                         {.color = {0.070F, 0.050F, 0.030F}, .relief = 0.5F, .growth = 0.25F},
-                                        {.color = {0.470F, 0.370F, 0.240F}, .relief = 0.45F, .growth = 0.0F},
+                                        {.color = {0.400F, 0.310F, 0.200F}, .relief = 0.90F, .growth = 0.0F},
                                         {.color = {0.230F, 0.220F, 0.205F}, .relief = 1.6F, .growth = 0.0F},
-                                        {.color = {0.800F, 0.840F, 0.880F}, .relief = 0.22F, .growth = 0.0F}}};
+                                        {.color = {0.620F, 0.670F, 0.730F}, .relief = 0.35F, .growth = 0.0F}}};
 
 }  // namespace
 
@@ -128,6 +135,7 @@ void set_colors(const look::Look& look, Light& light) {
   light.earth = {earth.color, earth.relief};
   light.colors.x = palette.colorful;
   light.colors.z = earth.growth;
+  light.colors.w = palette.exposure_ev;
 }
 
 }  // namespace yuragi::viewer::light

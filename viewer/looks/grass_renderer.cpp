@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/pose/pose_arrays.hpp"
 #include "viewer/gl/shaders.hpp"
 #include "viewer/looks/ground_maps.hpp"
 #include "viewer/meshes/sward.hpp"
@@ -15,19 +14,18 @@ constexpr GLint kBlockUnit = 5;
 
 }  // namespace
 
-GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands, float drawn_at_1m_per_m2)
-    : thinning_{.blades_per_m2 = meshes::stand_of(strands).blades_per_m2, .drawn_at_1m_per_m2 = drawn_at_1m_per_m2},
-      tiles_(strands, thinning_),
-      pose_{std::vector<float>(tiles_.skeleton().padded_count()), std::vector<float>(tiles_.skeleton().padded_count())},
-      joints_(tiles_.skeleton()),
+GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands, const meshes::GrassDetail& detail)
+    : detail_(detail),
+      thinning_{.blades_per_m2 = meshes::stand_of(strands).blades_per_m2,
+                .drawn_at_1m_per_m2 = detail.drawn_at_1m_per_m2},
+      tiles_(strands, thinning_, detail),
       program_(gl::link_program("grass", gl::shaders::kGrassVert, gl::shaders::kShadeFrag)),
       triangles_(tiles_.levels().size()) {
   GroundMaps::set_samplers(program_);
-  gl::set_sampler(program_, "joints", 0);
+  gl::set_sampler(program_, "streamed_bends", 0);
   gl::set_sampler(program_, "blades", kStreamedBladeUnit);
   gl::set_sampler(program_, "blocks", kBlockUnit);
-  glUniform1i(glGetUniformLocation(program_.name(), "links"), static_cast<GLint>(strands.links_per_strand));
-  glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
+  glUniform1f(glGetUniformLocation(program_.name(), "reach_m"), detail.reach_m);
   glBindBuffer(GL_TEXTURE_BUFFER, blade_buffer_.name());
   glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(tiles_.blades().size_bytes()), tiles_.blades().data(),
                GL_STATIC_DRAW);
@@ -45,32 +43,18 @@ void GrassRenderer::move_to(const pose::Pose& pose) {
   latest_ = std::get_if<pose::StrandPose>(&pose);
 }
 
-void GrassRenderer::upload_joints() {
-  if (latest_ != nullptr) tiles_.take(*latest_, pose_);
-  const std::size_t blocks = tiles_.skeleton().padded_count() / pose::kStrandsPerBlock;
-  const std::size_t block_floats = tiles_.skeleton().links_per_strand * 3 * pose::kStrandsPerBlock;
-  shown_joints_.resize(tiles_.blocks().size() * block_floats);
-  auto to = shown_joints_.begin();
-  for (const std::uint32_t block : tiles_.blocks()) {
-    // The forward kinematics of engine/pose, for the strands of this block.
-    const pose::StrandKinematicsJob job{.skeleton = &tiles_.skeleton(),
-                                        .pose = &pose_,
-                                        .row = {},
-                                        .part = {.index = block, .count = blocks},
-                                        .joints = &joints_};
-    if (job.run() != pose::StrandKinematicsJob::Problem::kNone) return;
-    const auto from = std::as_const(joints_).data().subspan(block * block_floats, block_floats);
-    to = std::ranges::copy(from, to).out;
-  }
-  gl::stream_to(GL_TEXTURE_BUFFER, joint_buffer_, std::span(std::as_const(shown_joints_)));
-  gl::stream_to(GL_TEXTURE_BUFFER, block_buffer_, tiles_.blocks());
+void GrassRenderer::set_blade_share(float share) {
+  thinning_.drawn_at_1m_per_m2 = share * detail_.drawn_at_1m_per_m2;
+  tiles_.set_thinning(thinning_);
 }
 
 void GrassRenderer::draw(const meshes::View& view) {
   tiles_.choose(view);
-  if (tiles_.blocks().empty()) return;
-  upload_joints();
+  if (tiles_.blocks().empty() || latest_ == nullptr) return;
+  gl::stream_to(GL_TEXTURE_BUFFER, bend_buffer_, tiles_.bends(*latest_));
+  gl::stream_to(GL_TEXTURE_BUFFER, block_buffer_, tiles_.blocks());
   glUseProgram(program_.name());
+  glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
   glBindVertexArray(array_.name());
   const auto bind = [](GLint unit, GLenum format, const gl::GlTexture& texture, const gl::GlBuffer& buffer) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
@@ -79,7 +63,7 @@ void GrassRenderer::draw(const meshes::View& view) {
   };
   bind(kStreamedBladeUnit, GL_RGBA32F, blade_texture_, blade_buffer_);
   bind(kBlockUnit, GL_R32UI, block_texture_, block_buffer_);
-  bind(0, GL_R32F, joint_texture_, joint_buffer_);
+  bind(0, GL_RG32F, bend_texture_, bend_buffer_);
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const meshes::StrandTiles::Level& level = tiles_.levels()[i];
     if (level.tiles.empty()) continue;

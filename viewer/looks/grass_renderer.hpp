@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "engine/pose/strand_kinematics.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/meshes/ground_map.hpp"
@@ -10,30 +9,27 @@
 
 namespace yuragi::viewer::looks {
 
-/// Draws streamed strands as blades of a meadow, from static buffers, tile by tile: what is not in view, and blades
-/// that are left out far away, are not moved, either. The GroundMaps are bound.
+/// Draws streamed strands as blades of a meadow, from static buffers, tile by tile. Each picture only the bends of what
+/// is in view go to the GPU, where they become arcs. The GroundMaps are bound.
 class GrassRenderer : public SceneRenderer {
  public:
   /// `strands` must outlive this.
-  GrassRenderer(const pose::StrandSkeleton& strands, float drawn_at_1m_per_m2);
+  GrassRenderer(const pose::StrandSkeleton& strands, const meshes::GrassDetail& detail);
 
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
+  void set_blade_share(float share) override;
   bool is_field() const override { return true; }
 
  private:
-  void upload_joints();
-
+  meshes::GrassDetail detail_;
   meshes::Thinning thinning_;
   meshes::StrandTiles tiles_;
   const pose::StrandPose* latest_ = nullptr;  ///< of the picture being drawn
-  pose::StrandPose pose_;                     ///< of the tiles' skeleton, where it is in view
-  pose::JointPositions joints_;
-  std::vector<float> shown_joints_;  ///< of the blocks that are drawn, one behind the other
   gl::GlProgram program_;
   gl::GlVertexArray array_;
-  gl::GlBuffer blade_buffer_, joint_buffer_, block_buffer_;
-  gl::GlTexture blade_texture_, joint_texture_, block_texture_;
+  gl::GlBuffer blade_buffer_, bend_buffer_, block_buffer_;
+  gl::GlTexture blade_texture_, bend_texture_, block_texture_;
   std::vector<gl::GlBuffer> triangles_;  ///< of each level of detail
   std::vector<GLsizei> counts_;
   std::vector<const void*> offsets_;

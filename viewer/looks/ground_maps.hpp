@@ -23,6 +23,7 @@ class GroundMaps {
   /// The bends of the picture. `grid`: of the nodes of the ground; null: `near_by` is the mean of its bends instead,
   /// which may be null, too.
   void move_to(const meshes::BendGrid& grid, const pose::StrandPose* nodes, const pose::StrandPose* near_by);
+  const meshes::GrowthMap& growth() const { return map_; }
   /// Binds all of it, with this stand of tall grass, of which the share `tall` is to be seen, through the door of this
   /// number.
   void bind(const meshes::Stand& stand, float tall, std::size_t door);

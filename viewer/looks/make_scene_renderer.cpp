@@ -24,7 +24,7 @@ std::unique_ptr<SceneRenderer> renderer_of(const pose::StrandSkeleton& strands, 
                                            look::Quality quality) {
   if (scene.kind == "fur") return std::make_unique<FurRenderer>(strands);
   if (meshes::bend_grid_of(strands).columns > 0) return std::make_unique<GroundNodes>();
-  return std::make_unique<GrassRenderer>(strands, blades_at_1m_per_m2(quality));
+  return std::make_unique<GrassRenderer>(strands, grass_detail(quality));
 }
 std::unique_ptr<SceneRenderer> renderer_of(const pose::GridSkeleton& cloth, const wire::SceneModel& scene,
                                            look::Quality) {

@@ -30,6 +30,9 @@ class SceneRenderer {
   /// Fills, in the stencil alone, the part of the ground that is open: under water.
   virtual void draw_hole() {}
 
+  /// From now on it draws only this share (0 to 1] of the blades of grass that it would.
+  virtual void set_blade_share(float) {}
+
   /// Does it cast a shadow? Then draw() is also called with a View that projects everything onto the ground.
   virtual bool casts_shadow() const { return false; }
 

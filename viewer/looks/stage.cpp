@@ -147,16 +147,18 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
 void Stage::draw_sward(const meshes::View& view) {
   if (tall_ > 0.0F) {
     if (!meadow_ || !meadow_stand_ || !is_alike(*meadow_stand_, stand_)) {
-      meadow_.emplace(Sward::Kind::kTall, stand_, blades_at_1m_per_m2(quality_));
+      meadow_.emplace(Sward::Kind::kTall, stand_, grass_detail(quality_));
       meadow_stand_ = stand_;
     }
     door_.open(tall_, tall_door_);
-    meadow_->draw(view);
+    meadow_->set_blade_share(blade_share_);
+    meadow_->draw(view, ground_.growth());
     door_.close();
   }
   if (tall_ < 1.0F) {
-    if (!lawn_) lawn_.emplace(Sward::Kind::kLawn, stand_, blades_at_1m_per_m2(quality_));
-    lawn_->draw(view);
+    if (!lawn_) lawn_.emplace(Sward::Kind::kLawn, stand_, grass_detail(quality_));
+    lawn_->set_blade_share(blade_share_);
+    lawn_->draw(view, ground_.growth());
   }
 }
 
@@ -199,14 +201,20 @@ void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_s
 }
 
 void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target) {
-  meshes::View view = meshes::view_of(camera, target.width_px(), target.height_px());
+  meshes::View view = meshes::view_of(camera, target.drawn_width_px(), target.drawn_height_px());
   if (clock_ != nullptr) clock_->begin();
   const glm::vec3 to_sun(light_.to_sun);
   const bool has_shadows = to_sun.y > kLowestSun;
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    if (is_seen(moment, scene)) views_[scene]->renderer->move_to(moment.poses[scene]);
+    if (!is_seen(moment, scene)) continue;
+    views_[scene]->renderer->move_to(moment.poses[scene]);
+    views_[scene]->renderer->set_blade_share(blade_share_);
   }
-  if (has_shadows && shadow_map_) draw_shadows(moment, to_sun, view);
+  mark_pass("kinematics");
+  if (has_shadows && shadow_map_) {
+    draw_shadows(moment, to_sun, view);
+    mark_pass("shadows");
+  }
   const bool has_flat_shadows = has_shadows && !shadow_map_;
   const meshes::View flat = has_flat_shadows ? meshes::laid_flat(view, to_sun) : view;
   view_buffer_.set(view);
@@ -221,6 +229,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
 
   move_ground(moment);
+  mark_pass("ground maps");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
     SceneRenderer& renderer = *views_[scene]->renderer;
@@ -241,6 +250,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
     door_.close();
   }
   draw_sward(view);
+  mark_pass("sward");
   landscape_.draw(view);
   mark_pass("landscape");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {

@@ -46,11 +46,14 @@ class Stage {
   /// How much work the next pictures are; at first little. kLow has hard shadows, on the ground only; kAuto is kHigh.
   void set_quality(look::Quality quality);
 
+  /// From now on only this share (0 to 1] of the blades of grass that the quality has is drawn; all at first.
+  void set_blade_share(float share) { blade_share_ = share; }
+
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
-  /// From now on each picture's passes are timed: by kind of scene, their shadows, the landscape, lights. Null: no
-  /// longer. Must outlive the drawing.
+  /// From now on the passes of each picture are timed: kinematics, each kind of scene, their shadows, the sward, the
+  /// landscape, lights. Null: no longer. Must outlive the drawing.
   void time_passes_with(gl::PassClock* clock) { clock_ = clock; }
 
  private:
@@ -87,6 +90,7 @@ class Stage {
   std::optional<meshes::Stand> meadow_stand_;
   gl::ScreenDoor door_;
   gl::ViewBuffer view_buffer_;
+  float blade_share_ = 1.0F;
   look::Quality quality_ = look::Quality::kLow;
   std::optional<gl::ShadowMap> shadow_map_;  // nothing: hard shadows
   gl::PassClock* clock_ = nullptr;

@@ -9,8 +9,8 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-constexpr float kTallReach_m = 60.0F;
 constexpr float kLawnReach_m = 24.0F;
+constexpr float kLawnLength_m = 0.085F;  // sward.part.glsl has the same
 constexpr float kLawnHeight_m = 0.2F;
 constexpr float kLawnBlades_per_m2 = 700.0F;
 constexpr float kHighest = 2.2F;           // of the mean length
@@ -20,9 +20,22 @@ constexpr float kLawnWidth_m = 0.008F;
 constexpr GLint kBladeUnit = 4;
 constexpr GLint kTileUnit = 5;
 
-meshes::Thinning thinning_of(Sward::Kind kind, const meshes::Stand& stand, float drawn_at_1m_per_m2) {
+meshes::Thinning thinning_of(Sward::Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& detail) {
   return {.blades_per_m2 = kind == Sward::Kind::kTall ? stand.blades_per_m2 : kLawnBlades_per_m2,
-          .drawn_at_1m_per_m2 = drawn_at_1m_per_m2};
+          .drawn_at_1m_per_m2 = detail.drawn_at_1m_per_m2};
+}
+
+/// A lawn's blades are short: they end nearer.
+meshes::GrassDetail detail_of(Sward::Kind kind, meshes::GrassDetail detail) {
+  if (kind == Sward::Kind::kLawn) detail.reach_m = std::min(detail.reach_m, kLawnReach_m);
+  return detail;
+}
+
+meshes::SwardTiles tiles_of(Sward::Kind kind, std::size_t blades, const meshes::Stand& stand,
+                            const meshes::GrassDetail& detail) {
+  const float length_m = kind == Sward::Kind::kTall ? stand.length_m : kLawnLength_m;
+  const float height_m = kind == Sward::Kind::kTall ? kHighest * stand.length_m : kLawnHeight_m;
+  return {blades, thinning_of(kind, stand, detail), detail_of(kind, detail), length_m, height_m};
 }
 
 float width_m_of(Sward::Kind kind, const meshes::Stand& stand) {
@@ -31,32 +44,35 @@ float width_m_of(Sward::Kind kind, const meshes::Stand& stand) {
                     0.055F * stand.length_m);
 }
 
+std::size_t rings_of(std::size_t level) {
+  return meshes::SwardTiles::kLevels - level;
+}
+
 std::size_t blades_a_tile(const meshes::Thinning& thinning) {
   return static_cast<std::size_t>(thinning.blades_per_m2 * meshes::SwardTiles::kTile_m * meshes::SwardTiles::kTile_m);
 }
 
 }  // namespace
 
-float blades_at_1m_per_m2(look::Quality quality) {
-  if (quality == look::Quality::kLow) return meshes::kFewBladesAt1m_per_m2;
-  return quality == look::Quality::kMedium ? meshes::kSomeBladesAt1m_per_m2 : meshes::kManyBladesAt1m_per_m2;
+const meshes::GrassDetail& grass_detail(look::Quality quality) {
+  if (quality == look::Quality::kLow) return meshes::kLittleGrass;
+  return quality == look::Quality::kMedium ? meshes::kMediumGrass : meshes::kMuchGrass;
 }
 
-Sward::Sward(Kind kind, const meshes::Stand& stand, float drawn_at_1m_per_m2)
+Sward::Sward(Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& detail)
     : kind_(kind),
-      height_m_(kind == Kind::kTall ? kHighest * stand.length_m : kLawnHeight_m),
-      blades_per_tile_(blades_a_tile(thinning_of(kind, stand, drawn_at_1m_per_m2))),
-      thinning_(thinning_of(kind, stand, drawn_at_1m_per_m2)),
-      tiles_(blades_per_tile_, thinning_, kind == Kind::kTall ? kTallReach_m : kLawnReach_m),
+      blades_per_tile_(blades_a_tile(thinning_of(kind, stand, detail))),
+      detail_(detail),
+      thinning_(thinning_of(kind, stand, detail)),
+      tiles_(tiles_of(kind, blades_per_tile_, stand, detail)),
       program_(gl::link_program("sward", gl::shaders::kSwardVert, gl::shaders::kShadeFrag)) {
   GroundMaps::set_samplers(program_);
   gl::set_sampler(program_, "blades", kBladeUnit);
   gl::set_sampler(program_, "tiles", kTileUnit);
   const auto place = [this](const char* name) { return glGetUniformLocation(program_.name(), name); };
   glUniform1i(place("blades_per_tile"), static_cast<GLint>(blades_per_tile_));
-  glUniform1f(place("thinning"), thinning_.factor());
   glUniform1f(place("tile_m"), meshes::SwardTiles::kTile_m);
-  glUniform1f(place("reach_m"), kind == Kind::kTall ? kTallReach_m : kLawnReach_m);
+  glUniform1f(place("reach_m"), detail_of(kind, detail).reach_m);
   glUniform1f(place("width_m"), width_m_of(kind, stand));
   glUniform1f(place("tall"), kind == Kind::kTall ? 1.0F : 0.0F);
 
@@ -67,17 +83,24 @@ Sward::Sward(Kind kind, const meshes::Stand& stand, float drawn_at_1m_per_m2)
   glBindBuffer(GL_TEXTURE_BUFFER, tile_buffer_.name());
   glBindVertexArray(array_.name());
   for (std::size_t level = 0; level < triangles_.size(); ++level) {
-    const std::vector<std::uint32_t> triangles =
-        meshes::ribbon_triangles(blades_per_tile_, meshes::SwardTiles::kRings[level]);
+    const std::vector<std::uint32_t> triangles = meshes::ribbon_triangles(blades_per_tile_, rings_of(level));
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_[level].name());
     glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(std::span(triangles).size_bytes()), triangles.data(),
                  GL_STATIC_DRAW);
   }
 }
 
-void Sward::draw(const meshes::View& view) {
-  tiles_.choose(view, height_m_);
+void Sward::set_blade_share(float share) {
+  thinning_.drawn_at_1m_per_m2 = share * detail_.drawn_at_1m_per_m2;
+  tiles_.set_thinning(thinning_);
+}
+
+void Sward::draw(const meshes::View& view, const meshes::GrowthMap& growth) {
+  tiles_.choose(view, [&](const glm::vec2& low_m, const glm::vec2& high_m) {
+    return growth.is_free(low_m, high_m, kind_ == Kind::kTall);
+  });
   glUseProgram(program_.name());
+  glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
   glBindVertexArray(array_.name());
   glActiveTexture(GL_TEXTURE0 + kBladeUnit);
   glBindTexture(GL_TEXTURE_BUFFER, blade_texture_.name());
@@ -89,7 +112,7 @@ void Sward::draw(const meshes::View& view) {
   for (std::size_t level = 0; level < triangles_.size(); ++level) {
     const std::span<const meshes::SwardTile> tiles = tiles_.level(level);
     if (tiles.empty()) continue;
-    const std::size_t rings = meshes::SwardTiles::kRings[level];
+    const std::size_t rings = rings_of(level);
     gl::stream_to(GL_TEXTURE_BUFFER, tile_buffer_, tiles);
     counts_.clear();
     first_corners_.clear();
@@ -99,7 +122,6 @@ void Sward::draw(const meshes::View& view) {
     }
     offsets_.assign(tiles.size(), nullptr);
     glUniform1i(glGetUniformLocation(program_.name(), "rings"), static_cast<GLint>(rings));
-    glUniform1i(glGetUniformLocation(program_.name(), "is_far"), level + 1 == triangles_.size() ? 1 : 0);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_[level].name());
     glMultiDrawElementsBaseVertex(GL_TRIANGLES, counts_.data(), GL_UNSIGNED_INT, offsets_.data(),
                                   static_cast<GLsizei>(tiles.size()), first_corners_.data());

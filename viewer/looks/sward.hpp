@@ -10,22 +10,24 @@
 
 namespace yuragi::viewer::looks {
 
-/// How many blades a quality draws, streamed ones and others alike.
-float blades_at_1m_per_m2(look::Quality quality);
+/// How much a quality draws of grass, streamed and other alike.
+const meshes::GrassDetail& grass_detail(look::Quality quality);
 
 /// Blades of grass around the eye as far as they can be told apart, drawn from static buffers: tall grass around a
 /// stand of streamed blades, as dense, or a lawn. The View and the GroundMaps are bound. Needs a current context.
 class Sward {
  public:
   enum class Kind : std::uint8_t { kTall, kLawn };
-  Sward(Kind kind, const meshes::Stand& stand, float drawn_at_1m_per_m2);
+  Sward(Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& detail);
 
-  void draw(const meshes::View& view);
+  /// From now on only this share (0 to 1] of the detail's blades is drawn.
+  void set_blade_share(float share);
+  void draw(const meshes::View& view, const meshes::GrowthMap& growth);
 
  private:
   Kind kind_;
-  float height_m_;
   std::size_t blades_per_tile_;
+  meshes::GrassDetail detail_;
   meshes::Thinning thinning_;
   meshes::SwardTiles tiles_;
   gl::GlProgram program_;

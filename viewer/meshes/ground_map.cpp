@@ -126,6 +126,17 @@ void GrowthMap::make(std::span<const Standing> things, float most) {
   }
 }
 
+bool GrowthMap::is_free(const glm::vec2& low_m, const glm::vec2& high_m, bool is_tall) const {
+  // The shader interpolates between texels: those around count, too.
+  for (std::size_t row = texel_of(low_m.y - kTexel_m); row <= texel_of(high_m.y + kTexel_m); ++row) {
+    for (std::size_t column = texel_of(low_m.x - kTexel_m); column <= texel_of(high_m.x + kTexel_m); ++column) {
+      const std::size_t texel = row * kTexels + column;
+      if (water_[texel] < 1.0F && (!is_tall || blades_[texel] < 1.0F)) return true;
+    }
+  }
+  return false;
+}
+
 float GrowthMap::growth_at(float x_m, float z_m) const {
   return growth_[texel_of(z_m) * kTexels + texel_of(x_m)];
 }

@@ -69,6 +69,9 @@ class GrowthMap {
   float growth_at(float x_m, float z_m) const;
   float blades_at(float x_m, float z_m) const;
   float water_at(float x_m, float z_m) const;
+  /// May a blade that is not streamed stand in this rectangle (x, z)? Not on water, nor, where it is one of tall grass,
+  /// where streamed blades stand.
+  bool is_free(const glm::vec2& low_m, const glm::vec2& high_m, bool is_tall) const;
 
  private:
   std::vector<std::uint8_t> texels_;

@@ -1,6 +1,7 @@
 #include "viewer/meshes/strand_tiles.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -13,9 +14,9 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-constexpr std::size_t kStrandsPerTile = 400;  // on average
-constexpr float kRingPx = 24.0F;              // a ring for each of so many pixels of a blade's height
+constexpr std::size_t kStrandsPerTile = 200;  // on average
 constexpr float kReach = 1.1F;                // of a blade's length, around its root
+constexpr std::array<std::size_t, 9> kRings{12, 10, 8, 6, 5, 4, 3, 2, 1};
 
 /// Of the strands, in the order of their tiles and within a tile at random, each with its tile.
 struct Order {
@@ -42,9 +43,34 @@ std::vector<Order> tile_order(const pose::StrandSkeleton& strands) {
   return order;
 }
 
+glm::vec3 leaning(const glm::vec2& lean) {
+  const float angle = glm::length(lean);
+  const float sine = angle > 1e-4F ? std::sin(angle) / angle : 1.0F;
+  return {lean.x * sine, std::cos(angle), lean.y * sine};
+}
+
+/// The lean of a direction, and that of the tip at rest.
+glm::vec2 lean_of(const glm::vec3& direction) {
+  const glm::vec2 level(direction.x, direction.z);
+  const float sine = glm::length(level);
+  return sine > 1e-6F ? level * (std::atan2(sine, direction.y) / sine) : glm::vec2(0.0F);
+}
+glm::vec2 tip_lean(const pose::StrandSkeleton& strands, std::size_t i) {
+  const float curl_rad =
+      strands.rest_curl_rad[i] * static_cast<float>(std::max<std::size_t>(strands.links_per_strand, 1) - 1);
+  return lean_of(std::cos(curl_rad) * glm::vec3(strands.rest_x[i], strands.rest_y[i], strands.rest_z[i]) +
+                 std::sin(curl_rad) * glm::vec3(strands.curl_x[i], strands.curl_y[i], strands.curl_z[i]));
+}
+
 }  // namespace
 
-StrandTiles::StrandTiles(const pose::StrandSkeleton& strands, const Thinning& thinning) : thinning_(thinning) {
+glm::vec3 arc_point(const glm::vec2& foot, const glm::vec2& turned, float t) {
+  const float half_2 = 0.25F * t * t * glm::dot(turned, turned);
+  return t * (1.0F - half_2 * (1.0F / 6.0F - half_2 / 120.0F)) * leaning(foot + turned * (0.5F * t));
+}
+
+StrandTiles::StrandTiles(const pose::StrandSkeleton& strands, const Thinning& thinning, const GrassDetail& detail)
+    : thinning_(thinning), detail_(detail) {
   const std::vector<Blade> forms = blades_of(strands);
   const std::vector<Order> order = tile_order(strands);
   const math::RandomStream chance(0, math::stream_id("viewer blade kinds"));
@@ -62,71 +88,66 @@ StrandTiles::StrandTiles(const pose::StrandSkeleton& strands, const Thinning& th
       const glm::vec3 root_m(form.root_m[0], form.root_m[1], form.root_m[2]);
       tile.bounds = united(tile.bounds, {root_m, root_m});
       tile.length_m = std::max(tile.length_m, length_m);
+      tile.mean_length_m += length_m / static_cast<float>(padded);
       source_.push_back(static_cast<std::uint32_t>(strand));
-      blades_.push_back({.root_x_m = root_m.x,
-                         .root_y_m = root_m.y,
-                         .root_z_m = root_m.z,
+      const glm::vec2 foot_rad = lean_of({strands.rest_x[strand], strands.rest_y[strand], strands.rest_z[strand]});
+      blades_.push_back({.root_m = root_m,
+                         .length_m = length_m,
+                         .foot_rad = foot_rad,
+                         .turned_rad = tip_lean(strands, strand) - foot_rad,
                          .width_m = form.width_m,
                          .facing_rad = form.facing_rad,
                          .chance = static_cast<float>(chance.uniform(strand)),
-                         .rank = (static_cast<float>(i) + 0.5F) / static_cast<float>(tile.strands),
-                         .length_m = length_m});
+                         .rank = (static_cast<float>(i) + 0.5F) / static_cast<float>(tile.strands)});
     }
     most_strands_ = std::max(most_strands_, padded);
     tiles_.push_back(tile);
     begin = end;
   }
 
-  tiled_.strand_count = source_.size();
-  tiled_.links_per_strand = strands.links_per_strand;
-  using Array = std::vector<float> pose::StrandSkeleton::*;
-  for (const Array array :
-       {&pose::StrandSkeleton::root_x_m, &pose::StrandSkeleton::root_y_m, &pose::StrandSkeleton::root_z_m,
-        &pose::StrandSkeleton::rest_x, &pose::StrandSkeleton::rest_y, &pose::StrandSkeleton::rest_z,
-        &pose::StrandSkeleton::curl_x, &pose::StrandSkeleton::curl_y, &pose::StrandSkeleton::curl_z,
-        &pose::StrandSkeleton::rest_curl_rad, &pose::StrandSkeleton::link_length_m}) {
-    for (const std::uint32_t strand : source_) (tiled_.*array).push_back((strands.*array)[strand]);
-  }
-
-  const std::size_t links = strands.links_per_strand;
-  for (const std::size_t rings : {links, links / 2, std::size_t{3}, std::size_t{2}}) {
-    const std::size_t some = std::clamp<std::size_t>(rings, 1, std::max<std::size_t>(links, 1));
-    if (levels_.empty() || some < levels_.back().rings) levels_.push_back({some, {}});
-  }
+  for (const std::size_t rings : kRings) levels_.push_back({rings, {}});
 }
 
 void StrandTiles::choose(const View& view) {
   blocks_.clear();
+  in_view_.clear();
   for (Level& level : levels_) level.tiles.clear();
   const std::array<glm::vec4, 5> planes = side_planes(view);
   const glm::vec3 eye_m(view.eye_m);
-  for (const Tile& tile : tiles_) {
-    const glm::vec3 low_m = tile.bounds.low_m - kReach * tile.length_m;
-    const glm::vec3 high_m = tile.bounds.high_m + kReach * tile.length_m;
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    const Tile& tile = tiles_[i];
+    const float reach_m = kReach * tile.length_m;
+    const glm::vec3 low_m = tile.bounds.low_m - glm::vec3(reach_m, 0.0F, reach_m);
+    const glm::vec3 high_m = tile.bounds.high_m + reach_m;
     if (!is_in_view(planes, low_m, high_m)) continue;
-
     // Ranks are compared at the roots: the nearest of them decides.
     const float distance_m = glm::distance(eye_m, glm::clamp(eye_m, tile.bounds.low_m, tile.bounds.high_m));
+    if (distance_m < detail_.reach_m) in_view_.emplace_back(distance_m, i);
+  }
+  // Near ones first: what they hide is then not painted.
+  std::ranges::sort(in_view_);
+  for (const auto& [distance_m, i] : in_view_) {
+    const Tile& tile = tiles_[i];
     const auto drawn =
         static_cast<std::size_t>(std::ceil(static_cast<float>(tile.strands) * thinning_.share(distance_m)));
     const std::size_t strands = std::min(drawn, tile.strands);
-    const float height_px = tile.length_m / (view.eye_m.w * std::max(distance_m, 1e-3F));
-    const auto rings = static_cast<std::size_t>(std::min(height_px / kRingPx, 1e6F));
+    const std::size_t rings = detail_.rings(tile.mean_length_m, distance_m, view.eye_m.w);
     std::size_t level = levels_.size() - 1;
     while (level > 0 && levels_[level].rings < rings) --level;
     levels_[level].tiles.push_back({.first_slot = blocks_.size() * pose::kStrandsPerBlock, .strands = strands});
     const std::size_t blocks = (strands + pose::kStrandsPerBlock - 1) / pose::kStrandsPerBlock;
-    for (std::size_t i = 0; i < blocks; ++i) blocks_.push_back(static_cast<std::uint32_t>(tile.first_block + i));
+    for (std::size_t k = 0; k < blocks; ++k) blocks_.push_back(static_cast<std::uint32_t>(tile.first_block + k));
   }
 }
 
-void StrandTiles::take(const pose::StrandPose& pose, pose::StrandPose& tiled) const {
+std::span<const glm::vec2> StrandTiles::bends(const pose::StrandPose& pose) {
+  bends_.clear();
   for (const std::uint32_t block : blocks_) {
     for (std::size_t i = block * pose::kStrandsPerBlock; i < (block + 1) * pose::kStrandsPerBlock; ++i) {
-      tiled.bend_east_rad[i] = pose.bend_east_rad[source_[i]];
-      tiled.bend_south_rad[i] = pose.bend_south_rad[source_[i]];
+      bends_.emplace_back(pose.bend_east_rad[source_[i]], pose.bend_south_rad[source_[i]]);
     }
   }
+  return bends_;
 }
 
 }  // namespace yuragi::viewer::meshes

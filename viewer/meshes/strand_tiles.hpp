@@ -2,7 +2,11 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "engine/pose/skeleton.hpp"
 #include "viewer/meshes/bounds.hpp"
@@ -11,14 +15,21 @@
 
 namespace yuragi::viewer::meshes {
 
-/// A streamed blade of grass, as the shader reads it.
+/// The point of an arc of length 1, at part t of it, that leaves its foot leaning by `foot` (toward east and south,
+/// radians from upright) and turns by `turned` up to its tip: a strand without its joints. The shaders have the same
+/// (blade.part.glsl); test: within a few hundredths of what the forward kinematics says.
+glm::vec3 arc_point(const glm::vec2& foot, const glm::vec2& turned, float t);
+
+/// A streamed blade of grass at rest, as the shader reads it.
 struct TiledBlade {
-  float root_x_m = 0.0F, root_y_m = 0.0F, root_z_m = 0.0F;
+  glm::vec3 root_m{0.0F};
+  float length_m = 0.0F;
+  glm::vec2 foot_rad{0.0F};    ///< how its foot leans, as of an arc
+  glm::vec2 turned_rad{0.0F};  ///< how far it is turned up to its tip; its bend is added
   float width_m = 0.0F;
   float facing_rad = 0.0F;  ///< bearing of its flat side
   float chance = 0.0F;      ///< 0 to 1: its tint, and what grows on it
   float rank = 0.0F;        ///< 0 to 1: see Thinning
-  float length_m = 0.0F;
 };
 
 /// Streamed strands in square tiles of some hundred, each tile's in a random order, which is that of their ranks: so
@@ -36,37 +47,39 @@ class StrandTiles {
     std::vector<Drawn> tiles;
   };
 
-  StrandTiles(const pose::StrandSkeleton& strands, const Thinning& thinning);
+  StrandTiles(const pose::StrandSkeleton& strands, const Thinning& thinning, const GrassDetail& detail);
 
-  /// The same strands tile by tile, each tile in whole blocks.
-  const pose::StrandSkeleton& skeleton() const { return tiled_; }
-  /// One for each of its strands.
+  /// The strands tile by tile, each tile in whole blocks.
   std::span<const TiledBlade> blades() const { return blades_; }
   std::size_t most_strands_a_tile() const { return most_strands_; }
 
+  void set_thinning(const Thinning& thinning) { thinning_ = thinning; }
   /// Chooses what is drawn.
   void choose(const View& view);
-  /// The blocks of skeleton() that hold it, those of a tile one behind the other.
+  /// The blocks of blades() that hold it, those of a tile one behind the other.
   std::span<const std::uint32_t> blocks() const { return blocks_; }
   std::span<const Level> levels() const { return levels_; }
 
-  /// Takes the bends of those blocks from a pose of the strands to one of skeleton().
-  void take(const pose::StrandPose& pose, pose::StrandPose& tiled) const;
+  /// The bends of those blocks, of a pose of the strands.
+  std::span<const glm::vec2> bends(const pose::StrandPose& pose);
 
  private:
   struct Tile {
     Bounds bounds;
     std::size_t first_block = 0, strands = 0;
-    float length_m = 0.0F;
+    float length_m = 0.0F;  // of the longest
+    float mean_length_m = 0.0F;
   };
 
   Thinning thinning_;
-  pose::StrandSkeleton tiled_;
-  std::vector<std::uint32_t> source_;  // of each strand of tiled_
+  GrassDetail detail_;
+  std::vector<std::uint32_t> source_;  // the strand of each of blades_
   std::vector<TiledBlade> blades_;
   std::vector<Tile> tiles_;
   std::size_t most_strands_ = 0;
+  std::vector<std::pair<float, std::size_t>> in_view_;  // how far away, and which tile
   std::vector<std::uint32_t> blocks_;
+  std::vector<glm::vec2> bends_;
   std::vector<Level> levels_;
 };
 

@@ -48,32 +48,41 @@ std::vector<SwardBlade> sward_blades(std::size_t count) {
   return blades;
 }
 
-void SwardTiles::choose(const View& view, float height_m) {
-  for (std::vector<SwardTile>& level : levels_) level.clear();
+std::size_t GrassDetail::rings(float length_m, float distance_m, float pixel_m) const {
+  const float height_px = length_m / (pixel_m * std::max(distance_m, 1e-3F));
+  return static_cast<std::size_t>(std::clamp(std::round(std::sqrt(height_px / (8.0F * off_px))), 1.0F, 1e6F));
+}
+
+void SwardTiles::find_in_view(const View& view) {
   if (blades_ == 0) return;
   const std::array<glm::vec4, 5> planes = side_planes(view);
   const glm::vec3 eye_m(view.eye_m);
-  const auto first = [&](float eye_axis_m) { return static_cast<int>(std::floor((eye_axis_m - reach_m_) / kTile_m)); };
-  const auto last = [&](float eye_axis_m) { return static_cast<int>(std::floor((eye_axis_m + reach_m_) / kTile_m)); };
+  const float reach_m = detail_.reach_m;
+  const auto first = [&](float eye_axis_m) { return static_cast<int>(std::floor((eye_axis_m - reach_m) / kTile_m)); };
+  const auto last = [&](float eye_axis_m) { return static_cast<int>(std::floor((eye_axis_m + reach_m) / kTile_m)); };
   const math::RandomStream chance(0, math::stream_id("viewer sward tiles"));
   for (int row = first(eye_m.z); row <= last(eye_m.z); ++row) {
     for (int column = first(eye_m.x); column <= last(eye_m.x); ++column) {
       const glm::vec3 low_m(static_cast<float>(column) * kTile_m, 0.0F, static_cast<float>(row) * kTile_m);
-      const glm::vec3 high_m = low_m + glm::vec3(kTile_m, height_m, kTile_m);
+      const glm::vec3 high_m = low_m + glm::vec3(kTile_m, height_m_, kTile_m);
       // Blades may lean out of the tile.
-      if (!is_in_view(planes, low_m - 0.7F * height_m, high_m + 0.7F * height_m)) continue;
-      const float distance_m = glm::distance(eye_m, glm::clamp(eye_m, low_m, high_m));
-      if (distance_m > reach_m_) continue;
-      std::size_t level = 0;
-      while (level + 1 < kLevels && distance_m >= kFrom_m[level + 1]) ++level;
+      const glm::vec3 lean_m(0.7F * height_m_, 0.0F, 0.7F * height_m_);
+      if (!is_in_view(planes, low_m - lean_m, high_m + lean_m)) continue;
+      // Ranks are compared at the feet.
+      const float distance_m = glm::distance(eye_m, glm::clamp(eye_m, low_m, {high_m.x, 0.0F, high_m.z}));
+      if (distance_m > reach_m) continue;
+      const std::size_t rings = std::min(detail_.rings(length_m_, distance_m, view.eye_m.w), kLevels);
       const float blades = std::ceil(static_cast<float>(blades_) * thinning_.share(distance_m));
       const auto number = static_cast<std::uint64_t>(static_cast<std::uint32_t>(row)) << 32U |
                           static_cast<std::uint64_t>(static_cast<std::uint32_t>(column));
-      levels_[level].push_back({.origin_m = {low_m.x, low_m.z},
-                                .turn = std::floor(static_cast<float>(chance.uniform(number)) * 7.99F),
-                                .blades = blades});
+      candidates_.push_back({.tile = {.origin_m = {low_m.x, low_m.z},
+                                      .turn = std::floor(static_cast<float>(chance.uniform(number)) * 7.99F),
+                                      .blades = blades},
+                             .level = kLevels - rings,
+                             .distance_m = distance_m});
     }
   }
+  std::ranges::sort(candidates_, {}, &Candidate::distance_m);
 }
 
 std::vector<std::uint32_t> ribbon_triangles(std::size_t count, std::size_t rings) {

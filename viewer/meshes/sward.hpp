@@ -23,10 +23,19 @@ struct Thinning {
   float share(float distance_m) const;
 };
 
-/// How many blades are drawn. The fewer, the nearer to the eye blades are left out and the others drawn wider.
-inline constexpr float kManyBladesAt1m_per_m2 = 24'000.0F;
-inline constexpr float kSomeBladesAt1m_per_m2 = 8'000.0F;
-inline constexpr float kFewBladesAt1m_per_m2 = 3'500.0F;
+/// How much is drawn of grass. The fewer blades, the nearer to the eye they are left out and the others drawn wider.
+struct GrassDetail {
+  float drawn_at_1m_per_m2 = 0.0F;  ///< see Thinning
+  float off_px = 0.6F;              ///< as far an arc may be off its chords
+  float reach_m = 60.0F;            ///< tall blades end there
+
+  /// Of vertices of a blade of this length at a distance, at least 1: an arc that turns by a radian is an eighth of its
+  /// length off one chord, and off n of them by n^2 less. `pixel_m`: the size of a pixel at one metre.
+  std::size_t rings(float length_m, float distance_m, float pixel_m) const;
+};
+inline constexpr GrassDetail kMuchGrass{.drawn_at_1m_per_m2 = 24'000.0F};
+inline constexpr GrassDetail kMediumGrass{.drawn_at_1m_per_m2 = 8'000.0F, .off_px = 1.0F};
+inline constexpr GrassDetail kLittleGrass{.drawn_at_1m_per_m2 = 2'000.0F, .off_px = 3.0F, .reach_m = 40.0F};
 
 /// A blade of the tile that the sward is laid of, as the shader reads it.
 struct SwardBlade {
@@ -53,26 +62,44 @@ struct SwardTile {
 /// Lays tiles around the eye and chooses those in view. Pure; does not allocate after the first few pictures.
 class SwardTiles {
  public:
-  static constexpr float kTile_m = 5.0F;
-  /// From these distances on a blade has fewer rings of vertices; kRings of them.
-  static constexpr std::size_t kLevels = 3;
-  static constexpr std::array<std::size_t, kLevels> kRings{4, 2, 1};
-  static constexpr std::array<float, kLevels> kFrom_m{0.0F, 5.0F, 20.0F};
+  static constexpr float kTile_m = 2.5F;
+  /// Level i has kLevels - i rings of vertices.
+  static constexpr std::size_t kLevels = 6;
 
-  /// Tiles of the whole stand have `blades` each; none is laid farther than `reach_m` from the eye.
-  SwardTiles(std::size_t blades, const Thinning& thinning, float reach_m)
-      : blades_(blades), thinning_(thinning), reach_m_(reach_m) {}
+  /// Tiles of the whole stand have `blades` each; none is laid farther from the eye than the detail's reach. Of
+  /// `length_m` are most blades, and none reaches higher than `height_m`.
+  SwardTiles(std::size_t blades, const Thinning& thinning, const GrassDetail& detail, float length_m, float height_m)
+      : blades_(blades), thinning_(thinning), detail_(detail), length_m_(length_m), height_m_(height_m) {}
 
-  /// `height_m`: no blade reaches higher.
-  void choose(const View& view, float height_m);
+  void set_thinning(const Thinning& thinning) { thinning_ = thinning; }
 
-  /// Of a level of detail.
+  /// `is_free`: of a rectangle of the ground (x, z, metres), may a blade stand in it?
+  template <class IsFree>
+  void choose(const View& view, IsFree&& is_free) {
+    candidates_.clear();
+    find_in_view(view);
+    for (std::vector<SwardTile>& level : levels_) level.clear();
+    for (const Candidate& tile : candidates_) {
+      if (is_free(tile.tile.origin_m, tile.tile.origin_m + kTile_m)) levels_[tile.level].push_back(tile.tile);
+    }
+  }
+
+  /// Those of a level of detail, near ones first.
   std::span<const SwardTile> level(std::size_t level) const { return levels_[level]; }
 
  private:
+  struct Candidate {
+    SwardTile tile;
+    std::size_t level = 0;
+    float distance_m = 0.0F;
+  };
+  void find_in_view(const View& view);
+
   std::size_t blades_;
   Thinning thinning_;
-  float reach_m_;
+  GrassDetail detail_;
+  float length_m_, height_m_;
+  std::vector<Candidate> candidates_;
   std::array<std::vector<SwardTile>, kLevels> levels_;
 };
 

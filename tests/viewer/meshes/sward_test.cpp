@@ -1,10 +1,13 @@
 #include "viewer/meshes/sward.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "engine/pose/strand_kinematics.hpp"
 #include "tests/viewer/test_meadow.hpp"
 #include "viewer/meshes/ground_map.hpp"
 #include "viewer/meshes/strand_tiles.hpp"
@@ -54,14 +57,27 @@ TEST(SwardTest, HasTheSameBladesEachTimeAndAnyFirstPartCoversTheTile) {
   }
 }
 
+constexpr GrassDetail kDetail{.drawn_at_1m_per_m2 = 4000.0F};
+
+bool everywhere(const glm::vec2&, const glm::vec2&) {
+  return true;
+}
+
+TEST(GrassDetailTest, ABladeHasMoreRingsTheLargerItIsInThePicture) {
+  EXPECT_EQ(kDetail.rings(0.7F, 1e9F, 0.001F), 1U);
+  EXPECT_EQ(kDetail.rings(0.48F, 10.0F, 0.001F), 3U);  // 48 pixels high: a chord is off by 6, three by 0.7
+  EXPECT_EQ(kDetail.rings(0.48F, 10.0F, 0.0005F), 4U);
+  EXPECT_GT(kDetail.rings(0.7F, 0.0F, 0.001F), 100U);
+}
+
 TEST(SwardTest, LaysTilesWithoutAGapAndNoneTwice) {
-  SwardTiles tiles(5000, kThinning, 30.0F);
-  tiles.choose(view_from({{0.0, 0.0, 0.0}, 0.0, 89.0, 60.0}), 1.0F);  // from above, higher than the reach
+  SwardTiles tiles(1250, kThinning, {.drawn_at_1m_per_m2 = 4000.0F, .reach_m = 30.0F}, 0.7F, 1.0F);
+  tiles.choose(view_from({{0.0, 0.0, 0.0}, 0.0, 89.0, 60.0}), everywhere);  // from above, higher than the reach
   for (std::size_t level = 0; level < SwardTiles::kLevels; ++level) EXPECT_TRUE(tiles.level(level).empty());
 
   // From above, nearer: every tile of the ground that is in the picture is there.
   const CameraPlace above{{0.0, 0.0, 0.0}, 0.0, 89.0, 20.0};
-  tiles.choose(view_from(above), 1.0F);
+  tiles.choose(view_from(above), everywhere);
   std::set<std::pair<float, float>> origins;
   for (std::size_t level = 0; level < SwardTiles::kLevels; ++level) {
     for (const SwardTile& tile : tiles.level(level)) {
@@ -79,8 +95,8 @@ TEST(SwardTest, LaysTilesWithoutAGapAndNoneTwice) {
 }
 
 TEST(SwardTest, LeavesOutWhatIsBehindTheCameraAndDrawsFewerBladesFarAway) {
-  SwardTiles tiles(5000, kThinning, 60.0F);
-  tiles.choose(view_from({{0.0, 0.5, 0.0}, 0.0, 3.0, 2.0}), 1.0F);  // to the north
+  SwardTiles tiles(5000, kThinning, kDetail, 0.7F, 1.0F);
+  tiles.choose(view_from({{0.0, 0.5, 0.0}, 0.0, 3.0, 2.0}), everywhere);  // to the north
   float near_by = 0.0F;
   float far_away = 5000.0F;
   for (std::size_t level = 0; level < SwardTiles::kLevels; ++level) {
@@ -96,6 +112,18 @@ TEST(SwardTest, LeavesOutWhatIsBehindTheCameraAndDrawsFewerBladesFarAway) {
   EXPECT_LT(far_away, 500.0F);
 }
 
+TEST(SwardTest, LaysNoTileWhereNoBladeMayStand) {
+  SwardTiles tiles(1250, kThinning, kDetail, 0.7F, 1.0F);
+  const auto in_the_east = [](const glm::vec2& low_m, const glm::vec2&) { return low_m.x >= 0.0F; };
+  tiles.choose(view_from({{0.0, 0.5, 0.0}, 0.0, 3.0, 2.0}), in_the_east);
+  std::size_t count = 0;
+  for (std::size_t level = 0; level < SwardTiles::kLevels; ++level) {
+    for (const SwardTile& tile : tiles.level(level)) EXPECT_GE(tile.origin_m.x, 0.0F);
+    count += tiles.level(level).size();
+  }
+  EXPECT_GT(count, 0U);
+}
+
 TEST(SwardTest, RibbonsHaveTheirTrianglesOneBehindTheOther) {
   EXPECT_EQ(ribbon_triangles(2, 1), (std::vector<std::uint32_t>{0, 1, 2, 3, 4, 5}));
   EXPECT_EQ(ribbon_triangles(1, 2), (std::vector<std::uint32_t>{0, 1, 2, 1, 2, 3, 2, 3, 4}));
@@ -105,7 +133,7 @@ class StrandTilesTest : public testing::Test {
  protected:
   const pose::Skeleton meadow_ = test_meadow(60, 8.0);
   const pose::StrandSkeleton& strands_ = std::get<pose::StrandSkeleton>(meadow_);
-  StrandTiles all_{strands_, {.blades_per_m2 = 1.0F, .drawn_at_1m_per_m2 = 1e9F}};
+  StrandTiles all_{strands_, {.blades_per_m2 = 1.0F, .drawn_at_1m_per_m2 = 1e9F}, kDetail};
 };
 
 TEST_F(StrandTilesTest, HoldEveryStrandOnceAndDrawAllThatAreInView) {
@@ -119,18 +147,16 @@ TEST_F(StrandTilesTest, HoldEveryStrandOnceAndDrawAllThatAreInView) {
   // A pose that tells each strand from all others.
   pose::StrandPose pose{std::vector<float>(strands_.padded_count()), std::vector<float>(strands_.padded_count())};
   for (std::size_t i = 0; i < strands_.strand_count; ++i) pose.bend_east_rad[i] = static_cast<float>(i);
-  pose::StrandPose tiled{std::vector<float>(all_.skeleton().padded_count()),
-                         std::vector<float>(all_.skeleton().padded_count())};
-  all_.take(pose, tiled);
+  const std::span<const glm::vec2> bends = all_.bends(pose);
   std::set<float> seen;
   for (const StrandTiles::Level& level : all_.levels()) {
     for (const StrandTiles::Drawn& tile : level.tiles) {
       for (std::size_t slot = tile.first_slot; slot < tile.first_slot + tile.strands; ++slot) {
         const std::size_t i = all_.blocks()[slot / 16] * std::size_t{16} + slot % 16;
-        const auto strand = static_cast<std::size_t>(tiled.bend_east_rad[i]);
-        EXPECT_TRUE(seen.insert(tiled.bend_east_rad[i]).second);
-        EXPECT_EQ(all_.blades()[i].root_x_m, strands_.root_x_m[strand]);
-        EXPECT_EQ(all_.skeleton().root_z_m[i], strands_.root_z_m[strand]);
+        const auto strand = static_cast<std::size_t>(bends[slot].x);
+        EXPECT_TRUE(seen.insert(bends[slot].x).second);
+        EXPECT_EQ(all_.blades()[i].root_m.x, strands_.root_x_m[strand]);
+        EXPECT_EQ(all_.blades()[i].root_m.z, strands_.root_z_m[strand]);
       }
     }
   }
@@ -138,7 +164,7 @@ TEST_F(StrandTilesTest, HoldEveryStrandOnceAndDrawAllThatAreInView) {
 }
 
 TEST_F(StrandTilesTest, DrawFewerFarAwayAndNoneBehindTheCamera) {
-  StrandTiles tiles(strands_, kThinning);
+  StrandTiles tiles(strands_, kThinning, {.drawn_at_1m_per_m2 = 4000.0F, .reach_m = 100.0F});
   const auto drawn = [&](const CameraPlace& place) {
     tiles.choose(view_from(place));
     std::size_t count = 0;
@@ -154,6 +180,35 @@ TEST_F(StrandTilesTest, DrawFewerFarAwayAndNoneBehindTheCamera) {
   EXPECT_EQ(drawn({{0.0, 0.5, -30.0}, 0.0, 2.0, 5.0}), 0U);
 }
 
+TEST_F(StrandTilesTest, ArcsAreWhatTheForwardKinematicsSays) {
+  pose::JointPositions joints(strands_);
+  for (const double bend_rad : {0.0, 0.4, 1.1}) {
+    const pose::Pose pose = test_pose(meadow_, 0.3, 0.7 * bend_rad, 0.3 * bend_rad, 70.0);
+    const auto& bends = std::get<pose::StrandPose>(pose);
+    ASSERT_EQ((pose::StrandKinematicsJob{.skeleton = &strands_, .pose = &bends, .joints = &joints}.run()),
+              pose::StrandKinematicsJob::Problem::kNone);
+    all_.choose(view_from({{0.0, 0.0, 0.0}, 0.0, 60.0, 30.0}));
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < all_.blades().size(); ++i) {
+      const TiledBlade& blade = all_.blades()[i];
+      const auto at = std::ranges::find(strands_.root_x_m, blade.root_m.x);
+      const auto strand = static_cast<std::size_t>(at - strands_.root_x_m.begin());
+      const glm::vec2 bend(bends.bend_east_rad[strand], bends.bend_south_rad[strand]);
+      for (const std::size_t link : {std::size_t{4}, std::size_t{9}}) {
+        const pose::JointPosition joint = joints.joint(strand, link);
+        const glm::vec3 place_m = blade.root_m + blade.length_m * arc_point(blade.foot_rad, blade.turned_rad + bend,
+                                                                            0.1F * static_cast<float>(link + 1));
+        const double off = glm::distance(place_m, glm::vec3(joint.x_m, joint.y_m, joint.z_m)) / blade.length_m;
+        EXPECT_LT(off, 0.12) << bend_rad << " " << link;
+        sum += off;
+        ++count;
+      }
+    }
+    EXPECT_LT(sum / static_cast<double>(count), 0.04) << bend_rad;
+  }
+}
+
 TEST(GrowthMapTest, IsShortAroundThingsTallElsewhereAndTakenByWater) {
   GrowthMap map;
   EXPECT_EQ(map.growth_at(3.0F, 3.0F), 1.0F);
@@ -166,6 +221,8 @@ TEST(GrowthMapTest, IsShortAroundThingsTallElsewhereAndTakenByWater) {
   EXPECT_EQ(map.water_at(22.0F, 22.0F), 1.0F);
   EXPECT_EQ(map.water_at(0.0F, 0.0F), 0.0F);
   EXPECT_EQ(map.growth_at(-30.0F, 10.0F), 1.0F);
+  EXPECT_FALSE(map.is_free({21.0F, 21.0F}, {23.0F, 23.0F}, false));
+  EXPECT_TRUE(map.is_free({-30.0F, 10.0F}, {-28.0F, 12.0F}, true));
   // And nowhere a step that is seen as a line: half a metre changes it by less than a third.
   for (float x_m = 0.0F; x_m < 15.0F; x_m += 0.5F) {
     EXPECT_LT(std::abs(map.growth_at(x_m + 0.5F, 0.0F) - map.growth_at(x_m, 0.0F)), 0.33F) << x_m;
@@ -181,6 +238,9 @@ TEST(GrowthMapTest, KnowsWhereStreamedBladesStand) {
   EXPECT_EQ(map.blades_at(0.1F, 0.1F), 1.0F);
   EXPECT_EQ(map.blades_at(2.6F, -2.6F), 1.0F);
   EXPECT_EQ(map.blades_at(6.0F, 0.0F), 0.0F);
+  EXPECT_FALSE(map.is_free({-2.0F, -2.0F}, {2.0F, 2.0F}, true));
+  EXPECT_TRUE(map.is_free({-2.0F, -2.0F}, {2.0F, 2.0F}, false));
+  EXPECT_TRUE(map.is_free({2.5F, -2.0F}, {5.0F, 2.0F}, true));
   EXPECT_EQ(map.growth_at(0.0F, 0.0F), 1.0F);
   map.make({});
   EXPECT_EQ(map.blades_at(0.1F, 0.1F), 0.0F);

@@ -1,9 +1,9 @@
-// A blade's ribbon: a point of its middle line becomes a vertex with its light. Behind sward.part.glsl.
+// A blade: a ribbon along an arc, of which a vertex is put with its light. Behind sward.part.glsl.
 
 const float kFarFrom_m = 6.0;  // where that begins
 const float kFar_m = 20.0;     // from here on it is all
 const vec4 kNowhere = vec4(2.0, 2.0, 2.0, 1.0);  // outside of the picture: a blade without length would leave dots
-uniform bool is_far;           // every blade that is drawn is farther away than that
+uniform int rings;             // of vertices above the root, two each, but one at the tip
 
 out vec3 shade;  // the screen's value; blades are so small that one for each vertex is exact enough
 
@@ -11,7 +11,21 @@ out vec3 shade;  // the screen's value; blades are so small that one for each ve
 bool is_seed(float chance) { return chance > 0.93; }
 bool is_flower(float chance, vec2 patch_at) { return chance < 0.10 * grass_fresh.w * smoothstep(0.02, 0.22, patch_at.y - 0.6 * patch_at.x); }
 
-void put_vertex(vec3 place, vec3 along, float t, float side, float width_m, float facing_rad, float chance, vec2 patch_at, vec2 bend, float lean, float tall) {
+// A point of an arc of length 1, at part t of it, that leaves its foot leaning by `foot` and turns by `turned` up to its tip
+// (meshes/strand_tiles.hpp: arc_point()).
+vec3 arc_point(vec2 foot, vec2 turned, float t) {
+  float half_2 = 0.25 * t * t * dot(turned, turned);
+  return t * (1.0 - half_2 * (1.0 / 6.0 - half_2 / 120.0)) * leaning(foot + turned * (0.5 * t));
+}
+
+// Corner v of a blade whose foot is here. `bend`: what the wind does to the grass around it.
+void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, float width_m, float facing_rad, float chance, vec2 patch_at, vec2 bend, float tall) {
+  float side = v == 2 * rings ? 0.0 : float(v & 1) * 2.0 - 1.0;
+  float s = 1.0 - float(v >> 1) / float(rings);
+  float t = 1.0 - s * sqrt(s);  // closer to each other toward the tip
+  vec3 place = foot_m + length_m * arc_point(foot, turned, t);
+  vec3 along = leaning(foot + turned * max(t, 0.15));
+  float lean = mix(0.55, length(leaning(foot + turned * 0.5).xz), tall);
   vec3 to_eye = eye_m.xyz - place;
   float distance_m = length(to_eye);
   to_eye /= distance_m;
@@ -45,16 +59,19 @@ void put_vertex(vec3 place, vec3 along, float t, float side, float width_m, floa
   gl_Position = to_clip * vec4(place, 1.0);
 
   float sunlight = mix(kSunInShadow, 1.0, sunlight_near(place));
-  // Far away it takes on the light of the grass as a whole, as the ground behind it has it.
-  vec3 canopy = canopy_light(bend, to_eye, patch_at, (t - 0.55) * 0.6 + 0.35 * (fract(chance * 61.0) - 0.5), tall, sunlight);
-  if (is_far) {
-    shade = seen(canopy, place);
-    return;
+  float far = smoothstep(kFarFrom_m, kFar_m, distance_m);
+  vec3 light = vec3(0.0);
+  if (far < 1.0) {
+    // A blade is folded along its middle: the normals of its two edges differ a little.
+    vec3 normal = normalize(cross(across, along));
+    normal *= dot(normal, to_eye) < 0.0 ? -1.0 : 1.0;
+    normal = normalize(normal + across * (side * 0.55));
+    light = blade_light(to_eye, along, normal, t, tint, lean, sunlight);
   }
-  // A blade is folded along its middle: the normals of its two edges differ a little.
-  vec3 normal = normalize(cross(across, along));
-  normal *= dot(normal, to_eye) < 0.0 ? -1.0 : 1.0;
-  normal = normalize(normal + across * (side * 0.55));
-  vec3 light = blade_light(to_eye, along, normal, t, tint, lean, sunlight);
-  shade = seen(mix(light, canopy, smoothstep(kFarFrom_m, kFar_m, distance_m)), place);
+  // Far away it takes on the light of the grass as a whole, as the ground behind it has it.
+  if (far > 0.0) {
+    vec3 canopy = canopy_light(bend, to_eye, patch_at, (t - 0.55) * 0.6 + 0.35 * (fract(chance * 61.0) - 0.5), tall, sunlight);
+    light = mix(light, canopy, far);
+  }
+  shade = seen(light, place);
 }

@@ -1,40 +1,31 @@
 #include "sward.part.glsl"
 #include "blade.part.glsl"
-// A streamed blade: a ribbon along a strand's joints, two vertices a joint and one at the tip. Vertex v of a blade is corner
-// v % (2 rings + 1); slots of drawn blades come in blocks of 16, as their joints do.
-uniform samplerBuffer blades;   // two texels a blade: root, width; bearing of the flat side, chance, rank, length: metres, radians
-uniform usamplerBuffer blocks;  // of the slots: the number of each block
-uniform int rings;              // of vertices above the root: at most links; fewer where the blade is far away
-uniform float thinning;         // Thinning::factor()
+// A streamed blade. Slots of drawn blades come in blocks of 16, as their bends do.
+uniform samplerBuffer blades;          // three texels a blade: TiledBlade
+uniform samplerBuffer streamed_bends;  // of the slots: east, south, radians
+uniform usamplerBuffer blocks;         // of the slots: the number of each block
+uniform float thinning;                // Thinning::factor()
+uniform float reach_m;                 // there are none beyond
 
 void main() {
   int corners = 2 * rings + 1;
   int slot = gl_VertexID / corners;
-  int corner = gl_VertexID - slot * corners;
   int blade = int(texelFetch(blocks, slot >> 4).r) * 16 + (slot & 15);
-  vec4 root_width = texelFetch(blades, 2 * blade);
-  vec4 traits = texelFetch(blades, 2 * blade + 1);
-
-  // This ring's joint, and the one below (for the root, the one above).
-  int ring = corner >> 1;
-  float side = corner == 2 * rings ? 0.0 : float(corner & 1) * 2.0 - 1.0;
-  uint at = uint(slot);
-  vec3 place = ring > 0 ? joint(0, at, ring * links / rings - 1) : root_width.xyz;
-  vec3 along = ring > 1 ? place - joint(0, at, (ring - 1) * links / rings - 1)
-                        : (ring > 0 ? place : joint(0, at, links / rings - 1)) - root_width.xyz;
-  vec3 chord = joint(0, at, links - 1) - root_width.xyz;
+  vec4 root_length = texelFetch(blades, 3 * blade);
+  vec4 traits = texelFetch(blades, 3 * blade + 2);  // width, bearing of the flat side, chance, rank
 
   // Farther away fewer blades stand, and wider ones; one that goes sinks into the ground.
-  float share = kept_share(thinning, max(distance(eye_m.xyz, root_width.xyz), 0.01));
-  float is_up = clamp((share - traits.z) / (0.12 * share), 0.0, 1.0);
-  is_up = share < 1.0 ? is_up : 1.0;
-  is_up *= 1.0 - smoothstep(0.5 * kTallReach_m, kTallReach_m, distance(eye_m.xyz, root_width.xyz));
+  float distance_m = max(distance(eye_m.xyz, root_length.xyz), 0.01);
+  float share = kept_share(thinning, distance_m);
+  float is_up = share < 1.0 ? clamp((share - traits.w) / (0.12 * share), 0.0, 1.0) : 1.0;
+  is_up *= 1.0 - smoothstep(0.5 * reach_m, reach_m, distance_m);
   if (is_up <= 0.0) {
     gl_Position = kNowhere;
     shade = vec3(0.0);
     return;
   }
-  place.y = root_width.y + (place.y - root_width.y) * is_up;
-  put_vertex(place, normalize(along), float(ring) / float(rings), side, root_width.w * pow(share, -0.7) * is_up, traits.x, traits.y,
-             patches(root_width.xz), bend_at(root_width.xz, 1.0), length(chord.xz) / length(chord), 1.0);
+  vec4 rest = texelFetch(blades, 3 * blade + 1);  // how its foot leans, and how far it is turned up to its tip
+  vec2 turned = rest.zw + texelFetch(streamed_bends, slot).rg;
+  put_corner(gl_VertexID - slot * corners, root_length.xyz, root_length.w * is_up, rest.xy, turned, traits.x * pow(share, -0.7) * is_up,
+             traits.y, traits.z, patches(root_length.xz), bend_at(root_length.xz, 1.0), 1.0);
 }

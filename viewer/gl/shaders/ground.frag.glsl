@@ -38,7 +38,7 @@ void main() {
   vec3 light = mix(below, canopy, far);
 
   // Where nothing grows: what is uneven faces the sun or turns away from it.
-  float grain = clamp(earth.w * (tufts + 0.35 * patch_at.y), -0.8, 0.8);
+  float grain = clamp(earth.w * (1.6 * tufts + 0.8 * patch_at.y + 0.5 * patch_at.x), -0.8, 0.8);
   vec3 bare = earth.rgb * (sky_light.rgb * (0.85 + 0.3 * grain) + sun_light.rgb * (lit * max(to_sun.y * (0.8 + 0.3 * grain) + 0.25 * grain, 0.0)));
   light = mix(bare, light, smoothstep(0.0, 0.1, growth_here));
   color = vec4(dithered(seen(light, place_m), gl_FragCoord.xy), 1.0);

@@ -25,7 +25,7 @@ void main() {
   float up = clamp(wall_m.y / top_slope.x, 0.0, 1.0);
   float open = is_wood ? (0.35 + 0.65 * up) * (0.75 + 0.9 * bumps) : 0.85 + 0.4 * bumps;  // to the sky
   vec3 paint = range < 3 ? mix(vec3(0.030, 0.050, 0.017), vec3(0.062, 0.082, 0.024), 0.5 + bumps) : vec3(0.060, 0.075, 0.050);
-  paint *= woods.rgb;
+  paint *= mix(vec3(1.0), woods.rgb, range < 3 ? 1.0 : 0.2);  // hardly any on mountains
   if (range >= 2) paint = mix(paint, vec3(0.66, 0.71, 0.78), woods.w * smoothstep(-0.25, 0.15, bumps + 0.35 * (float(range) - 2.6)));
   vec3 light = paint * (soft_light(normal) * open + sun_light.rgb * max(dot(normal, to_sun.xyz), 0.0) * mix(1.0, open, 0.5));
   // Against the sun thin crowns glow.

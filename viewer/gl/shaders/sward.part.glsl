@@ -13,7 +13,6 @@ uniform sampler2D bends;   // east, south, radians
 uniform sampler2D growth;  // r: 0 bare, 1 nothing keeps grass from growing; g: streamed blades stand here; b: water
 
 const float kLawnLength_m = 0.085;
-const float kTallReach_m = 60.0;  // no blade of tall grass is drawn beyond (sward.cpp)
 
 // The bend of grass at a place. Beyond the grid its pattern is repeated, calmer at its edges, where it does not fit itself.
 vec2 bend_at(vec2 at_m, float tall) {

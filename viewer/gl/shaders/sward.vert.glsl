@@ -5,7 +5,6 @@
 uniform samplerBuffer blades;   // two texels a blade of the tile: SwardBlade
 uniform samplerBuffer tiles;    // SwardTile
 uniform int blades_per_tile;
-uniform int rings;
 uniform float thinning;   // Thinning::factor()
 uniform float tile_m;
 uniform float reach_m;    // there are none beyond
@@ -51,13 +50,6 @@ void main() {
   vec2 tilt = heading * mix(0.14, stand.w, tall) * traits.z;
   vec2 bend = bend_at(root_m, tall);
   vec2 turned = heading * mix(0.6, stand.y, tall) * traits.z + bend * (traits.w * (0.35 + 0.65 * tall));
-  int ring = corner >> 1;
-  float side = corner == 2 * rings ? 0.0 : float(corner & 1) * 2.0 - 1.0;
-  float s = 1.0 - float(ring) / float(rings);
-  float t = 1.0 - s * sqrt(s);
-  vec3 place = vec3(root_m.x, 0.0, root_m.y) + length_m * t * leaning(tilt + turned * (0.5 * t));
-  vec3 along = leaning(tilt + turned * max(t, 0.15));
-  vec3 chord = leaning(tilt + turned * 0.5);
-  put_vertex(place, along, t, side, width_m * pow(share, -0.7) * min(is_up * 2.0, 1.0), traits.x + form.z, chance, patch_at,
-             bend, mix(0.55, length(chord.xz), tall), tall);
+  put_corner(corner, vec3(root_m.x, 0.0, root_m.y), length_m, tilt, turned, width_m * pow(share, -0.7) * min(is_up * 2.0, 1.0),
+             traits.x + form.z, chance, patch_at, bend, tall);
 }
