@@ -301,7 +301,7 @@ class Viewer::Show {
     }
     aspect_ = static_cast<double>(size.width_px) / size.height_px;
     const DrawnPart part = is_drawn_for_pace() ? pace_.drawn() : DrawnPart{};
-    stage_->set_blade_share(part.blades);
+    stage_->set_blade_share(part.blades * static_cast<float>(sky_.look().density));
     target_->set_drawn_side(part.side);
     if (cameras_.is_fading()) {
       stage_->draw(*moment_, camera_of(cameras_.before(), aspect_), *target_);

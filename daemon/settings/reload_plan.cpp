@@ -78,6 +78,9 @@ constexpr std::array kKeyRules = {
     KeyRule{"look", "haze", kApplied},
     KeyRule{"look", "exposure", kApplied},
     KeyRule{"look", "quality", kApplied},
+    KeyRule{"look", "palette", kApplied},
+    KeyRule{"look", "ground", kApplied},
+    KeyRule{"look", "density", kApplied},
 
     KeyRule{"log", "level", kApplied},
 

@@ -12,9 +12,11 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kSuns{"evening", "time", "fixed"};
 constexpr std::array<std::string_view, 4> kQualities{"auto", "low", "medium", "high"};
+constexpr std::array<std::string_view, 6> kPalettes{"meadow", "spring", "summer-dry", "autumn", "winter", "ink"};
+constexpr std::array<std::string_view, 5> kGrounds{"grass", "lawn", "sand", "stone", "snow"};
 constexpr Look kDefault{};
 
-const std::array<Parameter, 10> kParameters{{
+const std::array<Parameter, 13> kParameters{{
     {.name = "sun",
      .unit = "",
      .default_value = std::string("evening"),
@@ -81,6 +83,23 @@ const std::array<Parameter, 10> kParameters{{
      .default_value = std::string("auto"),
      .help = "How much work a picture is; \"auto\": low where there is no graphics hardware, otherwise high",
      .choices = kQualities},
+    {.name = "palette",
+     .unit = "",
+     .default_value = std::string("meadow"),
+     .help =
+         "The colors of grass, flowers, leaves and woods; \"winter\" has snow on the hills, \"ink\" no color at all",
+     .choices = kPalettes},
+    {.name = "ground",
+     .unit = "",
+     .default_value = std::string("grass"),
+     .help = "What the ground is around the scenes; \"lawn\" is short everywhere",
+     .choices = kGrounds},
+    {.name = "density",
+     .unit = "",
+     .default_value = kDefault.density,
+     .min = 0.1,
+     .max = 1.0,
+     .help = "How many blades of grass are drawn, as a part of what the quality draws; fewer are wider"},
 }};
 
 template <class Choice, std::size_t kCount>
@@ -101,6 +120,9 @@ std::optional<ParameterError> change(Look& look, std::string_view name, const Pa
   const auto text = [&]() -> const std::string& { return std::get<std::string>(value); };
   if (name == "sun") look.sun = choice_of<SunChoice>(kSuns, text());
   if (name == "quality") look.quality = choice_of<Quality>(kQualities, text());
+  if (name == "palette") look.palette = choice_of<Palette>(kPalettes, text());
+  if (name == "ground") look.ground = choice_of<GroundKind>(kGrounds, text());
+  if (name == "density") look.density = number();
   if (name == "latitude") look.latitude_deg = number();
   if (name == "longitude") look.longitude_deg = number();
   if (name == "sun_height") look.sun_height_deg = number();
@@ -137,6 +159,12 @@ std::string_view name_of(SunChoice sun) {
 std::string_view name_of(Quality quality) {
   return kQualities.at(static_cast<std::size_t>(quality));
 }
+std::string_view name_of(Palette palette) {
+  return kPalettes.at(static_cast<std::size_t>(palette));
+}
+std::string_view name_of(GroundKind ground) {
+  return kGrounds.at(static_cast<std::size_t>(ground));
+}
 
 std::span<const Parameter> look_parameters() {
   return kParameters;
@@ -170,6 +198,9 @@ Look within_limits(const Look& look) {
   Look to = look;
   if (static_cast<std::size_t>(look.sun) >= kSuns.size()) to.sun = kDefault.sun;
   if (static_cast<std::size_t>(look.quality) >= kQualities.size()) to.quality = kDefault.quality;
+  if (static_cast<std::size_t>(look.palette) >= kPalettes.size()) to.palette = kDefault.palette;
+  if (static_cast<std::size_t>(look.ground) >= kGrounds.size()) to.ground = kDefault.ground;
+  to.density = limited(look.density, "density", kDefault.density);
   to.latitude_deg = limited(look.latitude_deg, "latitude", kDefault.latitude_deg);
   to.longitude_deg = limited(look.longitude_deg, "longitude", kDefault.longitude_deg);
   if (look.solar_time_h) {

@@ -21,8 +21,22 @@ enum class SunChoice : std::uint8_t {
 /// How much work a picture is.
 enum class Quality : std::uint8_t { kAuto, kLow, kMedium, kHigh };
 
+/// The colors of what grows: viewer/light/palettes.cpp has the table.
+enum class Palette : std::uint8_t { kMeadow, kSpring, kSummerDry, kAutumn, kWinter, kInk };
+
+/// What the ground is where no streamed blade stands.
+enum class GroundKind : std::uint8_t {
+  kGrass,  ///< as tall as the meadow, short around things
+  kLawn,   ///< short everywhere
+  kSand,
+  kStone,  ///< gravel
+  kSnow,
+};
+
 std::string_view name_of(SunChoice sun);
 std::string_view name_of(Quality quality);
+std::string_view name_of(Palette palette);
+std::string_view name_of(GroundKind ground);
 
 /// The light and the weather of the picture: the values of [look].
 struct Look {
@@ -37,6 +51,9 @@ struct Look {
   double haze = 0.15;              ///< 0: very clear air, 1: fog
   double exposure_ev = 0.0;        ///< brighter by so many doublings
   Quality quality = Quality::kAuto;
+  Palette palette = Palette::kMeadow;
+  GroundKind ground = GroundKind::kGrass;
+  double density = 1.0;  ///< of the blades that are drawn, as a part of what the quality draws
 
   friend bool operator==(const Look&, const Look&) = default;
 };

@@ -180,7 +180,10 @@ void read(const fb::Look* from, look::Look& to) {
                   .clouds = from->clouds(),
                   .haze = from->haze(),
                   .exposure_ev = from->exposure_ev(),
-                  .quality = static_cast<look::Quality>(from->quality())};
+                  .quality = static_cast<look::Quality>(from->quality()),
+                  .palette = static_cast<look::Palette>(from->palette()),
+                  .ground = static_cast<look::GroundKind>(from->ground()),
+                  .density = from->density()};
   if (const auto hour = from->solar_time_h()) look.solar_time_h = *hour;
   to = look::within_limits(look);
 }

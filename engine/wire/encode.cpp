@@ -188,6 +188,9 @@ flatbuffers::Offset<fb::Look> add_look(Builder& builder, const look::Look& look)
   table.add_haze(look.haze);
   table.add_exposure_ev(look.exposure_ev);
   table.add_quality(static_cast<fb::Quality>(look.quality));
+  table.add_palette(static_cast<fb::Palette>(look.palette));
+  table.add_ground(static_cast<fb::GroundKind>(look.ground));
+  table.add_density(look.density);
   return table.Finish();
 }
 

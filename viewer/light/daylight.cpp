@@ -52,17 +52,17 @@ const std::array kSkies{
               {0.0F, 0.0F, 0.0F},
               {0.0105F, 0.0118F, 0.0240F},
               {0.022F, 0.0075F, 0.0060F},
-              {0.0180F, 0.0200F, 0.0340F}},
+              {0.0250F, 0.0270F, 0.0420F}},
     SkyColors{-4.0F,
               {0.012F, 0.028F, 0.087F},
-              {0.27F, 0.110F, 0.060F},
-              {0.056F, 0.055F, 0.110F},
-              {0.16F, 0.050F, 0.015F},
+              {0.23F, 0.088F, 0.042F},
+              {0.052F, 0.055F, 0.110F},
+              {0.16F, 0.044F, 0.010F},
               {0.03F, 0.010F, 0.002F},
               {0.0F, 0.0F, 0.0F},
               {0.046F, 0.044F, 0.074F},
               {0.22F, 0.065F, 0.036F},
-              {0.066F, 0.068F, 0.105F}},
+              {0.140F, 0.136F, 0.180F}},
     SkyColors{0.0F,
               {0.035F, 0.078F, 0.205F},
               {0.60F, 0.27F, 0.125F},
@@ -72,7 +72,7 @@ const std::array kSkies{
               {0.35F, 0.14F, 0.03F},
               {0.220F, 0.175F, 0.235F},
               {0.85F, 0.25F, 0.085F},
-              {0.215F, 0.205F, 0.270F}},
+              {0.260F, 0.245F, 0.310F}},
     SkyColors{3.0F,
               {0.060F, 0.135F, 0.310F},
               {0.70F, 0.40F, 0.22F},
@@ -94,7 +94,7 @@ const std::array kSkies{
               {1.10F, 0.52F, 0.16F},
               {0.46F, 0.55F, 0.74F}},
     SkyColors{20.0F,
-              {0.26F, 0.59F, 1.22F},
+              {0.20F, 0.50F, 1.18F},
               {1.42F, 1.36F, 1.30F},
               {1.12F, 1.24F, 1.42F},
               {0.50F, 0.36F, 0.20F},
@@ -104,7 +104,7 @@ const std::array kSkies{
               {1.10F, 0.82F, 0.48F},
               {0.76F, 0.95F, 1.30F}},
     SkyColors{45.0F,
-              {0.40F, 0.95F, 2.05F},
+              {0.27F, 0.75F, 1.92F},
               {2.05F, 2.35F, 2.70F},
               {1.75F, 2.15F, 2.72F},
               {0.45F, 0.42F, 0.36F},
@@ -114,7 +114,7 @@ const std::array kSkies{
               {1.10F, 1.00F, 0.82F},
               {0.92F, 1.22F, 1.68F}},
     SkyColors{90.0F,
-              {0.50F, 1.12F, 2.35F},
+              {0.33F, 0.88F, 2.20F},
               {2.25F, 2.60F, 3.00F},
               {2.05F, 2.48F, 3.02F},
               {0.45F, 0.44F, 0.40F},
@@ -158,8 +158,8 @@ float rise(double low, double high, double value) {
 
 // Outside of the air, in Light's unit: the evening's sun is as bright as its sky was painted.
 constexpr glm::vec3 kSunOutside(13.9F, 12.4F, 11.4F);
-// Of air straight overhead, in the red, green and blue of a screen (610, 540 and 465 nm): molecules, ozone and a little
-// dust.
+// Of air straight overhead, in the red, green and blue of a screen (610, 540 and 465 nm; w: their wavelength in
+// micrometres): molecules, 0.008735 w^-4.08; 0.3 cm of ozone; a little dust, 0.05 w^-1.3.
 constexpr glm::vec3 kAirDepth(0.196F, 0.244F, 0.334F);
 // Brighter than it is, by some thousand times, as a night in a film: a picture of a real one would be black beside a
 // lamp.
@@ -202,19 +202,22 @@ Light daylight(const Sky& sky) {
   const auto set = [](glm::vec4& to, const glm::vec3& color) { to = glm::vec4(color, 0.0F); };
   set(light.sun_light, direct * (1.0F - 0.98F * covered));
   // (An overcast sky is three times as bright overhead as at the horizon: CIE S 011.)
-  set(light.zenith, glm::mix(clear.zenith + moonlit, grey * 1.2F, covered));
-  set(light.horizon_near, glm::mix(clear.horizon_near + moonlit, grey * 0.75F, covered));
-  set(light.horizon_far, glm::mix(clear.horizon_far + moonlit, grey * 0.75F, covered));
+  set(light.zenith, glm::mix(clear.zenith + moonlit, grey * 0.9F, covered));
+  set(light.horizon_near, glm::mix(clear.horizon_near + moonlit, grey * 0.6F, covered));
+  set(light.horizon_far, glm::mix(clear.horizon_far + moonlit, grey * 0.6F, covered));
   set(light.glow_wide, clear.glow_wide * (1.0F - covered));
   set(light.glow_narrow, clear.glow_narrow * (1.0F - covered));
   set(light.glow_disc, clear.glow_disc * (1.0F - covered));
-  set(light.cloud_light, glm::mix(clear.cloud_light + 0.8F * moonlit, grey * 0.85F, covered));
-  set(light.cloud_glow, clear.cloud_glow * (1.0F - covered));
+  set(light.cloud_light, glm::mix(clear.cloud_light + 0.8F * moonlit, grey * 0.65F, covered));
+  set(light.cloud_glow, (clear.cloud_glow + 0.35F * kFullMoon * moon_in_dark) * (1.0F - covered));
   set(light.sky_light, glm::mix(clear.sky_light + moonlit, grey, covered));
   set(light.turf_light, kTurf * (0.35F * glm::vec3(light.sun_light) + 2.2F * glm::vec3(light.sky_light)));
 
-  const double haze_per_m = 0.002 * std::exp(4.4 * sky.haze);
-  const double clouds_begin = 0.70 - 0.80 * sky.clouds;
+  const float dark = rise(-4.0, -12.0, sky.sun.height_deg);
+  light.colors.y = 1.0F - 0.52F * dark;
+  const double haze_per_m = 0.00008 * std::exp(7.6 * sky.haze);
+  const double clouds_begin = 0.73 - 0.62 * sky.clouds + 3.0 * std::max(0.0, 0.1 - sky.clouds) -
+                              0.28 * static_cast<double>(rise(0.65, 1.0, sky.clouds));
   const float stars = rise(-7.0, -15.0, sky.sun.height_deg) * (1.0F - covered) * (1.0F - 0.6F * moon);
   light.air = {1.0F, static_cast<float>(haze_per_m), static_cast<float>(clouds_begin), stars};
   return light;

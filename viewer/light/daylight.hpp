@@ -21,7 +21,7 @@ struct Sky {
 /// optical air mass tables"). 0 where it has set.
 glm::vec3 sunlight_at(double height_deg);
 
-/// The light of a sky; but for exposure and drift, which SkyKeeper knows.
+/// The light of a sky; but for exposure and drift, which SkyKeeper knows, and the colors of things (palettes.hpp).
 Light daylight(const Sky& sky);
 
 }  // namespace yuragi::viewer::light

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <glm/vec4.hpp>
 
 namespace yuragi::viewer::light {
@@ -23,6 +25,19 @@ struct Light {
   glm::vec4 moon_disc{0.0F, 1.0F, 0.0F, 0.0F};  ///< the same of the moon
   glm::vec4 air{0.0F};    ///< exposure; haze, per metre; where clouds begin (of the noise); how bright the stars are
   glm::vec4 drift{0.0F};  ///< x, y: how far the clouds have drifted, east and south, in heights of theirs
+  /// How colorful the picture is, 0 to 1; and what is dark in it; how tall grass may grow, 0.25 (a lawn) to 1, 0: none;
+  /// how many doublings brighter the palette is
+  glm::vec4 colors{1.0F, 1.0F, 1.0F, 0.0F};
+
+  // What reflects light (palettes.cpp).
+  glm::vec4 grass_lush{0.0F};   ///< where it is moist; w: more straw above 0, less below
+  glm::vec4 grass_fresh{0.0F};  ///< in between; w: how many flowers, 1 as in a meadow
+  glm::vec4 grass_straw{0.0F};  ///< where it is dry
+  glm::vec4 grass_foot{0.0F};   ///< near the ground
+  std::array<glm::vec4, 3> petals{};
+  glm::vec4 leaves{1.0F};  ///< factor on leaves of trees
+  glm::vec4 woods{1.0F};   ///< factor on far woods; w: snow on hills, 0 to 1
+  glm::vec4 earth{0.0F};   ///< the ground where nothing grows; w: how uneven it looks
 };
 
 /// From `a` (share 0) to `b` (share 1). Where their suns stand far apart, the one's light ends before the other's

@@ -6,6 +6,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "viewer/light/palettes.hpp"
+
 namespace yuragi::viewer::light {
 namespace {
 
@@ -108,11 +110,13 @@ const Light& SkyKeeper::advance(double utc_s, double dt_s, const glm::dvec2& win
 
   Light now = daylight(sky_of(look_, utc_s));
   now.drift = {drift_.x, drift_.y, 0.0F, 0.0F};
+  set_colors(look_, now);
   const double wanted_log = exposure_log_for(now);
   // While the look fades, the exposure goes with the fade: what was asked for is not answered by a slow eye.
   const bool follows_at_once = !has_light_ || fade_s_ < kFade_s;
   exposure_log_ += (follows_at_once ? 1.0 : share_of(dt_s, kAdapting_s)) * (wanted_log - exposure_log_);
-  now.air.x = static_cast<float>(std::exp(exposure_log_) * std::exp2(look_.exposure_ev));
+  now.air.x =
+      static_cast<float>(std::exp(exposure_log_) * std::exp2(look_.exposure_ev + static_cast<double>(now.colors.w)));
 
   fade_s_ = std::min(kFade_s, fade_s_ + dt_s);
   const auto share = static_cast<float>(fade_s_ / kFade_s);

@@ -56,10 +56,11 @@ void GroundMaps::set_samplers(const gl::GlProgram& program) {
   gl::set_sampler(program, "growth", kGrowthUnit);
 }
 
-void GroundMaps::set_standing(const std::vector<meshes::Standing>& things) {
-  if (std::ranges::equal(things, standing_, is_same)) return;
+void GroundMaps::set_standing(const std::vector<meshes::Standing>& things, float most_growth) {
+  if (std::ranges::equal(things, standing_, is_same) && most_growth == most_growth_) return;
   standing_ = things;
-  map_.make(standing_);
+  most_growth_ = most_growth;
+  map_.make(standing_, most_growth_);
   glBindTexture(GL_TEXTURE_2D, growth_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   constexpr auto side = static_cast<GLsizei>(meshes::GrowthMap::kTexels);

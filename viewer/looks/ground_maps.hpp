@@ -17,8 +17,9 @@ class GroundMaps {
   /// Tells a program where its samplers find them.
   static void set_samplers(const gl::GlProgram& program);
 
-  /// What stands on the ground. The map is made anew where that has changed.
-  void set_standing(const std::vector<meshes::Standing>& things);
+  /// What stands on the ground, and how tall grass may grow anywhere, 0 to 1. The map is made anew where that has
+  /// changed.
+  void set_standing(const std::vector<meshes::Standing>& things, float most_growth = 1.0F);
   /// The bends of the picture. `grid`: of the nodes of the ground; null: `near_by` is the mean of its bends instead,
   /// which may be null, too.
   void move_to(const meshes::BendGrid& grid, const pose::StrandPose* nodes, const pose::StrandPose* near_by);
@@ -33,6 +34,7 @@ class GroundMaps {
   meshes::Ground ground_;
   meshes::GrowthMap map_;
   std::vector<meshes::Standing> standing_;
+  float most_growth_ = 1.0F;
   std::vector<float> texels_;
 };
 

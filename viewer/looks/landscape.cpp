@@ -1,5 +1,16 @@
 #include "viewer/looks/landscape.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
 #include "viewer/gl/noise_texture.hpp"
 #include "viewer/gl/screen_door.hpp"
 #include "viewer/gl/shaders.hpp"
@@ -9,26 +20,93 @@ namespace yuragi::viewer::looks {
 namespace {
 
 // The shaders have the same numbers.
-constexpr GLsizei kHillSteps = 2160;
-constexpr GLsizei kHillLines = 3;
 constexpr GLsizei kSkyColumns = 40;
 constexpr GLsizei kSkyRows = 24;
 
 constexpr float kSunInShadow = 0.22F;  // leaves, threads and the air let some through
+
+/// The bearings between which a circle around the world's middle is in view: where they begin, and how far they go;
+/// radians.
+struct Arc {
+  float from_rad = 0.0F;
+  float size_rad = glm::two_pi<float>();
+};
+
+/// Nothing where the picture ends below the horizon.
+std::optional<Arc> arc_in_view(const meshes::View& view, float radius_m) {
+  const glm::vec3 forward(view.forward);
+  const float heading = std::atan2(forward.x, -forward.z);
+  float left = 0.0F;
+  float right = 0.0F;
+  float highest = -1.0F;
+  for (const float aside : {-1.0F, 1.0F}) {
+    for (const float above : {-1.0F, 1.0F}) {
+      const glm::vec3 ray =
+          forward + aside * view.right.w * glm::vec3(view.right) + above * view.up.w * glm::vec3(view.up);
+      const float turn = std::remainder(std::atan2(ray.x, -ray.z) - heading, glm::two_pi<float>());
+      left = std::min(left, turn);
+      right = std::max(right, turn);
+      highest = std::max(highest, ray.y / glm::length(ray));
+    }
+  }
+  const float out_m = glm::length(glm::vec2(view.eye_m.x, view.eye_m.z));
+  if (highest < -view.eye_m.y / std::max(radius_m - out_m, 1.0F)) return std::nullopt;
+  // From beside the middle it is seen in other directions.
+  const float margin = out_m < radius_m ? std::asin(out_m / radius_m) : glm::pi<float>();
+  if (std::abs(forward.y) > 0.8F || right - left + 2.0F * margin > 6.0F) return Arc{};
+  const float from = heading + left - margin - 0.01F;
+  return Arc{.from_rad = from < 0.0F ? from + glm::two_pi<float>() : from,
+             .size_rad = right - left + 2.0F * margin + 0.02F};
+}
 
 }  // namespace
 
 Landscape::Landscape()
     : noise_(gl::make_noise_texture()),
       ground_(gl::link_program("ground", gl::shaders::kGroundVert, gl::shaders::kGroundFrag)),
-      hills_(gl::link_program("hills", gl::shaders::kHillsVert, gl::shaders::kShadeFrag)),
+      hills_(gl::link_program("hills", gl::shaders::kHillsVert, gl::shaders::kHillsFrag)),
       sky_(gl::link_program("sky", gl::shaders::kSkyVert, gl::shaders::kSkyFrag)) {
   GroundMaps::set_samplers(ground_);
   sunlight_place_ = glGetUniformLocation(ground_.name(), "sunlight");
   gl::set_sampler(sky_, "noise_tile", 0);
+  gl::set_sampler(hills_, "noise_tile", 0);
+  range_place_ = glGetUniformLocation(hills_.name(), "range");
+  for (std::size_t range = 0; range < ranges_.size(); ++range) {
+    // Each corner twice: the foot and the top.
+    std::vector<meshes::FarCorner> walls;
+    for (const meshes::FarCorner& corner : meshes::far_corners(range)) walls.insert(walls.end(), 2, corner);
+    glBindVertexArray(ranges_.at(range).array.name());
+    glBindBuffer(GL_ARRAY_BUFFER, ranges_.at(range).corners.name());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(std::span(walls).size_bytes()), walls.data(), GL_STATIC_DRAW);
+    constexpr GLsizei stride = sizeof(meshes::FarCorner);
+    glEnableVertexAttribArray(0);
+    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, stride, nullptr);
+    glEnableVertexAttribArray(1);
+    glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, stride, reinterpret_cast<const void*>(sizeof(glm::vec3)));
+  }
+  glBindVertexArray(0);
 }
 
-void Landscape::draw() {
+/// Ranges from near to far: what they hide is not painted.
+void Landscape::draw_far_country(const meshes::View& view) {
+  glUseProgram(hills_.name());
+  for (std::size_t range = 0; range < ranges_.size(); ++range) {
+    const meshes::FarRange& form = meshes::kFarRanges.at(range);
+    const std::optional<Arc> arc = arc_in_view(view, form.distance_m - form.distance_varies_m);
+    if (!arc) continue;
+    constexpr float step_rad = glm::two_pi<float>() / static_cast<float>(meshes::kFarCorners);
+    glUniform1i(range_place_, static_cast<GLint>(range));
+    glBindVertexArray(ranges_.at(range).array.name());
+    const auto first = static_cast<GLint>(arc->from_rad / step_rad) % meshes::kFarCorners;
+    const auto count = static_cast<GLsizei>(std::ceil(arc->size_rad / step_rad)) + 2;
+    // More than half of the way around is all of it.
+    const bool is_all = count > meshes::kFarCorners / 2;
+    glDrawArrays(GL_TRIANGLE_STRIP, is_all ? 0 : 2 * first, 2 * (is_all ? meshes::kFarCorners + 1 : count));
+  }
+  glBindVertexArray(no_attributes_.name());
+}
+
+void Landscape::draw(const meshes::View& view) {
   glBindVertexArray(no_attributes_.name());
   glUseProgram(ground_.name());
   glEnable(GL_STENCIL_TEST);
@@ -39,18 +117,17 @@ void Landscape::draw() {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   }
   glDisable(GL_STENCIL_TEST);
-  draw_sky();
+  draw_sky(view);
 }
 
-void Landscape::draw_sky() {
-  glBindVertexArray(no_attributes_.name());
+void Landscape::draw_sky(const meshes::View& view) {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, noise_.name());
-  // From near to far; the sky is at the far end of the depth range.
-  glUseProgram(hills_.name());
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kHillSteps + 1), kHillLines);
+  draw_far_country(view);
+  // The sky is at the far end of the depth range.
   glDepthFunc(GL_LEQUAL);
   glUseProgram(sky_.name());
+  clouds_.bind(sky_);
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kSkyColumns + 1), kSkyRows);
   glDepthFunc(GL_LESS);
 }

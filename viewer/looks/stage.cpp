@@ -166,7 +166,7 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
     tall_ = ground_opacity;
     stand_ = {};
   }
-  ground_.set_standing(standing_);
+  ground_.set_standing(standing_, light_.colors.z);
   ground_.move_to(grid, nodes, near_by);
   ground_.bind(stand_, tall_, tall_door_);
 }
@@ -257,7 +257,7 @@ void Stage::draw_mirror(const stream::PoseMoment& moment, const meshes::View& vi
     door_.close();
   }
   if (quality_ == look::Quality::kHigh || quality_ == look::Quality::kAuto) draw_sward(image);
-  landscape_.draw_sky();
+  landscape_.draw_sky(image);
   for (std::size_t scene = 0; scene < views_.size() && quality_ != look::Quality::kLow; ++scene) {
     if (is_seen(moment, scene)) views_[scene]->renderer->draw_light();
   }
@@ -285,6 +285,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   const meshes::View flat = has_flat_shadows ? meshes::laid_flat(view, to_sun) : view;
   view_buffer_.set(view);
   view_buffer_.set(light_);
+  landscape_.prepare(light_);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDisable(GL_BLEND);
@@ -316,7 +317,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   }
   draw_sward(view);
   mark_pass("sward");
-  landscape_.draw();
+  landscape_.draw(view);
   mark_pass("landscape");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;

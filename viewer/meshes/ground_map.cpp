@@ -91,8 +91,8 @@ GrowthMap::GrowthMap()
   make({});
 }
 
-void GrowthMap::make(std::span<const Standing> things) {
-  std::ranges::fill(growth_, 1.0F);
+void GrowthMap::make(std::span<const Standing> things, float most) {
+  std::ranges::fill(growth_, most);
   std::ranges::fill(blades_, 0.0F);
   std::ranges::fill(water_, 0.0F);
   for (const Standing& thing : things) {

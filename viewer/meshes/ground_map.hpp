@@ -68,7 +68,8 @@ class GrowthMap {
   static constexpr float kSide_m = 128.0F;
 
   GrowthMap();
-  void make(std::span<const Standing> things);
+  /// `most`: how tall grass may grow anywhere, 0 to 1.
+  void make(std::span<const Standing> things, float most = 1.0F);
   std::span<const std::uint8_t> texels() const { return texels_; }
   /// 0 to 1, at the texel of a place on the map.
   float growth_at(float x_m, float z_m) const;

@@ -6,6 +6,18 @@
 #include <glm/trigonometric.hpp>
 
 namespace yuragi::viewer::meshes {
+namespace {
+
+constexpr double kMistHeight_m = 110.0;  // mist is e times as thin there (common.glsl)
+
+/// The mean of exp(-height / kMistHeight_m) from the ground to a height.
+float mist_below(double height_m) {
+  const double part = std::max(height_m / kMistHeight_m, 1e-4);
+  return static_cast<float>(-std::expm1(-part) / part);
+}
+
+}  // namespace
+
 View view_of(const OrbitCamera& camera, int width_px, int height_px) {
   const float aspect = static_cast<float>(width_px) / static_cast<float>(height_px);
   const auto tan_up = static_cast<float>(tangent_up(camera.place().field_of_view_deg, static_cast<double>(aspect)));
@@ -17,7 +29,7 @@ View view_of(const OrbitCamera& camera, int width_px, int height_px) {
   // The rows of the rotation are the camera's axes in the world.
   view.right = {to_camera[0][0], to_camera[1][0], to_camera[2][0], tan_up * aspect};
   view.up = {to_camera[0][1], to_camera[1][1], to_camera[2][1], tan_up};
-  view.forward = {-to_camera[0][2], -to_camera[1][2], -to_camera[2][2], 0.0F};
+  view.forward = {-to_camera[0][2], -to_camera[1][2], -to_camera[2][2], mist_below(camera.eye_m().y)};
   return view;
 }
 

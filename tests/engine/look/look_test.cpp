@@ -50,7 +50,10 @@ TEST(Look, TakesEveryValue) {
                           {"clouds", 1.0},
                           {"haze", std::int64_t{0}},
                           {"exposure", -1.5},
-                          {"quality", std::string("medium")}});
+                          {"quality", std::string("medium")},
+                          {"palette", std::string("summer-dry")},
+                          {"ground", std::string("stone")},
+                          {"density", 0.5}});
   ASSERT_TRUE(look);
   EXPECT_EQ(*look, (Look{.sun = SunChoice::kTime,
                          .latitude_deg = -33.9,
@@ -61,7 +64,10 @@ TEST(Look, TakesEveryValue) {
                          .clouds = 1.0,
                          .haze = 0.0,
                          .exposure_ev = -1.5,
-                         .quality = Quality::kMedium}));
+                         .quality = Quality::kMedium,
+                         .palette = Palette::kSummerDry,
+                         .ground = GroundKind::kStone,
+                         .density = 0.5}));
 }
 
 TEST(Look, KnowsTheSunByWhatElseIsGiven) {
@@ -91,7 +97,7 @@ TEST(Look, IsEditedByTexts) {
 
 TEST(Look, RefusesTextsThatSayNothing) {
   for (const char* edit : {"", "=", "clouds", "clouds=", "clouds=much", "clouds=1x", "clouds=nan", "clouds=2", "sky=1",
-                           "quality=best", "time=7"}) {
+                           "quality=best", "time=7", "palette=mauve", "ground=", "density=0"}) {
     EXPECT_FALSE(from_text({edit})) << edit;
   }
 }
@@ -108,7 +114,10 @@ TEST(Look, IsBroughtWithinLimits) {
                      .clouds = -1.0,
                      .haze = 9.0,
                      .exposure_ev = 1000.0,
-                     .quality = static_cast<Quality>(200)};
+                     .quality = static_cast<Quality>(200),
+                     .palette = static_cast<Palette>(6),
+                     .ground = static_cast<GroundKind>(255),
+                     .density = 1e9};
   EXPECT_EQ(within_limits(hostile),
             (Look{.latitude_deg = 90.0, .sun_azimuth_deg = 360.0, .clouds = 0.0, .haze = 1.0, .exposure_ev = 4.0}));
   EXPECT_EQ(within_limits(Look{}), Look{});

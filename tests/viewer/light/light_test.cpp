@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "viewer/light/daylight.hpp"
+#include "viewer/light/palettes.hpp"
 #include "viewer/light/sky_keeper.hpp"
 
 namespace yuragi::viewer::light {
@@ -60,6 +61,59 @@ TEST(Daylight, IsTheMoonsByNight) {
   EXPECT_NEAR(glm::dot(glm::dvec3(glm::vec3(light.to_sun)), direction_of(night.moon)), 1.0, 1e-5);
   EXPECT_GT(light.air.w, 0.0F) << "stars";
   EXPECT_EQ(sum(daylight({.sun = {-40.0, 0.0}}).sun_light), 0.0F) << "no moon";
+}
+
+TEST(Daylight, LosesItsColorsInTheDark) {
+  EXPECT_EQ(daylight({.sun = {20.0, 200.0}}).colors.y, 1.0F);
+  EXPECT_LT(daylight({.sun = {-20.0, 200.0}}).colors.y, 0.7F);
+}
+
+TEST(Daylight, HasNoCloudsWhereNoneAreAsked) {
+  // The noise that clouds are made of goes from 0 to 1.
+  EXPECT_GE(daylight({.sun = {20.0, 200.0}, .clouds = 0.0}).air.z, 1.0F);
+  EXPECT_LE(daylight({.sun = {20.0, 200.0}, .clouds = 1.0}).air.z, 0.0F);
+  for (double clouds = 0.0; clouds < 0.995; clouds += 0.01) {
+    ASSERT_GT(daylight({.clouds = clouds}).air.z, daylight({.clouds = clouds + 0.01}).air.z) << clouds;
+  }
+}
+
+TEST(Palettes, AreAllOfColorsThatThingsCanHave) {
+  for (int palette = 0; palette <= static_cast<int>(look::Palette::kInk); ++palette) {
+    for (int ground = 0; ground <= static_cast<int>(look::GroundKind::kSnow); ++ground) {
+      Light light;
+      set_colors({.palette = static_cast<look::Palette>(palette), .ground = static_cast<look::GroundKind>(ground)},
+                 light);
+      for (const glm::vec4& color : {light.grass_lush, light.grass_fresh, light.grass_straw, light.grass_foot,
+                                     light.petals[0], light.petals[1], light.petals[2], light.earth}) {
+        for (int channel = 0; channel < 3; ++channel) {
+          EXPECT_GT(color[channel], 0.0F) << palette << ground;
+          EXPECT_LT(color[channel], 0.95F) << palette << ground;
+        }
+      }
+      EXPECT_LT(sum(light.grass_foot), sum(light.grass_fresh)) << "it is in the shade of its neighbours";
+      EXPECT_EQ(light.colors.z == 1.0F, ground == 0) << "only in a meadow grass is tall";
+    }
+  }
+}
+
+TEST(Palettes, InkHasHardlyAnyColor) {
+  EXPECT_LT(light_of({.palette = look::Palette::kInk}, kDay_s).colors.x, 0.1F);
+  EXPECT_EQ(light_of({}, kDay_s).colors.x, 1.0F);
+}
+
+TEST(SkyKeeper, FadesFromOnePaletteToAnother) {
+  SkyKeeper keeper;
+  keeper.start({});
+  const Light meadow = keeper.advance(kDay_s, 0.0, {});
+  keeper.set_look({.palette = look::Palette::kAutumn, .ground = look::GroundKind::kSand});
+  const Light between = keeper.advance(kDay_s, 0.5 * SkyKeeper::kFade_s, {});
+  const Light autumn = keeper.advance(kDay_s, SkyKeeper::kFade_s, {});
+  for (glm::vec4 Light::*const part : {&Light::grass_lush, &Light::leaves, &Light::woods, &Light::earth}) {
+    EXPECT_NEAR((between.*part).r, 0.5F * ((meadow.*part).r + (autumn.*part).r), 0.01F);
+    EXPECT_NE((meadow.*part).r, (autumn.*part).r);
+  }
+  EXPECT_NEAR(between.petals[1].g, 0.5F * (meadow.petals[1].g + autumn.petals[1].g), 0.01F);
+  EXPECT_NEAR(between.colors.z, 0.5F, 0.01F) << "grass sinks into the ground";
 }
 
 TEST(SkyKeeper, BeginsWithTheLookAtOnce) {

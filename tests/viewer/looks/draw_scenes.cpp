@@ -106,6 +106,7 @@ int draw_scenes(std::vector<std::string> words) {
   const look::Look look = look::edited({}, edits).value();
   stage.set_light(viewer::light::light_of(look, kDay_s));
   stage.set_quality(look.quality);
+  stage.set_blade_share(static_cast<float>(look.density));
   viewer::gl::RenderTarget target(width_px, height_px, 4);
   for (const std::string& kind : kinds) {
     for (const auto& [name, speed_m_s] : weathers) {

@@ -10,7 +10,7 @@ out vec3 shade;  // the screen's value; blades are so small that one for each ve
 
 // Some blades bear seed heads, and some are flowers, in patches.
 bool is_seed(float chance) { return chance > 0.93; }
-bool is_flower(float chance, vec2 patch_at) { return chance < 0.10 * smoothstep(0.02, 0.22, patch_at.y - 0.6 * patch_at.x); }
+bool is_flower(float chance, vec2 patch_at) { return chance < 0.10 * grass_fresh.w * smoothstep(0.02, 0.22, patch_at.y - 0.6 * patch_at.x); }
 
 // A point of an arc of length 1, at part t of it, that leaves its foot leaning by `foot` and turns by `turned` up to its tip
 // (meshes/strand_tiles.hpp: arc_point()).
@@ -61,14 +61,14 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
     float head = smoothstep(0.0, 0.2, in_head);
     profile *= 0.30;
     head_m = 0.010 * length_m * head * (1.0 - 0.7 * in_head) * (is_out ? 1.0 : 0.35);
-    tint = mix(tint, vec3(0.36, 0.27, 0.15), 0.35 + 0.65 * head);
+    tint = mix(tint, 1.1 * grass_straw.rgb, 0.35 + 0.65 * head);
   } else if (has_petals) {
     float head = 1.0 - (2.0 * in_head - 1.0) * (2.0 * in_head - 1.0);
     profile *= 0.28;
     head_m = 0.5 * (1.0 - head_from) * length_m * sqrt(head) * (is_out ? 0.75 : 1.0);
     float hue = fract(chance * 977.0);
-    vec3 petals = hue < 0.45 ? vec3(0.72, 0.70, 0.62) : hue < 0.75 ? vec3(0.70, 0.45, 0.05) : vec3(0.34, 0.14, 0.42);
-    tint = mix(tint, petals, smoothstep(0.0, 0.1, in_head));
+    vec3 petal = hue < 0.45 ? petals[0].rgb : hue < 0.75 ? petals[1].rgb : petals[2].rgb;
+    tint = mix(tint, petal, smoothstep(0.0, 0.1, in_head));
     tint = mix(tint, vec3(0.62, 0.42, 0.05), rings > 5 ? smoothstep(0.7, 1.0, head) : 0.0);  // the heart
   }
   float half_width_m = max(max(0.5 * width_m * profile, head_m), 0.42 * eye_m.w * distance_m * min(1.0, 4.0 * (1.0 - t)));

@@ -6,7 +6,7 @@ layout(std140) uniform View {
   vec4 eye_m;    // w: size of a pixel at one metre's distance
   vec4 right;    // w: tangent of half the field of view, horizontally
   vec4 up;       // w: the same, vertically
-  vec4 forward;
+  vec4 forward;  // w: how dense the mist is between the eye's height and the ground, on average; 1 on the ground
   mat4 to_shadow;  // to the shadow map
   vec4 shadow;     // a texel of it, 0: there is none; how a penumbra grows in it, across and upright; its depth, metres
 };
@@ -29,6 +29,15 @@ layout(std140) uniform Light {
   vec4 moon_disc;
   vec4 air;           // exposure; haze, per metre; where clouds begin; stars
   vec4 drift;         // of the clouds
+  vec4 colors;        // how colorful the picture is, and what is dark in it; how tall grass may grow
+  vec4 grass_lush;    // w: more straw above 0
+  vec4 grass_fresh;   // w: how many flowers
+  vec4 grass_straw;
+  vec4 grass_foot;
+  vec4 petals[3];
+  vec4 leaves;        // factors
+  vec4 woods;         // w: snow on hills
+  vec4 earth;         // the bare ground; w: how uneven it looks
 };
 
 // The light of the air along a unit direction, without clouds and hills: another at the horizon than above, and a glow
@@ -46,11 +55,21 @@ vec3 air_light(vec3 direction) {
   return light + glow_wide.rgb * near_8 + glow_narrow.rgb * near_96 + glow_disc.rgb * near_400;
 }
 
-// The share of a thing's light that the air replaces at a distance; 0 near the eye.
-float haze(float distance_m) { return 1.0 - exp(-max(distance_m - 3.0, 0.0) * air.y); }
+// The share of a thing's light that the air replaces at a distance; 0 near the eye. For things near the ground.
+float haze(float distance_m) { return 1.0 - exp(-max(distance_m - 3.0, 0.0) * air.y * forward.w); }
+
+// The same of what is far and high, by color: mist gets thinner with height (C. Wenzel 2006, "Real-time atmospheric
+// effects in games"), and clear air scatters more blue.
+const float kMistHeight_m = 110.0;  // it is e times as thin there (view.cpp)
+vec3 far_haze(vec3 place_m) {
+  float rise = (place_m.y - eye_m.y) / kMistHeight_m;
+  float density = exp(-eye_m.y / kMistHeight_m) * (abs(rise) < 1e-3 ? 1.0 : (1.0 - exp(-rise)) / rise);
+  float distance_m = distance(place_m, eye_m.xyz);
+  return 1.0 - exp(-distance_m * (air.y * density + vec3(2.0e-5, 3.0e-5, 5.5e-5)));
+}
 
 // The transfer curve of screens (IEC 61966-2-1, sRGB) of values from 0 to 1, to a hundredth, by square roots (I. Taylor
-// 2012, "Approximating sRGB").
+// 2012, "sRGB approximations for HLSL", chilliant.blogspot.com); near black it is straight.
 vec3 screen_value(vec3 light) {
   vec3 root_2 = sqrt(light);
   vec3 root_4 = sqrt(root_2);
@@ -63,6 +82,10 @@ vec3 screen_value(vec3 light) {
 // curve"), and the screen's transfer curve.
 vec3 finish(vec3 light) {
   vec3 x = light * air.x;
+  // In the dark eyes see hardly any color, and what there is of it as bluish.
+  float grey = dot(x, vec3(0.2126, 0.7152, 0.0722));
+  float colorful = colors.x * mix(colors.y, 1.0, min(3.0 * grey, 1.0));
+  x = mix(mix(vec3(grey), grey * vec3(0.80, 0.97, 1.45), 1.0 - colors.y), x, colorful);
   return screen_value(clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0));
 }
 

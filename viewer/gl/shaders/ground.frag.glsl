@@ -30,12 +30,16 @@ void main() {
   vec3 canopy = canopy_light(bend_at(at_m, tall), to_eye, patch_at, tufts, tall, lit);
 
   // Shaded earth and stems.
-  vec3 under = mix(vec3(0.040, 0.056, 0.016), vec3(0.100, 0.118, 0.034), 0.5 + tufts);
+  vec3 under = mix(1.2 * grass_foot.rgb, 0.22 * grass_straw.rgb + 0.30 * grass_fresh.rgb, 0.5 + tufts);
   vec3 lawn_floor = 0.55 * tint_of(patch_at, 0.4 + tufts);
   vec3 below = mix(lawn_floor * (sky_light.rgb * 0.7 + sun_light.rgb * (0.25 * lit)), under * (sky_light.rgb * 0.8 + sun_light.rgb * (0.13 * lit)), tall);
 
   float far = mix(smoothstep(1.0, 14.0, distance_m), smoothstep(3.0, 32.0, distance_m), tall);
   vec3 light = mix(below, canopy, far);
-  light = mix(vec3(0.07, 0.05, 0.03) * (sky_light.rgb + sun_light.rgb * (0.3 * lit)), light, smoothstep(0.0, 0.1, growth_here));
+
+  // Where nothing grows: what is uneven faces the sun or turns away from it.
+  float grain = clamp(earth.w * (1.6 * tufts + 0.8 * patch_at.y + 0.5 * patch_at.x), -0.8, 0.8);
+  vec3 bare = earth.rgb * (sky_light.rgb * (0.85 + 0.3 * grain) + sun_light.rgb * (lit * max(to_sun.y * (0.8 + 0.3 * grain) + 0.25 * grain, 0.0)));
+  light = mix(bare, light, smoothstep(0.0, 0.1, growth_here));
   color = vec4(dithered(seen(light, place_m), gl_FragCoord.xy), 1.0);
 }

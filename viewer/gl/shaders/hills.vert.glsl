@@ -1,32 +1,24 @@
-// Ranges of hills at the horizon, one instance each, the nearest (and darkest) first: a strip all around, from the foot
-// to the top.
-const int kSteps = 2160;
-const int kLines = 3;
-const float kPi = 3.14159265;
+// A wall of the far country (viewer/meshes/far_country.hpp): its top, and its foot on the ground or behind the ground's end.
+layout(location = 0) in vec3 top_m;
+layout(location = 1) in vec2 along_slope;  // on the way around, metres; of the outline
 
-out vec3 shade;
+uniform int range;  // 0 is the nearest
 
-// The height of a range at a bearing, as a tangent; periodic around the circle.
-float height(float bearing, float seed) {
-  float h = sin(bearing * 3.0 + seed) + 0.55 * sin(bearing * 7.0 + seed * 2.3) + 0.30 * sin(bearing * 13.0 + seed * 4.1);
-  return 0.62 + 0.26 * (h + 0.12 * sin(bearing * 29.0 + seed * 1.7) + 0.05 * sin(bearing * 61.0 + seed * 3.1));
-}
+const float kGroundEnd_m = 1400.0;  // the ground's sheet goes at least that far
+
+out vec3 place_m;
+out vec2 wall_m;      // along it and above the ground
+out vec2 top_slope;   // its height there, metres; how steeply its outline rises along the way
 
 void main() {
-  float nearness = 1.0 - float(gl_InstanceID) / float(kLines - 1);
-  float bearing = float(gl_VertexID >> 1) * 2.0 * kPi / float(kSteps);
-  bool is_top = (gl_VertexID & 1) == 1;
-  float top = mix(0.094, 0.030, nearness) * height(bearing, 1.3 + 2.9 * float(kLines - 1 - gl_InstanceID));
+  bool is_on_ground = range < 2;
+  float distance_m = length(top_m.xz);
+  float foot_m = is_on_ground ? 0.0 : min(0.0, eye_m.y - eye_m.y / kGroundEnd_m * distance_m);
+  place_m = vec3(top_m.x, (gl_VertexID & 1) == 1 ? top_m.y : foot_m, top_m.z);
+  wall_m = vec2(along_slope.x, place_m.y);
+  top_slope = vec2(max(top_m.y, 0.5), along_slope.y);
 
-  // Crowns of trees on the nearest.
-  top += nearness * nearness * 0.0028 * (abs(sin(bearing * 149.0)) + abs(sin(bearing * 233.0 + 1.0)) * sin(bearing * 31.0));
-  vec3 direction = vec3(sin(bearing), is_top ? top : -0.002, -cos(bearing));
-  gl_Position = to_clip * vec4(eye_m.xyz + direction * 1000.0, 1.0);
-  gl_Position.z = gl_Position.w * (1.0 - 1e-5 * (1.0 + nearness));  // behind everything but the sky; near ranges before far ones
-
-  // Less green with distance; mist at the foot.
-  vec3 air = air_light(normalize(vec3(direction.x, 0.015, direction.z)));
-  vec3 paint = mix(vec3(0.28, 0.31, 0.40), vec3(0.076, 0.127, 0.068), nearness);
-  vec3 hill = mix(air, paint * sky_light.rgb, 0.42 + 0.36 * nearness);
-  shade = finish(is_top ? hill : mix(hill, air, 0.75));
+  // Nearer than the end of the depth range on the way to the eye; behind everything but the sky.
+  gl_Position = to_clip * vec4(is_on_ground ? place_m : mix(eye_m.xyz, place_m, 1500.0 / distance_m), 1.0);
+  if (!is_on_ground) gl_Position.z = gl_Position.w * (1.0 - 1e-6 * float(6 - range));
 }

@@ -62,7 +62,7 @@ void main() {
 
   vec3 chance = chances(strand, uint(edge_leaf.y));
   float size = tint_length.w * leaf_size * clamp(leaves_drawn - edge_leaf.y, 0.0, 1.0) * (0.75 + 0.5 * chance.x);
-  vec3 tint = tint_length.rgb * (0.78 + 0.44 * chance.z);
+  vec3 tint = tint_length.rgb * (has_flowers ? vec3(1.0) : leaves.rgb) * (0.78 + 0.44 * chance.z);
   vec3 place = stem;
   vec3 normal = upper;
   vec3 leaf_across = across;

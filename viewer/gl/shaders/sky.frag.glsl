@@ -1,16 +1,26 @@
 // The sky: air, clouds that drift, sun, moon and stars.
 uniform sampler2D noise_tile;
+uniform sampler2D clouds_from;  // maps of clouds (clouds.frag.glsl), the second with this share
+uniform sampler2D clouds_to;
+uniform float clouds_share;
+uniform vec2 drifted_from;      // how far the clouds have drifted since
+uniform vec2 drifted_to;
 in vec3 ray;
 in vec3 clear;
-in vec3 shaded;
+in vec3 base;
+in vec3 upper;
 in vec3 sunlit;
 out vec4 color;
 
-// How much cloud there is at a place of a level plane high above, measured in its height.
-float cloud_at(vec2 place) {
-  float broad = texture(noise_tile, place * vec2(0.050, 0.085)).r;
-  float fine = texture(noise_tile, place * vec2(0.21, 0.33) + 0.37).r;
-  return broad * 0.70 + fine * 0.30;
+// What the maps show of the clouds that one sees in a direction now: they have drifted.
+vec4 clouds_in(vec3 direction) {
+  float height = max(direction.y, 0.0);
+  vec3 then = normalize(vec3(direction.x - drifted_to.x * (height + 0.03), height, direction.z - drifted_to.y * (height + 0.03)));
+  vec2 at = vec2(atan(then.x, -then.z), then.y);
+  vec2 to_other = (drifted_to - drifted_from) * (height + 0.03);  // so small that its slope will do
+  vec2 other = at + vec2(dot(vec2(-then.z, then.x), to_other), -then.y * dot(then.xz, to_other));
+  return mix(textureLod(clouds_from, vec2(other.x / 6.2831853, sqrt(max(other.y, 0.0))), 0.0),
+             textureLod(clouds_to, vec2(at.x / 6.2831853, sqrt(at.y)), 0.0), clouds_share);
 }
 
 // Stars: one in some of the cells of a grid on a cube around the eye; brighter ones are rarer.
@@ -30,12 +40,13 @@ vec3 star_light(vec3 direction) {
 void main() {
   vec3 direction = normalize(ray);
   float height = max(direction.y, 0.0);
-  vec2 ceiling = direction.xz / (height + 0.12);
-  float thick = cloud_at(ceiling - drift.xy) - air.z;
-  float cloud = smoothstep(0.0, 0.40, thick) * smoothstep(0.02, 0.20, height);
-
-  // A cloud is darker where it is thick; its thin edges let the sun's light through.
-  vec3 value = mix(clear, mix(sunlit, shaded * (1.02 - 0.15 * smoothstep(0.25, 0.75, thick)), smoothstep(0.10, 0.55, thick)), cloud);
+  vec4 seen_clouds = clouds_in(direction);
+  // Wisps that are finer than the map.
+  float fine = texture(noise_tile, (direction.xz / (height + 0.03) - drift.xy) * 2.1).r - 0.5;
+  seen_clouds.r = clamp(seen_clouds.r + 2.2 * fine * seen_clouds.r * (1.0 - seen_clouds.r), 0.0, 1.0);
+  float cloud = seen_clouds.r * smoothstep(0.0, 0.035, height);
+  vec3 value = mix(clear, mix(upper, sunlit, 0.8), 0.55 * seen_clouds.a);
+  value = mix(value, mix(mix(base, upper, seen_clouds.b), sunlit, seen_clouds.g), cloud);
 
   if (air.w > 0.0 && height > 0.0) value += star_light(direction) * (0.75 * air.w * (1.0 - cloud) * smoothstep(0.0, 0.25, height));
 

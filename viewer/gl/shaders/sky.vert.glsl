@@ -5,7 +5,8 @@ const int kRows = 24;  // one instance each
 
 out vec3 ray;
 out vec3 clear;    // the screen's value of the clear air
-out vec3 shaded;   // of a cloud, away from the sun and toward it
+out vec3 base;     // of a cloud: its shaded base, its upper side by the sky's light, and in the sun
+out vec3 upper;
 out vec3 sunlit;
 
 void main() {
@@ -15,11 +16,13 @@ void main() {
 
   vec3 direction = normalize(ray);
   vec3 air = air_light(direction);
-  float near_sun = max(dot(direction, sun_disc.xyz), 0.0);
+  // By night the moon lights them.
+  float near_sun = max(dot(direction, sun_disc.y > -0.12 ? sun_disc.xyz : to_sun.xyz), 0.0);
   float near_2 = near_sun * near_sun;
   float far = exp(-14.0 * max(direction.y, 0.0));  // through more and more air toward the horizon
-  vec3 cloud = mix(mix(air, cloud_light.rgb, 0.85), air, far);
   clear = finish(air);
-  shaded = finish(cloud);
-  sunlit = finish(cloud + cloud_glow.rgb * (0.12 + 0.85 * near_2 * near_2 * near_2) * (1.0 - far));
+  vec3 glow = cloud_glow.rgb * (0.55 + 1.6 * near_2 * near_2 * near_2);
+  base = finish(mix(0.50 * cloud_light.rgb, air, far));
+  upper = finish(mix(0.85 * cloud_light.rgb, air, far));
+  sunlit = finish(mix(0.95 * cloud_light.rgb + glow, air + 0.25 * glow, far));
 }

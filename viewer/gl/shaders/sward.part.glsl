@@ -46,11 +46,8 @@ vec2 patches(vec2 at_m) {
 
 // The colour of a blade's upper part: from a young blue-green over fresh green to straw. `chance` from 0 to 1.
 vec3 tint_of(vec2 patch_at, float chance) {
-  float dryness = clamp(0.46 + 0.75 * patch_at.x + 0.42 * patch_at.y + 0.42 * (chance - 0.5), 0.0, 1.0);
-  vec3 lush = vec3(0.050, 0.120, 0.034);
-  vec3 fresh = vec3(0.120, 0.190, 0.040);
-  vec3 straw = vec3(0.330, 0.260, 0.105);
-  return dryness < 0.6 ? mix(lush, fresh, dryness / 0.6) : mix(fresh, straw, (dryness - 0.6) / 0.4);
+  float dryness = clamp(0.46 + grass_lush.w + 0.75 * patch_at.x + 0.42 * patch_at.y + 0.42 * (chance - 0.5), 0.0, 1.0);
+  return dryness < 0.6 ? mix(grass_lush.rgb, grass_fresh.rgb, dryness / 0.6) : mix(grass_fresh.rgb, grass_straw.rgb, (dryness - 0.6) / 0.4);
 }
 
 // A direction that is turned from upright by this vector's length, toward it.
@@ -73,10 +70,12 @@ vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float
   float facing = dot(normal, to_sun.xyz);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
   float deep = smoothstep(0.0, 1.0, t);  // 0 in the shade of its neighbours, 1 in the light
-  vec3 albedo = mix(vec3(0.030, 0.060, 0.012), tint, 0.12 + 0.88 * t);
+  vec3 albedo = mix(grass_foot.rgb, tint, 0.12 + 0.88 * t);
   vec3 through = vec3(1.20, 1.05, 0.40) * albedo * (0.30 + 1.5 * against * against);
   vec3 sum = albedo * sky_light.rgb * (0.25 + 0.75 * deep) * (0.40 + 1.0 * max(normal.y, 0.0));
   sum += sun * (albedo * max(facing, 0.0) * 0.75 + through * max(-facing, 0.12) * 0.8) * (0.10 + 0.90 * deep);
+  // A high sun comes down between the blades, and from one to the next.
+  sum += sun * albedo * (0.55 * max(to_sun.y, 0.0) * deep);
 
   // A sheen along it, which makes the wind's waves visible.
   float sheen_side = dot(along, normalize(to_sun.xyz + to_eye));

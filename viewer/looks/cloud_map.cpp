@@ -1,0 +1,114 @@
+#include "viewer/looks/cloud_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "viewer/gl/shaders.hpp"
+
+namespace yuragi::viewer::looks {
+namespace {
+
+// The shader has the same numbers.
+constexpr int kColumns = 2048;
+constexpr int kRows = 256;
+
+constexpr int kColumnsAPicture = 4;
+constexpr int kColumnsInAHurry = 64;  // while the sky changes
+
+constexpr GLint kFromUnit = 8;
+constexpr GLint kToUnit = 9;
+
+constexpr float kLowestSun = -0.12F;  // the sine of its height; farther below the clouds have the moon's light
+
+}  // namespace
+
+CloudMap::CloudMap() : program_(gl::link_program("clouds", gl::shaders::kDoorVert, gl::shaders::kCloudsFrag)) {
+  gl::set_sampler(program_, "noise_tile", 0);
+  for (const Map& map : maps_) {
+    glBindTexture(GL_TEXTURE_2D, map.texture.name());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kColumns, kRows, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  }
+}
+
+CloudMap::Sky CloudMap::sky_of(const light::Light& light) {
+  return {.drift = {light.drift.x, light.drift.y},
+          .clouds_begin = light.air.z,
+          .to_sun = glm::vec3(light.sun_disc.y > kLowestSun ? light.sun_disc : light.to_sun)};
+}
+
+void CloudMap::draw_columns(const Map& map, int first, int count) {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, map.texture.name(), 0);
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw std::runtime_error("the graphics driver cannot draw clouds into a texture");
+  }
+  glViewport(0, 0, kColumns, kRows);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(first, 0, count, kRows);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  glUseProgram(program_.name());
+  glUniform3f(glGetUniformLocation(program_.name(), "cover"), map.sky.drift.x, map.sky.drift.y, map.sky.clouds_begin);
+  glUniform3f(glGetUniformLocation(program_.name(), "sun_then"), map.sky.to_sun.x, map.sky.to_sun.y, map.sky.to_sun.z);
+  glBindVertexArray(no_attributes_.name());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_SCISSOR_TEST);
+}
+
+void CloudMap::advance(const light::Light& light, const gl::GlTexture& noise) {
+  const auto is_nearly = [](const Sky& a, const Sky& b, float tolerance) {
+    return glm::distance(a.drift, b.drift) < 5.0F * tolerance && glm::distance(a.to_sun, b.to_sun) < 2.0F * tolerance &&
+           std::abs(a.clouds_begin - b.clouds_begin) < tolerance;
+  };
+  const Sky before = std::exchange(now_, sky_of(light));
+  for (const GLint unit : {kFromUnit, kToUnit}) {  // not to be read while they are drawn
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, 0);
+  }
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, noise.name());
+
+  if (is_first_ || !is_nearly(before, now_, 0.04F)) {
+    is_first_ = false;
+    maps_.at(to_).sky = now_;
+    draw_columns(maps_.at(to_), 0, kColumns);
+    from_ = to_;
+    next_ = to_ == 0 ? 1 : 0;
+    drawn_ = 0;
+    return;
+  }
+  if (drawn_ == 0) maps_.at(next_).sky = now_;
+  const int wanted = is_nearly(maps_.at(to_).sky, now_, 0.015F) ? kColumnsAPicture : kColumnsInAHurry;
+  const int count = std::min(wanted, kColumns - drawn_);
+  draw_columns(maps_.at(next_), drawn_, count);
+  drawn_ += count;
+  if (drawn_ < kColumns) return;
+  drawn_ = 0;
+  from_ = std::exchange(to_, next_);
+  next_ = 3 - from_ - to_;
+}
+
+void CloudMap::bind(const gl::GlProgram& sky) const {
+  const auto show = [&](GLint unit, const Map& map, const char* sampler, const char* drifted) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+    glBindTexture(GL_TEXTURE_2D, map.texture.name());
+    glUniform1i(glGetUniformLocation(sky.name(), sampler), unit);
+    const glm::vec2 since = now_.drift - map.sky.drift;
+    glUniform2f(glGetUniformLocation(sky.name(), drifted), since.x, since.y);
+  };
+  show(kFromUnit, maps_.at(from_), "clouds_from", "drifted_from");
+  show(kToUnit, maps_.at(to_), "clouds_to", "drifted_to");
+  glUniform1f(glGetUniformLocation(sky.name(), "clouds_share"),
+              from_ == to_ ? 1.0F : static_cast<float>(drawn_) / static_cast<float>(kColumns));
+  glActiveTexture(GL_TEXTURE0);
+}
+
+}  // namespace yuragi::viewer::looks

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "viewer/gl/gl.hpp"
+#include "viewer/light/light.hpp"
+
+namespace yuragi::viewer::looks {
+
+/// Clouds as they are seen from the ground, in all directions: how much they cover, and how much light of the sun and
+/// of the sky comes to what one sees of them; without their color. Maps are drawn a few columns a picture, and shown
+/// with a cross-fade, moved by as much as the clouds have drifted since: what is costly about clouds is spread over
+/// seconds. Needs a current context.
+class CloudMap {
+ public:
+  CloudMap();
+
+  /// Goes on with the next map. At once, where there is none yet or the sky is another than at the last call. Binds
+  /// another framebuffer. `noise`: the tile of viewer/gl/noise_texture.hpp.
+  void advance(const light::Light& light, const gl::GlTexture& noise);
+
+  /// For `sky`, which is in use: the maps in view, and how far the clouds have drifted since.
+  void bind(const gl::GlProgram& sky) const;
+
+ private:
+  /// What clouds depend on.
+  struct Sky {
+    glm::vec2 drift{0.0F};
+    float clouds_begin = 1.0F;
+    glm::vec3 to_sun{0.0F, 1.0F, 0.0F};
+  };
+  struct Map {
+    gl::GlTexture texture;
+    Sky sky;
+  };
+  static Sky sky_of(const light::Light& light);
+  void draw_columns(const Map& map, int first, int count);
+
+  gl::GlProgram program_;
+  gl::GlVertexArray no_attributes_;
+  gl::GlFramebuffer framebuffer_;
+  std::array<Map, 3> maps_;
+  std::size_t from_ = 0, to_ = 1, next_ = 2;  // two are in view, one is being drawn
+  int drawn_ = 0;                             // columns of the next
+  bool is_first_ = true;
+  Sky now_;
+};
+
+}  // namespace yuragi::viewer::looks
