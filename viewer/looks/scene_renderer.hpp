@@ -24,13 +24,17 @@ class SceneRenderer {
   /// OpenGL state that is changed here, but for bindings, is restored.
   virtual void draw(const meshes::View& view) = 0;
 
+  /// Draws what casts its shadow, seen from the sun or laid on the ground; it may be coarser.
+  virtual void draw_shadow(const meshes::View& view) { draw(view); }
+
   /// Draws, after everything else, what is blended over it: flames.
   virtual void draw_light() {}
 
   /// Fills, in the stencil alone, the part of the ground that is open: under water.
   virtual void draw_hole() {}
 
-  /// Does it cast a shadow? Then draw() is also called with a View that projects everything onto the ground.
+  /// Does it cast a shadow? Then draw_shadow() is called with a View from the sun, or one that projects onto the
+  /// ground.
   virtual bool casts_shadow() const { return false; }
 
   /// Does it cover the ground as a field, in which the camera stands?
