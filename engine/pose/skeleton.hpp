@@ -94,8 +94,9 @@ enum class FoliageColor : std::uint8_t {
   kGreen,
   kBlossom,  ///< the pale pink of a cherry in flower
   kAutumn,   ///< yellow to red
+  kBare,     ///< no leaves: the strands of leaves are twigs
 };
-inline constexpr std::array<std::string_view, 3> kFoliageColorNames = {"green", "blossom", "autumn"};
+inline constexpr std::array<std::string_view, 4> kFoliageColorNames = {"green", "blossom", "autumn", "bare"};
 
 /// Strands that grow on strands: level 0 stands on the ground. At most kMaxTreeLevels levels.
 struct TreeSkeleton {

@@ -61,7 +61,13 @@ const std::array kTreeParameters = {
     Parameter{"leaves", "", std::int64_t{10000}, 1, 1000000, "leaves on the twigs, in sprays of 16"},
     Parameter{"branch_links", "", std::int64_t{256}, 1, 256, "links of the trunk and of each branch"},
     Parameter{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"},
-    Parameter{"foliage", "", "green"s, {}, {}, "the colour of its leaves", pose::kFoliageColorNames},
+    Parameter{"foliage",
+              "",
+              "green"s,
+              {},
+              {},
+              "the colour of its leaves; bare: as in winter, with twigs in their place",
+              pose::kFoliageColorNames},
     Parameter{"flexibility", "", 1.0, 0, 10,
               "how far wood bends in every wind: 2 bends and sways it twice as far as its species does, 0 not at all"},
     Parameter{"streamline_speed", "m/s", 6.0, 0.1, 60,
@@ -155,13 +161,27 @@ constexpr std::array<double, 2> kHeightSkew = {0.5, 0.7};
 /// How far the axis of a leaf's flutter is turned at most from its own direction.
 constexpr double kLargestTwist_rad = 40.0 * kRadPerDeg;
 
+/// A bare twig leaves its branch at this part of the angle of a leaf, and gives way to the wind as this part of one.
+constexpr double kBareTwigAngle = 0.75;
+constexpr double kBareTwigGive = 0.12;
+
 const TreeSpecies& species_of(const ParameterValues& values) {
   return tree_species(values.text("species"));
 }
 
+double leaf_give_of(const ParameterValues& values) {
+  return values.text("foliage") == "bare" ? kBareTwigGive : 1.0;
+}
+
 pose::TreeSkeleton placed_tree(const ParameterValues& values, const SceneSetup& setup) {
   const auto count = [&values](std::string_view name) { return static_cast<std::size_t>(values.integer(name)); };
-  pose::TreeSkeleton tree = make_tree({.habit = species_of(values).habit,
+  TreeHabit habit = species_of(values).habit;
+  if (values.text("foliage") ==
+      "bare") {  // twigs in the place of leaves: they go on along those that bear them, and do not hang
+    habit.leaf_angle_deg *= kBareTwigAngle;
+    habit.leaf_droop_deg = 0.0;
+  }
+  pose::TreeSkeleton tree = make_tree({.habit = habit,
                                        .limbs = count("limbs"),
                                        .twigs = count("twigs"),
                                        .leaves = count("leaves"),
@@ -364,8 +384,8 @@ Tree::Tree(pose::TreeSkeleton tree, const ParameterValues& values, const SceneSe
       hybrid_(values.number("hybrid")),
       natural_hz_(values.number("natural_frequency")),
       damping_ratio_(values.number("damping")),
-      leaf_lean_rad_(values.number("leaf_lean") * kRadPerDeg),
-      leaf_flutter_rad_(values.number("leaf_flutter") * kRadPerDeg * species_.flutter),
+      leaf_lean_rad_(values.number("leaf_lean") * kRadPerDeg * leaf_give_of(values)),
+      leaf_flutter_rad_(values.number("leaf_flutter") * kRadPerDeg * species_.flutter * leaf_give_of(values)),
       half_lean_speed_m_s_(values.number("half_lean_speed")),
       wind_(setup.placement, nullptr, setup.gusts ? WindPart::kMean : WindPart::kAll),
       middle_wind_(setup.placement, setup.gusts),

@@ -19,8 +19,8 @@ constexpr double kTipRadiusShare = 0.3;  ///< of the radius at the foot, for a t
 
 /// Leaves stand at nodes, this many from a twig's foot to its tip, a spray at 16 that follow one another. (So the
 /// joints that they grow from are few, and lie in the cache.)
-constexpr std::size_t kNodesOfATwig = 64;
-constexpr std::size_t kFirstNode = 6;
+constexpr std::size_t kNodesOfATwig = 36;
+constexpr std::size_t kFirstNode = 3;
 
 struct TreeVector {
   double x, y, z;
@@ -157,8 +157,9 @@ class Grower {
             interpolated(habit.angle_deg, part) * kRadPerDeg * random_factor(random, index + 2, 0.12);
         const TreeVector rest = std::cos(angle_rad) * course.direction[link] +
                                 std::sin(angle_rad) * across(course.direction[link], around_rad);
+        const double rank = i % 2 == 0 ? 1.0 : habit.minor_share;
         const double length_m =
-            interpolated(habit.length_share, part) * height_m_ * random_factor(random, index + 4, 0.15);
+            rank * interpolated(habit.length_share, part) * height_m_ * random_factor(random, index + 4, 0.15);
         const double lift_rad = habit.lift_deg * kRadPerDeg * random_factor(random, index + 6, 0.3);
         Shoot& branch = branches.emplace_back(shoot(course.joint[link], rest, {0.0, lift_rad < 0.0 ? -1.0 : 1.0, 0.0},
                                                     std::abs(lift_rad), length_m, spec_.branch_links));

@@ -15,6 +15,8 @@ struct BranchHabit {
   std::array<double, 2> angle_deg = {};     ///< away from the parent's own direction
   std::array<double, 2> length_share = {};  ///< of the tree's height
   double lift_deg = 0.0;                    ///< how far it curls up to the light from foot to tip; below 0: it droops
+  /// Every second is a leader; the others, which fill the crown behind the leaders' tips, are only this part as long.
+  double minor_share = 1.0;
 };
 
 /// What trees of a species have in common.

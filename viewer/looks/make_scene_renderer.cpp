@@ -30,8 +30,9 @@ std::unique_ptr<SceneRenderer> renderer_of(const pose::GridSkeleton& cloth, cons
                                            look::Quality) {
   return std::make_unique<ClothRenderer>(cloth, scene.kind, scene.cloth);
 }
-std::unique_ptr<SceneRenderer> renderer_of(const pose::TreeSkeleton& tree, const wire::SceneModel&, look::Quality) {
-  return std::make_unique<TreeRenderer>(tree);
+std::unique_ptr<SceneRenderer> renderer_of(const pose::TreeSkeleton& tree, const wire::SceneModel&,
+                                           look::Quality quality) {
+  return std::make_unique<TreeRenderer>(tree, quality);
 }
 std::unique_ptr<SceneRenderer> renderer_of(const pose::SurfaceSkeleton& surface, const wire::SceneModel&,
                                            look::Quality) {

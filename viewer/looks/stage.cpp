@@ -220,7 +220,7 @@ void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_s
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!casts(scene)) continue;
     door_.open(moment.opacities[scene], scene);
-    views_[scene]->renderer->draw(shadows);
+    views_[scene]->renderer->draw_shadow(shadows);
     door_.close();
   }
   shadow_map_->end();
@@ -308,7 +308,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
     if (has_flat_shadows && renderer.casts_shadow()) {
       view_buffer_.set(flat);
       door_.begin_mark(gl::kShadow);
-      renderer.draw(flat);
+      renderer.draw_shadow(flat);
       door_.end_mark();
       view_buffer_.set(view);
       mark_pass("shadows");

@@ -1,31 +1,45 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/pose/tree_kinematics.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/meshes/bounds.hpp"
-#include "viewer/meshes/sprays.hpp"
-#include "viewer/meshes/tree_parts.hpp"
+#include "viewer/meshes/branches.hpp"
+#include "viewer/meshes/crown.hpp"
 
 namespace yuragi::viewer::looks {
 
-/// Draws a tree: tapering branches with bark, and sprays of leaves or flowers that the low sun shines through.
+/// Draws a tree: tapering branches with bark, and sprays of leaves, flowers or bare twigs. Each is as fine as the
+/// picture and the quality need.
 class TreeRenderer : public SceneRenderer {
  public:
   /// `tree` must outlive this.
-  explicit TreeRenderer(const pose::TreeSkeleton& tree);
+  TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality);
 
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
+  void draw_shadow(const meshes::View& view) override;
   /// Darkens the ground around the foot of a trunk.
   void draw_light() override;
   bool casts_shadow() const override { return true; }
 
  private:
+  /// A level of wood.
+  struct Wood {
+    std::size_t level = 0;
+    GLsizei sides = 0;
+    meshes::Branches branches;
+    gl::GlBuffer part_buffer = {};
+    gl::GlBuffer index_buffer = {};  // the triangles of a tube, ring behind ring
+    gl::GlVertexArray array = {};
+  };
+
   /// A spray's mesh on the GPU.
-  struct Spray {
+  struct SprayOnGpu {
     gl::GlBuffer corner_buffer;
     gl::GlBuffer index_buffer;
     gl::GlVertexArray array;
@@ -33,25 +47,27 @@ class TreeRenderer : public SceneRenderer {
     std::size_t leaf_indices = 0;
   };
 
-  struct Level {
-    gl::GlBuffer part_buffer;
-    gl::GlBuffer index_buffer;  // of branches: the triangles of a tube, ring behind ring
-    gl::GlVertexArray array;
-    GLsizei sides = 0;
-    Spray near_spray;  // of leaves
-    Spray far_spray;
-    float spray_length_m = 0.0F;
+  /// A level of leaves.
+  struct Foliage {
+    meshes::Crown crown;
+    gl::GlBuffer place_buffer = {};
+    SprayOnGpu near_spray = {};
+    SprayOnGpu far_spray = {};
   };
 
-  static void make_spray(Spray& spray, const meshes::SprayMesh& mesh, const gl::GlBuffer& part_buffer);
-  void draw_branches(std::size_t level, std::size_t rings);
-  void draw_sprays(std::size_t level, const meshes::View& view);
+  static void make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh);
+  void draw_all(const meshes::View& view, const meshes::SprayDetail& detail);
+  void draw_branches(Wood& wood, const meshes::View& view, const meshes::TreePlace& place);
+  void draw_sprays(Foliage& foliage, const meshes::View& view, const meshes::SprayDetail& detail,
+                   const meshes::TreePlace& place);
 
   const pose::TreeSkeleton* tree_;
-  meshes::Bounds bounds_;
+  meshes::Bounds crown_bounds_;  // of the leaves, or of all where there are none
+  std::vector<meshes::TreePlace> places_;
   pose::TreeJoints joints_;
-  std::vector<Level> levels_;
-  meshes::SprayShape spray_shape_;
+  std::vector<std::unique_ptr<Wood>> woods_;
+  std::vector<std::unique_ptr<Foliage>> foliages_;
+  meshes::SprayDetail detail_;
   gl::GlProgram bark_;
   gl::GlProgram leaf_;
   gl::GlProgram contact_;

@@ -11,10 +11,10 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-constexpr std::size_t kLeaves = 8;
-constexpr std::size_t kSmallLeaves = 14;
-constexpr std::size_t kFlowers = 18;
-constexpr std::size_t kFewestLeaves = 2;
+constexpr std::size_t kLeaves = 13;
+constexpr std::size_t kSmallLeaves = 18;
+constexpr std::size_t kFlowers = 26;
+constexpr std::size_t kTwigs = 2;
 constexpr std::size_t kStalkRings = 4;
 constexpr int kPetals = 5;
 
@@ -125,6 +125,21 @@ void add_pentagon(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& f
   }
 }
 
+/// The spray's own axis is the first; the others leave it, and grow thin toward their tips.
+void add_twig(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& foot) {
+  const auto first = static_cast<std::uint32_t>(mesh.corners.size());
+  for (const float t : {0.0F, 0.5F, 1.0F}) {
+    SprayCorner ring = foot.leaf == 0.0F ? foot : moved(foot, t * shape.leaf_length, 0.0F, 0.0F);
+    if (foot.leaf == 0.0F) ring.at = t;
+    const float thickness = (foot.leaf == 0.0F ? 1.0F : 0.7F) * (1.0F - 0.7F * t);
+    mesh.corners.insert(mesh.corners.end(),
+                        {moved(ring, ring.along, -1.0F, thickness), moved(ring, ring.along, 1.0F, thickness)});
+  }
+  for (const std::uint32_t i : {first, first + 2}) {
+    mesh.triangles.insert(mesh.triangles.end(), {i, i + 1, i + 2, i + 1, i + 3, i + 2});
+  }
+}
+
 void add_stalk(SprayMesh& mesh) {
   for (std::size_t ring = 0; ring <= kStalkRings; ++ring) {
     for (const float across : {-1.0F, 1.0F}) {
@@ -147,7 +162,7 @@ template <class AddLeaf>
 SprayMesh spray_of(const SprayShape& shape, bool has_stalk, AddLeaf&& add_leaf) {
   SprayMesh mesh;
   if (has_stalk) add_stalk(mesh);
-  for (std::size_t leaf = 0; leaf < shape.leaves; ++leaf) add_leaf(mesh, shape, foot_of(leaf, shape.has_flowers));
+  for (std::size_t leaf = 0; leaf < shape.leaves; ++leaf) add_leaf(mesh, shape, foot_of(leaf, shape.has_flowers()));
   mesh.leaf_indices = (mesh.triangles.size() - mesh.stalk_indices) / std::max<std::size_t>(shape.leaves, 1);
   return mesh;
 }
@@ -161,7 +176,7 @@ float mean_length_m(const pose::StrandSkeleton& strands) {
          static_cast<float>(std::max<std::size_t>(strands.strand_count, 1));
 }
 
-SprayShape spray_shape(const pose::TreeSkeleton& tree) {
+LeafSpecies leaf_species(const pose::TreeSkeleton& tree) {
   float half_width_m = 0.0F;
   float length_m = 0.0F;
   for (const pose::TreeLevel& level : tree.levels) {
@@ -170,41 +185,51 @@ SprayShape spray_shape(const pose::TreeSkeleton& tree) {
     for (std::size_t i = 0; i < level.strands.strand_count; ++i) half_width_m += level.base_radius_m[i];
   }
   const float half_width = half_width_m / std::max(length_m, 1e-6F);
+  if (half_width < kNarrow) return LeafSpecies::kZelkova;
+  return half_width < kBroad ? LeafSpecies::kCherry : LeafSpecies::kPoplar;
+}
 
-  // Sprays are 16 to 19 cm long.
-  if (tree.foliage == pose::FoliageColor::kBlossom) {  // flowers of 3 cm
-    return {.leaves = kFlowers, .leaf_length = 0.165F, .leaf_width = 1.0F, .widest_at = 0.5F, .has_flowers = true};
+SprayShape spray_shape(const pose::TreeSkeleton& tree) {
+  // Sprays are 26 to 28 cm long.
+  if (tree.foliage == pose::FoliageColor::kBlossom) {  // flowers of 3.1 cm
+    return {.leaves = kFlowers,
+            .leaf_length = 0.112F,
+            .leaf_width = 1.0F,
+            .widest_at = 0.5F,
+            .kind = SprayShape::Kind::kFlowers};
   }
-  if (half_width < kNarrow) {  // zelkova: 7 cm
-    return {.leaves = kSmallLeaves, .leaf_length = 0.36F, .leaf_width = 0.44F, .widest_at = 0.38F};
+  if (tree.foliage == pose::FoliageColor::kBare) {
+    return {.leaves = kTwigs,
+            .leaf_length = 0.45F,
+            .leaf_width = 0.02F,
+            .widest_at = 0.5F,
+            .kind = SprayShape::Kind::kTwigs};
   }
-  if (half_width < kBroad) {  // cherry: 8 cm
-    return {.leaves = kLeaves, .leaf_length = 0.43F, .leaf_width = 0.52F, .widest_at = 0.42F};
+  switch (leaf_species(tree)) {
+    case LeafSpecies::kZelkova:  // 7 cm
+      return {.leaves = kSmallLeaves, .leaf_length = 0.24F, .leaf_width = 0.44F, .widest_at = 0.38F};
+    case LeafSpecies::kCherry:  // 8 cm
+      return {.leaves = kLeaves, .leaf_length = 0.29F, .leaf_width = 0.52F, .widest_at = 0.42F};
+    case LeafSpecies::kPoplar:  // 6 cm, wider than long, widest near its foot
+      break;
   }
-  // Poplar: 6 cm, wider than long, widest near its foot.
-  return {.leaves = kLeaves, .leaf_length = 0.37F, .leaf_width = 1.10F, .widest_at = 0.22F};
+  return {.leaves = kLeaves, .leaf_length = 0.24F, .leaf_width = 1.10F, .widest_at = 0.22F};
 }
 
 SprayMesh near_spray(const SprayShape& shape) {
-  return spray_of(shape, true, shape.has_flowers ? add_flower : add_blade);
+  if (shape.kind == SprayShape::Kind::kTwigs) return spray_of(shape, false, add_twig);
+  return spray_of(shape, true, shape.has_flowers() ? add_flower : add_blade);
 }
 
 SprayMesh far_spray(const SprayShape& shape) {
-  return spray_of(shape, false, shape.has_flowers ? add_pentagon : add_kite);
+  if (shape.kind == SprayShape::Kind::kTwigs) return spray_of(shape, false, add_twig);
+  return spray_of(shape, false, shape.has_flowers() ? add_pentagon : add_kite);
 }
 
-SprayLevel spray_level(const SprayShape& shape, float spray_length_m, const Bounds& bounds, const View& view,
-                       const SprayDetail& detail) {
-  const glm::vec3 eye(view.eye_m);
-  const float distance_m = std::max(glm::distance(eye, glm::clamp(eye, bounds.low_m, bounds.high_m)), 0.3F);
-  const float leaf_px = shape.leaf_length * spray_length_m / (view.eye_m.w * distance_m);
-  const float share = leaf_px / detail.leaf_px;
+SprayLevel spray_level(const SprayShape& shape, float leaf_px, const SprayDetail& detail) {
   const auto all = static_cast<float>(shape.leaves);
-  const float fewest = std::min(static_cast<float>(kFewestLeaves), all);
-  const float leaves = std::clamp(all * share * share, fewest, all);
-  return {.leaves = leaves,
-          .size = leaves > 0.0F ? std::sqrt(all / leaves) : 1.0F,
-          .is_near = leaf_px > detail.shaped_leaf_px};
+  const float share = std::clamp(std::min(leaf_px / detail.leaf_px, 1e3F), 1.0F / detail.largest, 1.0F);
+  return {.leaves = all * share * share, .size = 1.0F / share, .is_near = leaf_px > detail.shaped_leaf_px};
 }
 
 }  // namespace yuragi::viewer::meshes

@@ -5,12 +5,15 @@
 #include <vector>
 
 #include "engine/pose/skeleton.hpp"
-#include "viewer/meshes/bounds.hpp"
-#include "viewer/meshes/view.hpp"
 
 namespace yuragi::viewer::meshes {
 
 // A strand of a tree's leaves is drawn as a spray: a thin stalk that bears leaves at alternate sides, or flowers.
+
+/// The species that a tree's leaf strands tell by their proportions: narrow ones are a zelkova's, slender ones a
+/// cherry's, broad ones a poplar's.
+enum class LeafSpecies : std::uint8_t { kZelkova, kCherry, kPoplar };
+LeafSpecies leaf_species(const pose::TreeSkeleton& tree);
 
 /// What hangs on a tree's sprays. Lengths are shares of the spray's.
 struct SprayShape {
@@ -18,11 +21,13 @@ struct SprayShape {
   float leaf_length = 0.0F;  ///< of a blade; of a flower, its diameter
   float leaf_width = 0.0F;   ///< of a blade, where it is widest, as a share of its own length
   float widest_at = 0.0F;    ///< from a blade's foot (0) to its tip (1)
-  bool has_flowers = false;  ///< instead of leaves
+  enum class Kind : std::uint8_t { kLeaves, kFlowers, kTwigs };
+  Kind kind = Kind::kLeaves;  ///< twigs: what a bare tree has; their length is that of a leaf
+
+  bool has_flowers() const { return kind == Kind::kFlowers; }
 };
 
-/// The shape of a tree's sprays, by the proportions of its leaf strands at rest: narrow ones are a zelkova's, slender
-/// ones a cherry's, broad ones a poplar's.
+/// The shape of a tree's sprays, by its species and its foliage.
 SprayShape spray_shape(const pose::TreeSkeleton& tree);
 
 /// A corner of a spray's mesh, in the layout that the leaves' shader reads. The mesh is bent along the strand there.
@@ -51,19 +56,20 @@ SprayMesh far_spray(const SprayShape& shape);
 /// How finely sprays are drawn.
 struct SprayDetail {
   float leaf_px = 5.5F;          ///< leaves smaller than this give way to fewer, larger ones
+  float largest = 4.0F;          ///< which are at most so many times as large
   float shaped_leaf_px = 40.0F;  ///< those larger than this have a curved outline
 };
 
-/// How many leaves of a spray are drawn, and how much larger each is, so that together they cover as much as all of
-/// them. The count is not a whole number: the last leaf is drawn that much smaller, so that leaves come and go
-/// smoothly.
+/// How many leaves of a spray are drawn (below 1: of some sprays one), and how much larger each is, so that together
+/// they cover as much as all of them. The count is not a whole number: the last leaf is drawn that much smaller, so
+/// that leaves come and go smoothly.
 struct SprayLevel {
   float leaves = 0.0F;
   float size = 1.0F;
   bool is_near = false;
 };
-SprayLevel spray_level(const SprayShape& shape, float spray_length_m, const Bounds& bounds, const View& view,
-                       const SprayDetail& detail = {});
+/// For a spray whose leaves are as long in the picture as `leaf_px`, in pixels.
+SprayLevel spray_level(const SprayShape& shape, float leaf_px, const SprayDetail& detail = {});
 
 /// The mean length of a level's strands, metres; 0 where there are none.
 float mean_length_m(const pose::StrandSkeleton& strands);

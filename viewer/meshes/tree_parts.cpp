@@ -8,6 +8,7 @@
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "viewer/meshes/sprays.hpp"
 
 namespace yuragi::viewer::meshes {
 namespace {
@@ -23,16 +24,31 @@ struct LeafTints {
   glm::vec3 fresh;
 };
 
-LeafTints tints_of(pose::FoliageColor foliage) {
-  switch (foliage) {
+LeafTints autumn_of(LeafSpecies species) {
+  switch (species) {
+    case LeafSpecies::kZelkova:
+      return {{0.24F, 0.062F, 0.014F}, {0.46F, 0.21F, 0.030F}};
+    case LeafSpecies::kCherry:
+      return {{0.28F, 0.026F, 0.012F}, {0.55F, 0.17F, 0.028F}};
+    case LeafSpecies::kPoplar:
+      break;
+  }
+  return {{0.36F, 0.22F, 0.020F}, {0.62F, 0.46F, 0.045F}};
+}
+
+LeafTints tints_of(const pose::TreeSkeleton& tree) {
+  switch (tree.foliage) {
     case pose::FoliageColor::kBlossom:
-      return {{0.64F, 0.41F, 0.47F}, {0.84F, 0.68F, 0.72F}};
+      return {{0.74F, 0.55F, 0.60F}, {0.86F, 0.76F, 0.79F}};
     case pose::FoliageColor::kAutumn:
-      return {{0.36F, 0.045F, 0.012F}, {0.62F, 0.26F, 0.030F}};
+      return autumn_of(leaf_species(tree));
+    case pose::FoliageColor::kBare:
+      return {kTwig, 1.4F * kTwig};
     case pose::FoliageColor::kGreen:
       break;
   }
-  return {{0.050F, 0.118F, 0.020F}, {0.150F, 0.225F, 0.038F}};
+  // An old leaf, and a young one.
+  return {{0.040F, 0.092F, 0.028F}, {0.085F, 0.150F, 0.038F}};
 }
 
 /// The vector from a strand's foot to its tip at rest.
@@ -74,8 +90,9 @@ std::size_t first_joint_at(const pose::TreeSkeleton& tree, std::size_t level) {
 
 std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level) {
   const pose::TreeLevel& from = tree.levels[level];
-  const LeafTints tints = tints_of(tree.foliage);
+  const LeafTints tints = tints_of(tree);
   const math::RandomStream chance(level, math::stream_id("viewer tree"));
+  const math::RandomStream twigs(level, math::stream_id("viewer tree's twigs"));
   const pose::StrandSkeleton& strands = from.strands;
   std::vector<TreePart> parts(strands.strand_count);
   const glm::vec3 middle_m = middle_of(strands);
@@ -97,7 +114,7 @@ std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t lev
                                                from.parent[i] % pose::kStrandsPerBlock);
     }
 
-    const auto light = static_cast<float>(0.8 + 0.4 * second);
+    const auto light = static_cast<float>(0.85 + 0.3 * second);
     const double bearing = 2.0 * kPi * third;
     if (from.is_leaves) {
       const double tilt = 2.0 * kLeafTilt_rad * fourth;
@@ -106,7 +123,9 @@ std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t lev
       const glm::vec3 outward = from_middle_m / std::max(glm::length(from_middle_m), 0.1F);
       part.facing = array_of(glm::normalize(up + kOutward * outward));
       part.rest = array_of(rest_direction(strands, i));
-      part.tint = array_of(light * glm::mix(tints.deep, tints.fresh, static_cast<float>(first)));
+      // Those of a twig are alike.
+      const double twig = level > 0 ? twigs.uniform(from.parent[i]) : first;
+      part.tint = array_of(light * glm::mix(tints.deep, tints.fresh, static_cast<float>(0.4 * first + 0.6 * twig)));
     } else {
       // The direction of the tube's seam: any that is not along the branch.
       const glm::vec3 rest(strands.rest_x[i], strands.rest_y[i], strands.rest_z[i]);
@@ -115,20 +134,6 @@ std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t lev
     }
   }
   return parts;
-}
-
-std::size_t tree_rings(const pose::TreeLevel& level, const Bounds& bounds, const View& view) {
-  float length_m = 0.0F;
-  for (std::size_t i = 0; i < level.strands.strand_count; ++i) {
-    length_m = std::max(length_m, level.strands.link_length_m[i]);
-  }
-  length_m *= static_cast<float>(level.strands.links_per_strand);
-  const glm::vec3 eye(view.eye_m);
-  const float distance_m = glm::distance(eye, glm::clamp(eye, bounds.low_m, bounds.high_m));
-  const float length_px = length_m / (view.eye_m.w * std::max(distance_m, 0.3F));
-  const auto rings = static_cast<std::size_t>(std::min(length_px / kTreeRingPx, 1e6F));
-  const std::size_t links = std::max<std::size_t>(1, level.strands.links_per_strand);
-  return std::clamp(rings, std::min(kMinTreeRings, links), links);
 }
 
 }  // namespace yuragi::viewer::meshes

@@ -6,8 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "viewer/meshes/bounds.hpp"
-#include "viewer/meshes/view.hpp"
+#include "engine/pose/skeleton.hpp"
 
 namespace yuragi::viewer::meshes {
 
@@ -31,11 +30,5 @@ std::size_t first_joint_at(const pose::TreeSkeleton& tree, std::size_t level);
 /// The parts of a level, one a strand, leaves in the colours of the tree's foliage. The same tree always makes the same
 /// parts.
 std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level);
-
-/// How many rings of vertices a level's branches get in this view: more, the longer they are in the picture; at least
-/// kMinTreeRings and at most one a link.
-std::size_t tree_rings(const pose::TreeLevel& level, const Bounds& bounds, const View& view);
-inline constexpr std::size_t kMinTreeRings = 4;
-inline constexpr float kTreeRingPx = 5.0F;
 
 }  // namespace yuragi::viewer::meshes

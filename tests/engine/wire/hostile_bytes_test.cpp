@@ -162,8 +162,8 @@ TEST(HostileBytes, ClothsOutOfBoundsAreRefused) {
 }
 
 TEST(HostileBytes, AFoliageThatIsNotKnownIsGreen) {
-  const auto result =
-      kinds_with<pose::TreeSkeleton>(2, [](auto& s) { s.foliage = static_cast<pose::FoliageColor>(3); });
+  const auto result = kinds_with<pose::TreeSkeleton>(
+      2, [](auto& s) { s.foliage = static_cast<pose::FoliageColor>(pose::kFoliageColorNames.size()); });
   ASSERT_TRUE(result.has_value()) << "a newer server may have more colours";
   EXPECT_EQ(std::get<pose::TreeSkeleton>(std::get<Scenes>(*result).scenes[2].skeleton).foliage,
             pose::FoliageColor::kGreen);

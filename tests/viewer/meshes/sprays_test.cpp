@@ -21,11 +21,6 @@ class SpraysTest : public testing::Test {
     std::ranges::fill(leaves.base_radius_m, 0.5F * width_m);
     return tree;
   }
-  static View view_from(double distance_m) {
-    OrbitCamera camera;
-    camera.frame({{0.0, 2.0, 0.0}, 0.0, 5.0, distance_m});
-    return view_of(camera, 1280, 720);
-  }
   static float area(const SprayMesh& mesh) {
     float sum = 0.0F;
     for (std::size_t i = mesh.stalk_indices; i + 2 < mesh.triangles.size(); i += 3) {
@@ -36,35 +31,33 @@ class SpraysTest : public testing::Test {
     }
     return sum;
   }
-
-  const Bounds crown_{{-2.0F, 0.0F, -2.0F}, {2.0F, 6.0F, 2.0F}};
 };
 
 TEST_F(SpraysTest, LeavesHaveTheSizeAndTheProportionsOfTheSpecies) {
   // The strands of the engine's species: cherry, zelkova, poplar.
-  const SprayShape cherry = spray_shape(tree_of(0.19F, 0.095F));
-  EXPECT_NEAR(0.19F * cherry.leaf_length, 0.08F, 0.01F);
+  const SprayShape cherry = spray_shape(tree_of(0.28F, 0.14F));
+  EXPECT_NEAR(0.28F * cherry.leaf_length, 0.08F, 0.01F);
   EXPECT_NEAR(cherry.leaf_width, 0.5F, 0.05F);
-  const SprayShape zelkova = spray_shape(tree_of(0.19F, 0.076F));
-  EXPECT_NEAR(0.19F * zelkova.leaf_length, 0.065F, 0.01F);
+  const SprayShape zelkova = spray_shape(tree_of(0.28F, 0.112F));
+  EXPECT_NEAR(0.28F * zelkova.leaf_length, 0.065F, 0.01F);
   EXPECT_LT(zelkova.leaf_width, cherry.leaf_width);
-  const SprayShape poplar = spray_shape(tree_of(0.16F, 0.12F));
-  EXPECT_NEAR(0.16F * poplar.leaf_length, 0.06F, 0.01F);
+  const SprayShape poplar = spray_shape(tree_of(0.26F, 0.195F));
+  EXPECT_NEAR(0.26F * poplar.leaf_length, 0.06F, 0.01F);
   EXPECT_GT(poplar.leaf_width, 1.0F) << "wider than long";
 }
 
 TEST_F(SpraysTest, ABlossomingTreeHasFlowersOfThreeCentimetres) {
-  pose::TreeSkeleton tree = tree_of(0.19F, 0.095F);
+  pose::TreeSkeleton tree = tree_of(0.28F, 0.14F);
   tree.foliage = pose::FoliageColor::kBlossom;
   const SprayShape shape = spray_shape(tree);
-  EXPECT_TRUE(shape.has_flowers);
-  EXPECT_NEAR(0.19F * shape.leaf_length, 0.03F, 0.003F);
+  EXPECT_TRUE(shape.has_flowers());
+  EXPECT_NEAR(0.28F * shape.leaf_length, 0.03F, 0.003F);
 }
 
 TEST_F(SpraysTest, MeshesAreWholeAndCoverTheSameNearAndFar) {
   for (const auto foliage : {pose::FoliageColor::kGreen, pose::FoliageColor::kBlossom}) {
-    for (const float width_m : {0.07F, 0.095F, 0.14F}) {
-      pose::TreeSkeleton tree = tree_of(0.19F, width_m);
+    for (const float width_m : {0.10F, 0.14F, 0.20F}) {
+      pose::TreeSkeleton tree = tree_of(0.28F, width_m);
       tree.foliage = foliage;
       const SprayShape shape = spray_shape(tree);
       const SprayMesh near = near_spray(shape);
@@ -84,7 +77,7 @@ TEST_F(SpraysTest, MeshesAreWholeAndCoverTheSameNearAndFar) {
 }
 
 TEST_F(SpraysTest, LeavesAreSpreadAlongTheStrandAtBothSides) {
-  const SprayMesh mesh = far_spray(spray_shape(tree_of(0.19F, 0.095F)));
+  const SprayMesh mesh = far_spray(spray_shape(tree_of(0.28F, 0.14F)));
   std::set<float> places;
   std::set<float> sides;
   for (const SprayCorner& corner : mesh.corners) {
@@ -98,21 +91,38 @@ TEST_F(SpraysTest, LeavesAreSpreadAlongTheStrandAtBothSides) {
 }
 
 TEST_F(SpraysTest, FartherOnesAreFewerAndLargerLeavesThatCoverTheSame) {
-  const SprayShape shape = spray_shape(tree_of(0.19F, 0.095F));
+  const SprayShape shape = spray_shape(tree_of(0.28F, 0.14F));
+  const SprayDetail detail;
   const auto all = static_cast<float>(shape.leaves);
   float before = all;
-  for (int step = 0; step < 200; ++step) {
-    const double distance_m = 3.0 * std::pow(1.02, step);
-    const SprayLevel level = spray_level(shape, 0.19F, crown_, view_from(distance_m));
+  for (float leaf_px = 60.0F; leaf_px > 0.1F; leaf_px /= 1.02F) {
+    const SprayLevel level = spray_level(shape, leaf_px, detail);
     EXPECT_LE(level.leaves, before);
-    EXPECT_GT(level.leaves, before - 0.09F * all) << "they go smoothly";
+    EXPECT_GT(level.leaves, before - 0.05F * all) << "they go smoothly";
     EXPECT_NEAR(level.leaves * level.size * level.size, all, 0.01F);
+    EXPECT_EQ(level.is_near, leaf_px > detail.shaped_leaf_px);
     before = level.leaves;
   }
-  EXPECT_EQ(spray_level(shape, 0.19F, crown_, view_from(3.0)).leaves, all);
-  EXPECT_TRUE(spray_level(shape, 0.19F, crown_, view_from(3.0)).is_near);
-  EXPECT_EQ(before, 2.0F);
-  EXPECT_FALSE(spray_level(shape, 0.19F, crown_, view_from(60.0)).is_near);
+  EXPECT_EQ(spray_level(shape, 60.0F, detail).leaves, all);
+  EXPECT_EQ(spray_level(shape, 0.0F, detail).size, detail.largest) << "no larger, however far away";
+  EXPECT_EQ(spray_level(shape, INFINITY, detail).leaves, all);
+}
+
+TEST_F(SpraysTest, ABareTreeHasTwigsThatGrowThin) {
+  pose::TreeSkeleton tree = tree_of(0.28F, 0.14F);
+  tree.foliage = pose::FoliageColor::kBare;
+  const SprayShape shape = spray_shape(tree);
+  EXPECT_EQ(shape.kind, SprayShape::Kind::kTwigs);
+  const SprayMesh mesh = far_spray(shape);
+  ASSERT_EQ(mesh.triangles.size(), shape.leaves * mesh.leaf_indices);
+  // The first is the spray's own axis, all of it.
+  EXPECT_EQ(mesh.corners.front().at, 0.0F);
+  EXPECT_EQ(mesh.corners[mesh.triangles[mesh.leaf_indices - 1]].at, 1.0F);
+  for (const SprayCorner& corner : mesh.corners) {
+    EXPECT_EQ(std::abs(corner.across), 1.0F);
+    EXPECT_GT(corner.edge, 0.0F) << "its thickness";
+    EXPECT_LE(corner.edge, corner.leaf > 0.0F ? 0.7F : 1.0F);
+  }
 }
 
 TEST_F(SpraysTest, ATreeWithoutLeavesHasAShapeToo) {

@@ -15,12 +15,6 @@ namespace {
 class TreePartsTest : public testing::Test {
  protected:
   const pose::TreeSkeleton tree_ = std::get<pose::TreeSkeleton>(test_model("tree").skeleton);
-
-  View view_from(double distance_m) const {
-    OrbitCamera camera;
-    camera.frame({{0.0, 2.0, 0.0}, 0.0, 5.0, distance_m});
-    return view_of(camera, 1280, 720);
-  }
 };
 
 TEST_F(TreePartsTest, FindTheJointThatTheyGrowFrom) {
@@ -94,19 +88,6 @@ TEST_F(TreePartsTest, LeavesHaveTheColorsOfTheirFoliage) {
   for (const TreePart& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[0], leaf.tint[1]);
   tree.foliage = pose::FoliageColor::kBlossom;
   for (const TreePart& leaf : tree_parts(tree, 3)) EXPECT_GT(leaf.tint[2], 0.2F) << "pale pink";
-}
-
-TEST_F(TreePartsTest, HaveMoreRingsTheNearerTheyAre) {
-  const Bounds bounds = bounds_of(tree_);
-  const pose::TreeLevel& trunk = tree_.levels[0];
-  EXPECT_EQ(tree_rings(trunk, bounds, view_from(5.0)), trunk.strands.links_per_strand);
-  EXPECT_EQ(tree_rings(trunk, bounds, view_from(200.0)), kMinTreeRings);
-  EXPECT_GE(tree_rings(tree_.levels[1], bounds, view_from(10.0)), tree_rings(tree_.levels[1], bounds, view_from(40.0)));
-
-  // Never more than there are links.
-  pose::TreeLevel stump = trunk;
-  stump.strands.links_per_strand = 1;
-  EXPECT_EQ(tree_rings(stump, bounds, view_from(5.0)), 1U);
 }
 
 }  // namespace

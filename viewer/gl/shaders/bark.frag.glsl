@@ -6,6 +6,7 @@ in vec3 place_m;
 in vec3 normal;
 in vec3 tint;
 in vec2 bark_m;
+in float above_foot_m;
 out vec4 color;
 
 float lattice(ivec2 at) {
@@ -37,6 +38,10 @@ void main() {
   float patches = grain(bark_m * vec2(5.0, 2.2));
   vec3 paint = tint * (0.40 + 0.80 * furrow) * (0.75 + 0.5 * fine) * (0.75 + 0.5 * patches);
   paint += vec3(0.020, 0.024, 0.016) * smoothstep(0.62, 0.85, patches) * furrow;  // lichen
+  // Moss at the foot, higher up on the side that faces north; and earth where the trunk meets the ground.
+  float moss = smoothstep(0.42, 0.75, patches + 0.25 * furrow - 0.9 * above_foot_m - 0.22 * facing.z);
+  paint = mix(paint, vec3(0.030, 0.050, 0.014) * (0.6 + 0.8 * fine), 0.8 * moss);
+  paint *= mix(0.45, 1.0, smoothstep(0.0, 0.22, above_foot_m));
 
   vec3 in_crown = (place_m - crown_middle_m) / crown_radius_m;
   float open = smoothstep(0.35, 1.15, length(in_crown));

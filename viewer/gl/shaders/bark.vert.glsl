@@ -2,6 +2,10 @@
 uniform int first;  // index of the level's first joint
 uniform int rings;
 uniform int sides;
+// TreePlace (viewer/meshes/tree_place.hpp).
+uniform vec3 place_from_m;
+uniform vec4 place_to_m;  // w: scale
+uniform vec2 place_turn;  // cosine, sine
 
 layout(location = 0) in vec4 root_base;  // metres; w: radius there
 layout(location = 1) in vec4 tint_tip;   // w: radius at the tip, metres
@@ -13,6 +17,9 @@ out vec3 place_m;
 out vec3 normal;
 out vec3 tint;
 out vec2 bark_m;  // position around the branch and along it
+out float above_foot_m;
+
+vec3 turned(vec3 v) { return vec3(place_turn.x * v.x + place_turn.y * v.z, v.y, place_turn.x * v.z - place_turn.y * v.x); }
 
 void main() {
   int ring = gl_VertexID / (sides + 1);
@@ -37,9 +44,12 @@ void main() {
   } else {
     radius *= 1.0 + 0.8 * exp(-0.22 * from_root);
   }
-  radius = max(radius, 0.35 * eye_m.w * distance(eye_m.xyz, middle));
-  place_m = middle + radius * normal;
   tint = tint_tip.rgb;
   bark_m = vec2(turn * root_base.w, distance(root, middle));
+  above_foot_m = root_at < 0 ? bark_m.y : 1e3;
+  middle = place_to_m.xyz + place_to_m.w * turned(middle - place_from_m);
+  normal = turned(normal);
+  radius = max(place_to_m.w * radius, 0.35 * eye_m.w * distance(eye_m.xyz, middle));
+  place_m = middle + radius * normal;
   gl_Position = to_clip * vec4(place_m, 1.0);
 }

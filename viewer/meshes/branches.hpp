@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/pose/tree_kinematics.hpp"
+#include "viewer/meshes/tree_parts.hpp"
+#include "viewer/meshes/tree_place.hpp"
+#include "viewer/meshes/view.hpp"
+
+namespace yuragi::viewer::meshes {
+
+/// Branches that are drawn with as many rings of vertices.
+struct BranchGroup {
+  std::size_t rings = 1;  ///< at most one a link
+  std::size_t first = 0;  ///< of Branches::parts()
+  std::size_t count = 0;
+};
+
+/// All branches of a level of wood, and which of them a picture needs, how finely: those in view, with more rings the
+/// longer they are in it. Allocates when it is made, never afterwards.
+class Branches {
+ public:
+  static constexpr std::size_t kFewestRings = 4;  ///< where there are as many links
+  static constexpr float kRingPx = 5.0F;          ///< a ring for so many pixels of a branch's length, at least
+
+  /// `tree` must outlive this.
+  Branches(const pose::TreeSkeleton& tree, std::size_t level);
+
+  void move_to(const pose::TreeJoints& joints);
+
+  /// Those in view of the tree, or of a copy of it.
+  void choose(const View& view, const TreePlace& place = {});
+  std::span<const TreePart> parts() const { return std::span(chosen_).first(chosen_count_); }
+  std::span<const BranchGroup> groups() const { return groups_; }
+
+ private:
+  static constexpr std::size_t kNotSeen = ~std::size_t{0};
+
+  const pose::TreeSkeleton* tree_;
+  std::size_t level_;
+  std::vector<TreePart> parts_;
+  std::vector<glm::vec3> middles_m_;
+  std::vector<float> lengths_m_;
+  std::vector<std::size_t> group_of_;
+  std::vector<BranchGroup> groups_;
+  std::vector<TreePart> chosen_;
+  std::size_t chosen_count_ = 0;
+};
+
+}  // namespace yuragi::viewer::meshes

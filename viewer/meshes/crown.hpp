@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "engine/pose/tree_kinematics.hpp"
+#include "viewer/meshes/sprays.hpp"
+#include "viewer/meshes/tree_parts.hpp"
+#include "viewer/meshes/tree_place.hpp"
+#include "viewer/meshes/view.hpp"
+
+namespace yuragi::viewer::meshes {
+
+/// A spray as the leaves' shader reads it: it goes from root to tip along a parabola.
+struct SprayPlace {
+  glm::vec3 root_m{0.0F};
+  float length_m = 0.0F;
+  glm::vec3 tip_m{0.0F};
+  float leaves = 0.0F;    ///< that are drawn; the last one in part
+  glm::vec3 bow_m{0.0F};  ///< at u of the way from root to tip the spray is u (1 - u) of this beside the straight line
+  float blown = 0.0F;     ///< the square of how far the wind has turned it from rest (the chord of unit vectors)
+  glm::vec3 upper{0.0F};  ///< the normal of its upper side
+  float size = 1.0F;      ///< of its leaves: larger where few are drawn
+  glm::vec3 tint{0.0F};   ///< linear light
+  float number = 0.0F;    ///< of the spray
+  glm::vec4 open{0.0F};   ///< the share of light that comes to it from a direction d: w + dot(xyz, d), about
+};
+
+/// Sprays that are drawn with one mesh.
+struct SprayGroup {
+  bool is_near = false;
+  std::size_t leaves = 0;  ///< of the mesh
+  std::size_t first = 0;   ///< of Crown::places()
+  std::size_t count = 0;
+};
+
+/// All sprays of a level of leaves: where they are, and which of them a picture needs, how finely.
+///
+/// Sprays are judged 16 by 16, as they stand together on a twig: those out of view are left out, those farther away get
+/// fewer, larger leaves, and then there are fewer sprays. Nothing comes or goes but by growing. Allocates when it is
+/// made, never afterwards.
+class Crown {
+ public:
+  /// `tree` must outlive this.
+  Crown(const pose::TreeSkeleton& tree, std::size_t level);
+
+  const SprayShape& shape() const { return shape_; }
+
+  void move_to(const pose::TreeJoints& joints);
+
+  /// Those in view of the tree, or of a copy of it.
+  void choose(const View& view, const SprayDetail& detail, const TreePlace& place = {});
+  std::span<const SprayPlace> places() const { return std::span(chosen_).first(chosen_count_); }
+  std::span<const SprayGroup> groups() const { return groups_; }
+
+ private:
+  struct Choice {
+    SprayLevel level;
+    std::size_t group = 0;
+    bool is_seen = false;
+  };
+  struct Ball {
+    glm::vec3 middle_m{0.0F};
+    float radius_m = 0.0F;
+  };
+
+  std::size_t strands_in(std::size_t block) const;
+
+  const pose::TreeSkeleton* tree_;
+  std::size_t level_;
+  SprayShape shape_;
+  float leaf_m_ = 0.0F;
+  std::vector<TreePart> parts_;
+  std::vector<SprayPlace> sprays_;
+  std::vector<Ball> balls_;  // around each block of sprays
+  std::vector<Choice> choices_;
+  std::vector<SprayGroup> groups_;
+  std::vector<SprayPlace> chosen_;
+  std::size_t chosen_count_ = 0;
+};
+
+/// How much light comes to each strand of a level of leaves through the others, from all around: see SprayPlace::open.
+/// By the leaves' area in the cells of a grid, in which light is lost as M. Monsi and T. Saeki 1953 say ("Ueber den
+/// Lichtfaktor in den Pflanzengesellschaften", Beer's law with half of the leaf area across the light), at rest.
+std::vector<glm::vec4> crown_openness(const pose::TreeSkeleton& tree, std::size_t level, const SprayShape& shape);
+
+}  // namespace yuragi::viewer::meshes
