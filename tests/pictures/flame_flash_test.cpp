@@ -12,16 +12,16 @@
 namespace yuragi::viewer {
 namespace {
 
-constexpr int kWidth_px = 80;
-constexpr int kHeight_px = 60;
+constexpr int kWidth_px = 64;
+constexpr int kHeight_px = 48;
 constexpr double kRate_hz = 60.0;
-constexpr int kPictures = 120;
-constexpr double kSettling_s = 20.0;
+constexpr int kPictures = 80;  // a second and a third
+constexpr double kSettling_s = 6.0;
 constexpr double kMostShare = 0.25;  // of a field, W3C
 
 class FlameFlash : public testing::TestWithParam<Weather> {};
 
-/// Two seconds of it. (What it shines on cannot flash: FireFlickerTest.)
+/// A second and more of it. (What it shines on cannot flash: FireFlickerTest.)
 FlashMeter seen(const Weather& weather) {
   const gl::HeadlessContext context({.is_software = true, .has_messages = true});
   looks::Stage stage;

@@ -22,11 +22,16 @@ constexpr float kSheetBrightness = 2.2F;
 constexpr float kEmbersBrightness = 1.0F;
 constexpr glm::vec3 kGlow{0.050F, 0.017F, 0.004F};
 // On a surface at one metre, for each square metre of its outline: its radiance over the pi of a diffuse surface.
-constexpr glm::vec3 kFireLight{0.95F, 0.36F, 0.085F};
+constexpr glm::vec3 kFireLight{0.95F, 0.43F, 0.13F};
 constexpr float kUsualHeat = 0.42F;  // of all points, on average
 
 // Gas rises by so much of sqrt(g h) where most of the flame is (B. McCaffrey 1979, "Purely buoyant diffusion flames").
+// Shown at this part of that, so that no more than three tongues in a second pass a place (WCAG 2.3.1), and with a heat
+// that follows the streamed one within kFollowing_s: flame_flash_test.cpp.
 constexpr double kRise = 0.73;
+constexpr double kShownRise = 0.42;
+constexpr double kFollowing_s = 0.22;
+constexpr double kJump_s = 1.0;
 constexpr double kGravity_m_s2 = 9.81;
 
 constexpr int kStepsLow = 10, kStepsMedium = 16, kStepsHigh = 28;
@@ -145,7 +150,10 @@ void FlameRenderer::move_to(const pose::Pose& pose) {
   if (volume_.is_empty()) {
     move_sheet(burning);
   } else {
-    volume_.move_to(*surface_, burning);
+    const double passed_s = std::abs(moment_.time_s - moved_at_s_);
+    const double share = passed_s < kJump_s ? 1.0 - std::exp(-passed_s / kFollowing_s) : 1.0;
+    volume_.move_to(*surface_, burning, static_cast<float>(share));
+    moved_at_s_ = moment_.time_s;
     sparks_.move_to(moment_.time_s, moment_.wind_m_s, volume_);
     heat_ = volume_.mean_heat();
     hot_middle_m_ = volume_.hot_middle_m();
@@ -248,7 +256,7 @@ void FlameRenderer::draw_embers() {
 
 void FlameRenderer::draw_body() {
   // The noises rise as the gas does, one faster than the other; the shader has 0.42 and 0.56 tiles over the height.
-  const double rise_per_s = kRise * std::sqrt(kGravity_m_s2 / static_cast<double>(height_m_));
+  const double rise_per_s = kShownRise * kRise * std::sqrt(kGravity_m_s2 / static_cast<double>(height_m_));
   glUseProgram(fire_program_.name());
   glUniform2f(risen_place_, part_of(0.42 * rise_per_s * moment_.time_s),
               part_of(0.56 * 1.2 * rise_per_s * moment_.time_s));

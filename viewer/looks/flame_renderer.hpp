@@ -53,6 +53,7 @@ class FlameRenderer : public SceneRenderer {
   // A body of gas.
   meshes::FlameVolume volume_;
   meshes::Sparks sparks_;
+  double moved_at_s_ = -1e9;
   int steps_;
   gl::GlProgram fire_program_, spark_program_;
   gl::GlTexture heat_tile_, layer_rows_;

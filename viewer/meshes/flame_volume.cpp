@@ -32,7 +32,7 @@ FlameVolume::FlameVolume(const pose::SurfaceSkeleton& surface) {
   middles_m_.resize(layers_);
   heat_.assign(kAcross * kAcross * layers_, 0);
   radius_.resize(surface.columns);
-  hot_.resize(surface.columns);
+  hot_.resize(surface.columns * layers_);
 
   // How thick each layer is; a row's middle is that of its outermost ring.
   std::vector<float> radii_m(layers_);
@@ -117,7 +117,7 @@ glm::vec3 FlameVolume::place_m(float east_m, float south_m, float v) const {
   return between(middles_m_[layer], middles_m_[layer + 1]) + glm::vec3(east_m, -down_m, south_m);
 }
 
-void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::SurfacePose& pose) {
+void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::SurfacePose& pose, float share) {
   if (is_empty()) return;
   const bool moves_rows = pose.row_east_m.size() == rows_count_;
   glm::dvec3 hot_m(0.0);
@@ -141,6 +141,7 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
 
     // How far each point stands from the middle, in radii of the outermost shell at rest.
     double sum = 0.0;
+    float* const hot_here = hot_.data() + layer * surface.columns;
     for (std::size_t shell = 0; shell < shells_; ++shell) {
       for (std::size_t column = 0; column < around_; ++column) {
         const std::size_t i = first + shell * around_ + column;
@@ -149,8 +150,9 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
         radius_m = std::max(shell_parts_[shell] * here.half_m / kRoom, kLeastRadius_m);
         const float swell = std::sqrt(east * east + south * south) * pose.displacement_m[i] / radius_m;
         radius_[shell * around_ + column] = shell_parts_[shell] * (1.0F + std::clamp(swell, -0.8F, kRoom - 1.0F));
-        hot_[shell * around_ + column] = pose.heat.empty() ? 0.0F : pose.heat[i];
-        sum += static_cast<double>(hot_[shell * around_ + column]);
+        float& hot = hot_here[shell * around_ + column];
+        hot += share * ((pose.heat.empty() ? 0.0F : pose.heat[i]) - hot);
+        sum += static_cast<double>(hot);
       }
     }
     heat += sum;
@@ -164,18 +166,18 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
       }
       const float radius = kRoom * at.radius;
       const std::size_t next = at.column + 1 == around_ ? 0 : at.column + 1;
-      const auto of = [&](const std::vector<float>& values, std::size_t shell) {
-        const float* const ring = values.data() + shell * around_;
+      const auto of = [&](const float* values, std::size_t shell) {
+        const float* const ring = values + shell * around_;
         return ring[at.column] + at.part * (ring[next] - ring[at.column]);
       };
-      float outer = of(radius_, 0);
-      float level = of(hot_, 0);
+      float outer = of(radius_.data(), 0);
+      float level = of(hot_here, 0);
       if (radius >= outer) {
         level *= std::max(0.0F, 1.0F - (radius - outer) / kSoftEdge);
       } else {
         for (std::size_t shell = 1; shell < shells_; ++shell) {
-          const float inner = std::min(of(radius_, shell), outer - 1e-3F);
-          const float inner_level = of(hot_, shell);
+          const float inner = std::min(of(radius_.data(), shell), outer - 1e-3F);
+          const float inner_level = of(hot_here, shell);
           if (radius >= inner) {
             level += (outer - radius) / (outer - inner) * (inner_level - level);
             break;

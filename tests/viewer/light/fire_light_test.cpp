@@ -52,11 +52,11 @@ TEST(FireFlicker, NeverFlashesMoreThanThreeTimesInASecondHoweverItsHeatJumps) {
         const bool is_hot = std::fmod(time_s * flicker_hz, 1.0) < 0.5;
         luminance.push_back(on_screen(exposure * static_cast<double>(flicker.follow(is_hot ? 1.0F : 0.05F, time_s))));
       }
-      // All that it goes up and down in any second is less than seven changes of 0.1.
+      // All that it goes up and down in any second is less than seven changes of 0.0625.
       for (std::size_t from = 0; from + 60 < luminance.size(); ++from) {
         double way = 0.0;
         for (std::size_t i = from; i < from + 60; ++i) way += std::abs(luminance[i + 1] - luminance[i]);
-        ASSERT_LT(way, 0.6) << flicker_hz << " Hz, exposure " << exposure;
+        ASSERT_LT(way, 0.4375) << flicker_hz << " Hz, exposure " << exposure;
       }
     }
   }

@@ -42,8 +42,8 @@ void main() {
     if (heat > 0.03) {
       // Two noises at right angles to each other, drawn out along the flame.
       vec2 across = mat2(0.8, 0.6, -0.6, 0.8) * at_m / size_m.x;
-      float one = textureLod(noise_tile, vec2(0.42 * across.x + 0.12 * across.y, 0.42 * v - risen.x), 1.5).r;
-      float two = textureLod(noise_tile, vec2(0.50 * across.y - 0.10 * across.x + 0.30 * one, 0.56 * v - risen.y), 1.5).r;
+      float one = textureLod(noise_tile, vec2(0.42 * across.x + 0.12 * across.y, 0.42 * v - risen.x), 2.5).r;
+      float two = textureLod(noise_tile, vec2(0.50 * across.y - 0.10 * across.x + 0.30 * one, 0.56 * v - risen.y), 2.5).r;
       float torn = 3.4 * (one + two - 1.0);
       float level = heat - 0.30 - 0.75 * smoothstep(0.45, 1.0, v) + torn * (0.30 + 0.70 * min(v * 2.5, 1.0));
       level -= 1.2 * smoothstep(floor_m.y, floor_m.x, y_m);
@@ -58,5 +58,8 @@ void main() {
     v += up * step_m;
     y_m += ray.y * step_m;
   }
-  color = vec4(finish(sum * (brightness / size_m.x)), 0.0);
+  // Never a saturated red (R / (R + G + B) of 0.8), whose flicker is the most harmful: orange at most.
+  vec3 value = finish(sum * (brightness / size_m.x));
+  value.g = max(value.g, 0.57 * value.r);
+  color = vec4(value, 0.0);
 }
