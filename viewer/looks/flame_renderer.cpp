@@ -29,8 +29,8 @@ constexpr float kUsualHeat = 0.42F;  // of all points, on average
 // Shown at this part of that, so that no more than three tongues in a second pass a place (WCAG 2.3.1), and with a heat
 // that follows the streamed one within kFollowing_s: flame_flash_test.cpp.
 constexpr double kRise = 0.73;
-constexpr double kShownRise = 0.42;
-constexpr double kFollowing_s = 0.22;
+constexpr double kShownRise = 0.36;
+constexpr double kFollowing_s = 0.55;
 constexpr double kJump_s = 1.0;
 constexpr double kGravity_m_s2 = 9.81;
 
@@ -255,11 +255,11 @@ void FlameRenderer::draw_embers() {
 }
 
 void FlameRenderer::draw_body() {
-  // The noises rise as the gas does, one faster than the other; the shader has 0.42 and 0.56 tiles over the height.
+  // The noises rise as the gas does, one faster than the other; the shader has 0.26 and 0.36 tiles over the height.
   const double rise_per_s = kShownRise * kRise * std::sqrt(kGravity_m_s2 / static_cast<double>(height_m_));
   glUseProgram(fire_program_.name());
-  glUniform2f(risen_place_, part_of(0.42 * rise_per_s * moment_.time_s),
-              part_of(0.56 * 1.2 * rise_per_s * moment_.time_s));
+  glUniform2f(risen_place_, part_of(0.26 * rise_per_s * moment_.time_s),
+              part_of(0.36 * 1.2 * rise_per_s * moment_.time_s));
   glUniform1f(fire_brightness_place_, kBodyBrightness * moment_.flame_brightness);
   glActiveTexture(GL_TEXTURE1);
   glBindTexture(GL_TEXTURE_2D, layer_rows_.name());

@@ -31,7 +31,7 @@ FlameVolume::FlameVolume(const pose::SurfaceSkeleton& surface) {
   rows_.resize(layers_);
   middles_m_.resize(layers_);
   heat_.assign(kAcross * kAcross * layers_, 0);
-  radius_.resize(surface.columns);
+  radius_.resize(surface.columns * layers_);
   hot_.resize(surface.columns * layers_);
 
   // How thick each layer is; a row's middle is that of its outermost ring.
@@ -127,7 +127,6 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
     const std::size_t first = row * surface.columns;
     Layer& here = rows_[layer];
     glm::vec3 middle_m(0.0F);
-    float radius_m = 0.0F;
     for (std::size_t i = first; i < first + around_; ++i) {
       middle_m += glm::vec3(surface.rest_x_m[i], surface.rest_y_m[i], surface.rest_z_m[i]);
     }
@@ -142,14 +141,17 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
     // How far each point stands from the middle, in radii of the outermost shell at rest.
     double sum = 0.0;
     float* const hot_here = hot_.data() + layer * surface.columns;
+    float* const radius_here = radius_.data() + layer * surface.columns;
     for (std::size_t shell = 0; shell < shells_; ++shell) {
       for (std::size_t column = 0; column < around_; ++column) {
         const std::size_t i = first + shell * around_ + column;
         const float east = surface.normal_x[i];
         const float south = surface.normal_z[i];
-        radius_m = std::max(shell_parts_[shell] * here.half_m / kRoom, kLeastRadius_m);
+        const float radius_m = std::max(shell_parts_[shell] * here.half_m / kRoom, kLeastRadius_m);
         const float swell = std::sqrt(east * east + south * south) * pose.displacement_m[i] / radius_m;
-        radius_[shell * around_ + column] = shell_parts_[shell] * (1.0F + std::clamp(swell, -0.8F, kRoom - 1.0F));
+        const float swollen = shell_parts_[shell] * (1.0F + std::clamp(swell, -0.8F, kRoom - 1.0F));
+        float& radius = radius_here[shell * around_ + column];
+        radius += share * (swollen - radius);
         float& hot = hot_here[shell * around_ + column];
         hot += share * ((pose.heat.empty() ? 0.0F : pose.heat[i]) - hot);
         sum += static_cast<double>(hot);
@@ -170,13 +172,13 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
         const float* const ring = values + shell * around_;
         return ring[at.column] + at.part * (ring[next] - ring[at.column]);
       };
-      float outer = of(radius_.data(), 0);
+      float outer = of(radius_here, 0);
       float level = of(hot_here, 0);
       if (radius >= outer) {
         level *= std::max(0.0F, 1.0F - (radius - outer) / kSoftEdge);
       } else {
         for (std::size_t shell = 1; shell < shells_; ++shell) {
-          const float inner = std::min(of(radius_.data(), shell), outer - 1e-3F);
+          const float inner = std::min(of(radius_here, shell), outer - 1e-3F);
           const float inner_level = of(hot_here, shell);
           if (radius >= inner) {
             level += (outer - radius) / (outer - inner) * (inner_level - level);

@@ -27,7 +27,8 @@ class FlameVolume {
   explicit FlameVolume(const pose::SurfaceSkeleton& surface);
   bool is_empty() const { return layers_ == 0; }
 
-  /// Takes the rows of a pose that fits the skeleton, and so much of the way to its heat (1: all of it).
+  /// Takes the rows of a pose that fits the skeleton, and so much of the way to its heat and its swelling (1: all of
+  /// it).
   void move_to(const pose::SurfaceSkeleton& surface, const pose::SurfacePose& pose, float share = 1.0F);
 
   std::size_t layers() const { return layers_; }
@@ -74,8 +75,7 @@ class FlameVolume {
   };
   std::vector<Texel> texels_;
   std::vector<float> shell_parts_;   ///< radius of each shell, the outermost is 1
-  std::vector<float> radius_;         ///< of a row: shell after shell, a column each
-  std::vector<float> hot_;            ///< of all layers, the same
+  std::vector<float> radius_, hot_;  ///< of all layers: shell after shell, a column each
   std::vector<glm::vec3> middles_m_;
   std::vector<std::uint8_t> heat_;
   std::vector<Layer> rows_;

@@ -42,14 +42,14 @@ void main() {
     if (heat > 0.03) {
       // Two noises at right angles to each other, drawn out along the flame.
       vec2 across = mat2(0.8, 0.6, -0.6, 0.8) * at_m / size_m.x;
-      float one = textureLod(noise_tile, vec2(0.42 * across.x + 0.12 * across.y, 0.42 * v - risen.x), 2.5).r;
-      float two = textureLod(noise_tile, vec2(0.50 * across.y - 0.10 * across.x + 0.30 * one, 0.56 * v - risen.y), 2.5).r;
+      float one = textureLod(noise_tile, vec2(0.46 * across.x + 0.14 * across.y, 0.26 * v - risen.x), 1.8).r;
+      float two = textureLod(noise_tile, vec2(0.54 * across.y - 0.12 * across.x + 0.25 * one, 0.36 * v - risen.y), 1.8).r;
       float torn = 3.4 * (one + two - 1.0);
       float level = heat - 0.30 - 0.75 * smoothstep(0.45, 1.0, v) + torn * (0.30 + 0.70 * min(v * 2.5, 1.0));
       level -= 1.2 * smoothstep(floor_m.y, floor_m.x, y_m);
       // It burns in sheets around what is hottest.
-      float thick = smoothstep(0.0, 0.30, level) * (1.0 - 0.70 * smoothstep(0.35, 0.9, level));
-      vec4 hot = textureLod(ramp, vec2((clamp(0.34 + 0.42 * level - 0.10 * v, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
+      float thick = smoothstep(0.0, 0.30, level) * (1.0 - 0.60 * smoothstep(0.40, 1.0, level));
+      vec4 hot = textureLod(ramp, vec2((clamp(0.29 + 0.42 * level - 0.10 * v, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
       sum += hot.rgb * hot.rgb * (thick * step_m);
       // The blue of the root, where air still reaches the gas.
       sum += vec3(0.01, 0.03, 0.16) * (step_m * thick * smoothstep(0.25, 0.08, v) * smoothstep(0.5, 0.0, level));
@@ -60,6 +60,6 @@ void main() {
   }
   // Never a saturated red (R / (R + G + B) of 0.8), whose flicker is the most harmful: orange at most.
   vec3 value = finish(sum * (brightness / size_m.x));
-  value.g = max(value.g, 0.57 * value.r);
+  value.g = max(value.g, 0.555 * value.r);
   color = vec4(value, 0.0);
 }
