@@ -46,7 +46,9 @@ class ScenesInWind {
   std::vector<look::Camera> cameras_;
   daemon::animation::Animation animation_;
   wind::blend::BlendedEstimator estimator_;
-  MonoTime now_{std::chrono::hours(1)};
+  static constexpr MonoTime kBegins{std::chrono::hours(1)};
+  MonoTime now_ = kBegins;
+  wind::WindState state_;
 };
 
 }  // namespace yuragi::viewer

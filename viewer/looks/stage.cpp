@@ -41,6 +41,7 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
       view->bounds = meshes::bounds_of(view->scene.skeleton);
       view->renderer = make_scene_renderer(view->scene, quality_);
       view->bounds = view->renderer->bounds_with_holder(view->bounds);
+      if (view->renderer->fire()) view->bounds.low_m.y = std::min(view->bounds.low_m.y, 0.0F);  // with its bowl's legs
       if (const auto* strands = std::get_if<pose::StrandSkeleton>(&view->scene.skeleton)) {
         view->grid = meshes::bend_grid_of(*strands);
         if (view->renderer->is_field() && !view->renderer->is_ground()) view->stand = meshes::stand_of(*strands);
@@ -116,6 +117,26 @@ bool Stage::is_seen(const stream::PoseMoment& moment, std::size_t scene) const {
          moment.opacities[scene] > 0.0F && pose::fits(moment.poses[scene], scenes_[scene]->skeleton);
 }
 
+/// Gives each renderer its pose, and asks which light it throws.
+void Stage::move_to(const stream::PoseMoment& moment) {
+  const SceneRenderer::Moment now{
+      .time_s = moment.time_s,
+      .wind_m_s = {static_cast<float>(moment.wind.wind.u_m_s), -static_cast<float>(moment.wind.wind.v_m_s)},
+      .flame_brightness = light::flame_brightness(light_.air.x)};
+  fires_.clear();
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    if (!is_seen(moment, scene)) continue;
+    SceneRenderer& renderer = *views_[scene]->renderer;
+    renderer.set_moment(now);
+    renderer.move_to(moment.poses[scene]);
+    renderer.set_blade_share(blade_share_);
+    if (std::optional<light::Fire> fire = renderer.fire()) {
+      fire->light *= moment.opacities[scene];
+      fires_.push_back(*fire);
+    }
+  }
+}
+
 /// What stands on the ground, and how its grass is bent.
 void Stage::move_ground(const stream::PoseMoment& moment) {
   standing_.clear();
@@ -160,6 +181,8 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
     } else if (view.shore.is_pond()) {
       thing.kind = meshes::Standing::Kind::kWater;
       thing.shore = &view.shore;
+    } else if (std::holds_alternative<pose::SurfaceSkeleton>(view.scene.skeleton)) {
+      thing.kind = meshes::Standing::Kind::kFire;
     }
   }
   if (is_bare && ground_opacity > 0.0F) {
@@ -247,7 +270,7 @@ void Stage::draw_mirror(const stream::PoseMoment& moment, const meshes::View& vi
   const meshes::View image = meshes::mirrored(view, *height_m, 1.0F / static_cast<float>(smaller));
   view_buffer_.set(image);
   mirror_->begin();
-  // With low quality the sky and the hills alone.
+  // With low quality the sky, the hills and fires alone.
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     SceneRenderer& renderer = *views_[scene]->renderer;
     if (!is_seen(moment, scene) || renderer.is_field()) continue;
@@ -258,7 +281,7 @@ void Stage::draw_mirror(const stream::PoseMoment& moment, const meshes::View& vi
   }
   if (quality_ == look::Quality::kHigh || quality_ == look::Quality::kAuto) draw_sward(image);
   landscape_.draw_sky(image);
-  for (std::size_t scene = 0; scene < views_.size() && quality_ != look::Quality::kLow; ++scene) {
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (is_seen(moment, scene)) views_[scene]->renderer->draw_light();
   }
   mirror_->end();
@@ -271,11 +294,8 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   if (clock_ != nullptr) clock_->begin();
   const glm::vec3 to_sun(light_.to_sun);
   const bool has_shadows = to_sun.y > kLowestSun;
-  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    if (!is_seen(moment, scene)) continue;
-    views_[scene]->renderer->move_to(moment.poses[scene]);
-    views_[scene]->renderer->set_blade_share(blade_share_);
-  }
+  move_to(moment);
+  view_buffer_.set(light::nearest_fires(fires_, glm::vec3(view.eye_m)));
   mark_pass("kinematics");
   if (has_shadows && shadow_map_) {
     draw_shadows(moment, to_sun, view);

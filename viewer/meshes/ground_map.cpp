@@ -15,6 +15,7 @@ constexpr float kMargin_m = 0.8F;      // of lawn around a thing
 constexpr float kSlope_m = 2.8F;       // from there on to tall grass
 constexpr float kShore_m = 0.5F;       // around water, without blades
 constexpr float kFloorEdge_m = 0.05F;  // beyond which blades stand again
+constexpr float kTrampled_m = 0.45F;   // around a fire
 /// A texel with so many blades, of those that its area has on average, is taken as full.
 constexpr float kFullTexel = 0.5F;
 
@@ -124,6 +125,7 @@ void GrowthMap::make(std::span<const Standing> things, float most) {
           is_taken = std::clamp(0.4F - out_m / kTexel_m, 0.0F, 1.0F);
         }
         float growth = kLawn + (1.0F - kLawn) * smooth((out_m - kMargin_m) / kSlope_m);
+        if (thing.kind == Standing::Kind::kFire) growth *= smooth((out_m - kTrampled_m) / kTrampled_m);
         if (thing.kind == Standing::Kind::kFur) {
           // An animal lies in the tall grass: its body is round.
           const glm::vec2 half_m =

@@ -49,7 +49,7 @@ BendGrid bend_grid_of(const pose::StrandSkeleton& skeleton);
 
 /// What stands on the ground, with how much of it is to be seen (0 to 1).
 struct Standing {
-  enum class Kind : std::uint8_t { kGrass, kWater, kFur, kOther };
+  enum class Kind : std::uint8_t { kGrass, kWater, kFur, kFire, kOther };
   Kind kind = Kind::kOther;
   Bounds bounds;
   float opacity = 1.0F;
@@ -59,9 +59,9 @@ struct Standing {
 };
 
 /// How tall grass grows, and where the ground is taken, by streamed blades: a square map around the middle of the
-/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things, but grows up to
-/// fur. Where there is water or a floor no blade of the viewer's own stands, either. Beyond the map it is as on its
-/// edge.
+/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things, trampled around
+/// a fire, and grows up to fur. Where there is water or a floor no blade of the viewer's own stands, either. Beyond the
+/// map it is as on its edge.
 class GrowthMap {
  public:
   static constexpr std::size_t kTexels = 256;  ///< a side

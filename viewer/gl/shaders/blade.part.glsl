@@ -92,5 +92,6 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
     vec3 canopy = canopy_light(bend, to_eye, patch_at, tufts, tall, sunlight);
     light = mix(light, canopy, far);
   }
+  light += tint * fire_light(place, vec3(0.0, 0.7, 0.0) + 0.5 * to_eye) * (0.2 + 0.8 * t);
   shade = seen(light, place);
 }

@@ -203,6 +203,8 @@ void main() {
   light += deep * sun * (through * behind * (0.62 + 0.55 * against_2 * against_2));
   light += (paint * soft_light(facing) * 0.80 + deep * soft_light(-facing) * (0.70 * through)) * open;
 
+  light += paint * (fire_light(place_m, facing) + 0.5 * through * fire_light(place_m, -facing));
+
   // Threads reflect more at a grazing angle, and tight ones shine.
   float rim = 1.0 - abs(dot(facing, from_eye));
   light += (0.25 + paint) * (sky_light.rgb * open + 0.35 * sun * on) * (0.22 * rim * rim * rim);

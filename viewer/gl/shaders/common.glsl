@@ -40,6 +40,26 @@ layout(std140) uniform Light {
   vec4 earth;         // the bare ground; w: how uneven it looks
 };
 
+// The fires that are nearest to the eye (viewer/light/fire_light.hpp).
+layout(std140) uniform Fires {
+  vec4 fire_count;           // x
+  vec4 fire_place_radius[4];
+  vec4 fire_color[4];        // on a surface that faces it at one metre
+};
+
+// The light of fires on a surface; a flame is as high as wide things are near it, so that a little comes around edges.
+vec3 fire_light(vec3 place_m, vec3 normal) {
+  vec3 light = vec3(0.0);
+  for (int i = 0; i < int(fire_count.x); ++i) {
+    vec3 way = fire_place_radius[i].xyz - place_m;
+    float square = dot(way, way);
+    float radius = fire_place_radius[i].w;
+    float facing = max(0.2 + 0.8 * dot(normal, way) * inversesqrt(square + 1e-6), 0.0);
+    light += fire_color[i].rgb * (facing / (square + radius * radius));
+  }
+  return light;
+}
+
 // The light of the air along a unit direction, without clouds and hills: another at the horizon than above, and a glow
 // around the sun.
 vec3 air_light(vec3 direction) {

@@ -49,6 +49,7 @@ void main() {
   float lit = sunlight * sunlight_at(place_m + 0.008 * to_sun.xyz, pixel_chance(gl_FragCoord.xy));
   vec3 sun = sun_light.rgb * mix(0.20, 1.0, lit);
   vec3 light = paint * (0.95 * soft_light(facing) + 0.85 * sun * max(dot(facing, to_sun.xyz), 0.0));
+  light += paint * fire_light(place_m, facing);
 
   // Worn smooth, it reflects the air at a flat angle (C. Schlick 1994, "An inexpensive BRDF model").
   float rim = 1.0 - max(dot(normal, -from_eye), 0.0);

@@ -41,5 +41,6 @@ void main() {
   float grain = clamp(earth.w * (1.6 * tufts + 0.8 * patch_at.y + 0.5 * patch_at.x), -0.8, 0.8);
   vec3 bare = earth.rgb * (sky_light.rgb * (0.85 + 0.3 * grain) + sun_light.rgb * (lit * max(to_sun.y * (0.8 + 0.3 * grain) + 0.25 * grain, 0.0)));
   light = mix(bare, light, smoothstep(0.0, 0.1, growth_here));
+  light += mix(earth.rgb, tint_of(patch_at, 0.5), 0.5 * far * smoothstep(0.0, 0.1, growth_here)) * fire_light(place_m, vec3(0.0, 1.0, 0.0));
   color = vec4(dithered(seen(light, place_m), gl_FragCoord.xy), 1.0);
 }

@@ -109,6 +109,7 @@ void main() {
   float rim = 1.0 - abs(dot(out_of_body, to_eye));
 
   vec3 sum = albedo * mix(vec3(1.0), vec3(1.10, 0.92, 0.76), deep) * soft_light(out_of_body) * open_sky;  // coloured by the hairs that it passes
+  sum += albedo * fire_light(place, out_of_body) * open_sky;
   sum += albedo * sun_light.rgb * (0.80 * across_sun * lit);
   sum += sun_light.rgb * lit * (vec3(0.085) * surface + albedo * (0.55 * within)) * smoothstep(-0.1, 0.3, sun_up);
   sum += albedo * sun_light.rgb * (0.9 * rim * rim * against * against * t * mix(0.4, 1.0, lit));

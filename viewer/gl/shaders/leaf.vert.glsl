@@ -105,6 +105,7 @@ void main() {
   if (shadow.x > 0.0) sun_seen = mix(sun_seen, sunlight_near(place + 0.12 * to_sun.xyz), 0.6);
   float sky_seen = clamp(open.w + 0.45 * dot(open.xyz, normal + vec3(0.0, 0.6, 0.0)), 0.20, 1.0);
   vec3 sum = face * soft_light(normal) * sky_seen;
+  sum += face * (fire_light(place, normal) + 0.4 * fire_light(place, -normal));
 
   float facing = dot(normal, to_sun.xyz);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);

@@ -49,5 +49,6 @@ void main() {
   float deep = 0.35 + 0.65 * smoothstep(0.0, 0.5, t);
   vec3 sum = tint * soft_light(vec3(0.0, 1.0, 0.0)) * 0.75;
   sum += tint * sun_light.rgb * lit * (0.75 * max(facing, 0.0) + (1.0 - head) * vec3(1.15, 1.05, 0.45) * max(-facing, 0.12) * (0.28 + 0.62 * against * against));
+  sum += tint * fire_light(place, vec3(0.0, 0.7, 0.0) + 0.5 * to_eye);
   shade = seen(sum * deep, place);
 }

@@ -88,6 +88,8 @@ void main() {
     within += earth * (0.4 + 0.6 * height) * (sky_light.rgb + sun * gathered) * exp(-kAbsorbed * depth_m) * left;
   }
 
+  within += vec3(0.036, 0.050, 0.029) * fire_light(place_m, normal) * (1.0 - left.g);
+
   // The sun's glitter: the share of slopes that mirror it.
   vec3 half_way = normalize(to_sun.xyz - from_eye);
   vec2 from_mean = -half_way.xz / max(half_way.y, 0.05) - slope;
