@@ -1,8 +1,22 @@
 #include "daemon/settings/scene_config.hpp"
 
+#include <span>
 #include <utility>
 
+#include "daemon/settings/config_tables.hpp"
+
 namespace yuragi::daemon::settings {
+
+std::vector<Parameter> scene_parameters(const scenes::SceneDescription& kind) {
+  std::vector<Parameter> all(kind.parameters.begin(), kind.parameters.end());
+  const std::span<const Parameter> common = common_scene_parameters();
+  all.insert(all.end(), common.begin(), common.end());
+  return all;
+}
+
+bool remakes_scene(std::string_view key) noexcept {
+  return key != "gain" && key != "shown";
+}
 
 SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values) {
   SceneConfig scene{.name = std::move(name), .kind = &kind, .values = std::move(values)};

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "engine/base/parameter.hpp"
 #include "engine/scenes/scene.hpp"
@@ -17,6 +19,12 @@ struct SceneConfig {
   double wind_gain = 1.0;  ///< factor on the wind speed
   bool is_shown = true;    ///< from the start
 };
+
+/// All keys of a [[scene]] of this kind, besides name and kind: its own, and common_scene_parameters().
+std::vector<Parameter> scene_parameters(const scenes::SceneDescription& kind);
+
+/// Is a scene made anew where this key of it changes? Otherwise it goes on as it is.
+bool remakes_scene(std::string_view key) noexcept;
 
 /// `values`: of common_scene_parameters() and of the kind's own parameters.
 SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values);
