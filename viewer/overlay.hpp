@@ -11,6 +11,8 @@
 
 namespace yuragi::viewer {
 
+class Panel;
+
 /// What the overlay shows.
 struct OverlayFacts {
   wind::WindState wind;
@@ -24,9 +26,12 @@ struct OverlayFacts {
   const light::Sky* sky = nullptr;               ///< null: not known
   look::Quality quality = look::Quality::kHigh;  ///< in which it is drawn
   double heading_deg = 0.0;                      ///< of the camera: up on the compass
+  bool has_texts = true;                         ///< otherwise nothing of the above is shown
+  Panel* panel = nullptr;                        ///< with handles that a person can move; null: it is not shown
 };
 
-/// Small texts over the picture: wind, sensors, stream. It takes no input. One at a time; needs a current context.
+/// Small texts over the picture: wind, sensors, stream, which take no input; and the panel of values, which does. One
+/// at a time; needs a current context.
 class Overlay {
  public:
   /// `window`: null where there is none.
@@ -37,6 +42,10 @@ class Overlay {
 
   /// Draws over the framebuffer that is bound, of this size.
   void draw(const PixelSize& size, const OverlayFacts& facts);
+
+  /// Is what a person does with the mouse, or types, meant for the panel?
+  bool takes_mouse() const;
+  bool takes_keys() const;
 
  private:
   bool has_window_;

@@ -26,6 +26,7 @@ struct WindowInput {
   bool toggle_overlay = false;  ///< H
   bool toggle_turning = false;  ///< T
   bool next_scene = false;      ///< N
+  bool toggle_panel = false;    ///< P
 };
 
 struct PixelSize {
@@ -59,6 +60,10 @@ class Window {
   /// Waits for an event, for at most limit_s, and handles it.
   void wait(double limit_s);
   WindowInput take_input();
+
+  /// From now on, mouse or keys are meant for what is drawn over the picture, and do not come with take_input(), nor
+  /// close the window.
+  void set_taken(bool is_mouse_taken, bool are_keys_taken);
 
   /// Shows what was drawn; waits for the screen's refresh where the driver can.
   void swap();
