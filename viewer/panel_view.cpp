@@ -21,6 +21,23 @@ constexpr double kLargeRatio = 1000.0;  // of a slider's ends, above which it is
 const ImVec4 kNotice(1.0F, 0.78F, 0.36F, 1.0F);
 const ImVec4 kFaded(0.98F, 0.97F, 0.94F, 0.66F);
 
+constexpr ImU32 faint_ink(std::uint8_t opacity) {
+  return IM_COL32(250, 248, 240, opacity);
+}
+constexpr ImU32 kHandle = IM_COL32(255, 214, 120, 200);
+constexpr std::array<std::pair<ImGuiCol, ImU32>, 12> kColors{{{ImGuiCol_FrameBg, faint_ink(28)},
+                                                              {ImGuiCol_FrameBgHovered, faint_ink(48)},
+                                                              {ImGuiCol_FrameBgActive, faint_ink(64)},
+                                                              {ImGuiCol_SliderGrab, kHandle},
+                                                              {ImGuiCol_SliderGrabActive, kHandle},
+                                                              {ImGuiCol_CheckMark, kHandle},
+                                                              {ImGuiCol_Header, faint_ink(36)},
+                                                              {ImGuiCol_HeaderHovered, faint_ink(56)},
+                                                              {ImGuiCol_HeaderActive, faint_ink(72)},
+                                                              {ImGuiCol_Button, faint_ink(36)},
+                                                              {ImGuiCol_ButtonHovered, faint_ink(56)},
+                                                              {ImGuiCol_ButtonActive, faint_ink(72)}}};
+
 /// The colors of handles and headers, until its end.
 class QuietColors {
  public:
@@ -30,22 +47,6 @@ class QuietColors {
   ~QuietColors() { ImGui::PopStyleColor(static_cast<int>(kColors.size())); }
   QuietColors(const QuietColors&) = delete;
   QuietColors& operator=(const QuietColors&) = delete;
-
- private:
-  static constexpr ImU32 light(std::uint8_t opacity) { return IM_COL32(250, 248, 240, opacity); }
-  static constexpr ImU32 kHandle = IM_COL32(255, 214, 120, 200);
-  static constexpr std::array<std::pair<ImGuiCol, ImU32>, 12> kColors{{{ImGuiCol_FrameBg, light(28)},
-                                                                       {ImGuiCol_FrameBgHovered, light(48)},
-                                                                       {ImGuiCol_FrameBgActive, light(64)},
-                                                                       {ImGuiCol_SliderGrab, kHandle},
-                                                                       {ImGuiCol_SliderGrabActive, kHandle},
-                                                                       {ImGuiCol_CheckMark, kHandle},
-                                                                       {ImGuiCol_Header, light(36)},
-                                                                       {ImGuiCol_HeaderHovered, light(56)},
-                                                                       {ImGuiCol_HeaderActive, light(72)},
-                                                                       {ImGuiCol_Button, light(36)},
-                                                                       {ImGuiCol_ButtonHovered, light(56)},
-                                                                       {ImGuiCol_ButtonActive, light(72)}}};
 };
 
 void write_wrapped(const ImVec4& color, const std::string& text) {

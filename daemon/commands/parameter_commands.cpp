@@ -134,17 +134,21 @@ void print_table(const wire::ParameterGroup& group) {
   }
 }
 
-nlohmann::ordered_json json_of(const std::optional<std::string>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+/// The value in its own type; null: left out.
+nlohmann::ordered_json json_of(const wire::ParameterState& state, const std::optional<std::string>& value) {
+  if (!value) return nullptr;
+  if (state.kind == wire::ParameterKind::kText) return *value;
+  const auto json = nlohmann::ordered_json::parse(*value, nullptr, false);
+  return json.is_discarded() ? nlohmann::ordered_json(*value) : json;
 }
 
 nlohmann::ordered_json json_of(const wire::ParameterState& state) {
   constexpr const char* kKinds[] = {"number", "whole number", "true or false", "text"};
   constexpr const char* kChanges[] = {"at once", "cross-fade", "takes a restart"};
   nlohmann::ordered_json json{{"name", state.name},
-                              {"value", json_of(state.value)},
-                              {"configured", json_of(state.configured)},
-                              {"default", json_of(state.default_value)},
+                              {"value", json_of(state, state.value)},
+                              {"configured", json_of(state, state.configured)},
+                              {"default", json_of(state, state.default_value)},
                               {"unit", state.unit},
                               {"kind", kKinds[static_cast<std::size_t>(state.kind)]},
                               {"min", nullptr},
@@ -197,7 +201,7 @@ void add_parameter_commands(CLI::App& command, bool of_scenes) {
   values->get_option("--json")->excludes(toml);
   values->footer(
       "--json: a list with scene, kind and parameters: a list with name, value, configured (the configuration's), "
-      "default\n(texts; null: left out), unit, kind, min, max, choices, left_out, change and help for each.");
+      "default\n(null: left out), unit, kind, min, max, choices, left_out, change and help for each.");
   values->callback([options = listed] { list_values(*options); });
 
   const auto [set, changed] = add("set", "set values of " + what + " while the daemon runs");

@@ -53,7 +53,7 @@ class Parameters(reload_test.RunningDaemon):
         listed, = json.loads(self.done("look", "values", "--json"))
         haze, = (one for one in listed["parameters"] if one["name"] == "haze")
         self.assertEqual([haze[key] for key in ("value", "configured", "default", "min", "max", "kind", "change")],
-                         ["0.4", "0.2", "0.15", 0, 1, "number", "at once"])
+                         [0.4, 0.2, 0.15, 0, 1, "number", "at once"])
 
         # What is printed is what the configuration needs to keep the values.
         self.write(LOOK.replace("haze = 0.2\n", "\n".join(lines.splitlines()[1:]) + "\n") + SENSOR + GRASS)
