@@ -15,7 +15,7 @@
 namespace yuragi::viewer {
 namespace {
 
-constexpr float kPanelWidth = 27.0F;    // letters
+constexpr float kPanelWidth = 30.0F;    // letters
 constexpr float kTooltipWidth = 26.0F;  // letters
 constexpr double kLargeRatio = 1000.0;  // of a slider's ends, above which it is logarithmic
 const ImVec4 kNotice(1.0F, 0.78F, 0.36F, 1.0F);
@@ -205,7 +205,7 @@ void draw_group(Panel& panel, const wire::ParameterGroup& group) {
   if (!ImGui::CollapsingHeader((title + "###" + group.scene).c_str(), flags)) return;
   ImGui::PushID(group.scene.c_str());
   if (ImGui::BeginTable("parameters", 3)) {
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 0.33F * kPanelWidth * ImGui::GetFontSize());
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 0.38F * kPanelWidth * ImGui::GetFontSize());
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
     ImGui::TableSetupColumn("reset", ImGuiTableColumnFlags_WidthFixed,
                             ImGui::CalcTextSize("reset").x + ImGui::GetFontSize());
