@@ -58,7 +58,12 @@ std::optional<ParameterError> edit_scene(Config& config, const Config& configure
   auto values =
       with_edit(scene_parameters(*scene->kind), scene->values, is_configured ? &before->values : nullptr, edit);
   if (!values) return error_in("scene", values.error());
-  *scene = scene_config_of(scene->name, *scene->kind, std::move(*values));
+  // What else belongs to the scene stays.
+  SceneConfig next = scene_config_of(scene->name, *scene->kind, std::move(*values));
+  scene->values = std::move(next.values);
+  scene->placement = next.placement;
+  scene->wind_gain = next.wind_gain;
+  scene->is_shown = next.is_shown;
   return std::nullopt;
 }
 

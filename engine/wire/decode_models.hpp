@@ -5,7 +5,7 @@
 #include "engine/wire/schema.hpp"
 #include "engine/wire/wire.hpp"
 
-// Internal: between decode.cpp, decode_models.cpp and parameters.cpp. Each returns false where the values
+// Internal: between decode.cpp, decode_models.cpp and parameter_tables.cpp. Each returns false where the values
 // contradict each other or are no numbers.
 
 namespace yuragi::wire {

@@ -1,5 +1,3 @@
-#include "engine/wire/parameters.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <span>
