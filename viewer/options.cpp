@@ -66,6 +66,8 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       ->check(CLI::Range(1, 16));
   app.add_flag("--overlay,!--no-overlay", options.overlay,
                "Show wind, sensors and stream over the picture (default in windows)");
+  app.add_flag("--panel", options.has_panel,
+               "Show the panel that lists and sets the values of the daemon's [look] and scenes (P)");
   app.add_flag("--fullscreen", options.is_fullscreen, "Fill the screen");
   app.add_flag("--dark-when-closed", options.is_dark_when_closed,
                "Fade to black outside of the daemon's opening hours ([shaping] hours)");
@@ -113,9 +115,9 @@ void add_options(CLI::App& app, ViewerOptions& options) {
   app.footer(
       "In the window: drag to turn (left button) or move (right), scroll to zoom; R first view, C next of the "
       "daemon's\n"
-      "cameras, N next scene alone (after the last, all), T turn slowly, H overlay, F11 full screen, Esc or Q quit. "
-      "If\n"
-      "the stream is interrupted, its last seconds are replayed until it returns.\n"
+      "cameras, N next scene alone (after the last, all), T turn slowly, H overlay, P panel of values, F11 full "
+      "screen,\n"
+      "Esc or Q quit. If the stream is interrupted, its last seconds are replayed until it returns.\n"
       "\n"
       "Examples:\n"
       "  yuragi run &                                    the daemon, with a synthetic wind\n"

@@ -17,6 +17,7 @@ struct ViewerOptions {
   int height_px = 720;
   std::optional<int> samples;   ///< unset: as many as suit the graphics hardware
   std::optional<bool> overlay;  ///< unset: in windows yes, in pictures no
+  bool has_panel = false;       ///< shown from the start
   bool is_fullscreen = false;
   std::optional<int> monitor;
   bool is_turning = false;

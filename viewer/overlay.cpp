@@ -12,6 +12,7 @@
 
 #include "engine/base/compass.hpp"
 #include "engine/base/units.hpp"
+#include "viewer/panel_view.hpp"
 #include "viewer/quality.hpp"
 #include "viewer/wind_place_text.hpp"
 
@@ -233,15 +234,16 @@ Overlay::~Overlay() {
   ImGui::DestroyContext();
 }
 
-void Overlay::draw(const PixelSize& size, const OverlayFacts& facts) {
-  ImGui_ImplOpenGL3_NewFrame();
-  if (has_window_) {
-    ImGui_ImplGlfw_NewFrame();
-  } else {
-    ImGui::GetIO().DisplaySize = ImVec2(static_cast<float>(size.width_px), static_cast<float>(size.height_px));
-  }
-  ImGui::NewFrame();
+bool Overlay::takes_mouse() const {
+  return ImGui::GetIO().WantCaptureMouse;
+}
+bool Overlay::takes_keys() const {
+  return ImGui::GetIO().WantCaptureKeyboard;
+}
 
+namespace {
+
+void draw_texts(const OverlayFacts& facts) {
   const float margin = ImGui::GetFontSize();
   ImGui::SetNextWindowPos(ImVec2(margin, margin));
   ImGui::Begin("wind", nullptr,
@@ -258,7 +260,20 @@ void Overlay::draw(const PixelSize& size, const OverlayFacts& facts) {
   if (!facts.camera.empty()) write(kQuiet, facts.camera);
   write_stream(facts);
   ImGui::End();
+}
 
+}  // namespace
+
+void Overlay::draw(const PixelSize& size, const OverlayFacts& facts) {
+  ImGui_ImplOpenGL3_NewFrame();
+  if (has_window_) {
+    ImGui_ImplGlfw_NewFrame();
+  } else {
+    ImGui::GetIO().DisplaySize = ImVec2(static_cast<float>(size.width_px), static_cast<float>(size.height_px));
+  }
+  ImGui::NewFrame();
+  if (facts.has_texts) draw_texts(facts);
+  if (facts.panel != nullptr) draw_panel(*facts.panel);
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }

@@ -12,6 +12,8 @@
 
 namespace yuragi::viewer {
 
+class Panel;
+
 /// What the overlay shows.
 struct OverlayFacts {
   wind::WindState wind;
@@ -27,9 +29,12 @@ struct OverlayFacts {
   float drawn_side = 1.0F;                       ///< the part of the picture's width and height that is
   double heading_deg = 0.0;                      ///< of the camera: up on the compass
   std::string camera;                            ///< which it is, for a person; empty: there is but one
+  bool has_texts = true;                         ///< otherwise nothing of the above is shown
+  Panel* panel = nullptr;                        ///< with handles that a person can move; null: it is not shown
 };
 
-/// Small texts over the picture: wind, sensors, stream. It takes no input. One at a time; needs a current context.
+/// Small texts over the picture: wind, sensors, stream, which take no input; and the panel of values, which does. One
+/// at a time; needs a current context.
 class Overlay {
  public:
   /// `window`: null where there is none.
@@ -40,6 +45,10 @@ class Overlay {
 
   /// Draws over the framebuffer that is bound, of this size.
   void draw(const PixelSize& size, const OverlayFacts& facts);
+
+  /// Is what a person does with the mouse, or types, meant for the panel?
+  bool takes_mouse() const;
+  bool takes_keys() const;
 
  private:
   bool has_window_;

@@ -17,6 +17,7 @@
 #include "viewer/looks/stage.hpp"
 #include "viewer/overlay.hpp"
 #include "viewer/pace_keeper.hpp"
+#include "viewer/panel.hpp"
 #include "viewer/picture_file.hpp"
 #include "viewer/quality.hpp"
 #include "viewer/stream/scene_timeline.hpp"
@@ -32,7 +33,8 @@ constexpr double kLookWait_s = 1.0;  // for the daemon's first status, which has
 constexpr int kOverlayPictures = 2;  // the overlay's size is known after the first
 constexpr int kSamples = 4;          // a pixel
 constexpr double kRateSmoothing = 0.05;
-constexpr double kDimming_s = 0.5;  // between two of the daemon's statuses the brightness goes on
+constexpr double kHandFade_s = 0.3;  // of the light, while a person moves a handle of the panel
+constexpr double kDimming_s = 0.5;   // between two of the daemon's statuses the brightness goes on
 
 double now_s() {
   return seconds(std::chrono::steady_clock::now().time_since_epoch());
@@ -71,7 +73,8 @@ class Viewer::Show {
         began_s_(now_s()),
         last_s_(began_s_),
         brightness_(options.is_dark_when_closed ? 0.0 : 1.0),
-        has_overlay_(options.overlay.value_or(options.screenshot.empty())) {
+        has_overlay_(options.overlay.value_or(options.screenshot.empty())),
+        has_panel_(options.has_panel) {
     if (options.screenshot.empty()) {
       window_.emplace(WindowOptions{.width_px = options.width_px,
                                     .height_px = options.height_px,
@@ -248,6 +251,8 @@ class Viewer::Show {
     }
     if (input.toggle_turning) camera_.set_turning(!camera_.is_turning());
     if (input.toggle_overlay) has_overlay_ = !has_overlay_;
+    if (input.toggle_panel) has_panel_ = !has_panel_;
+    window_->set_taken(has_panel_ && overlay_->takes_mouse(), has_panel_ && overlay_->takes_keys());
   }
 
   /// Takes what has arrived, and advances to now.
@@ -259,10 +264,12 @@ class Viewer::Show {
       timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
     }
     if (!inbox.frames.empty()) cameras_.hear_clock(utc_s_);
+    advance_panel(inbox);
     const bool is_first_status = inbox.sensors && !sensors_;
     if (inbox.sensors) {
       sensors_ = std::move(inbox.sensors);
-      is_first_status ? sky_.start(look_for(sensors_->look)) : sky_.set_look(look_for(sensors_->look));
+      const double over_s = panel_.is_setting() ? kHandFade_s : light::SkyKeeper::kFade_s;
+      is_first_status ? sky_.start(look_for(sensors_->look)) : sky_.set_look(look_for(sensors_->look), over_s);
       cameras_.set_cameras(sensors_->cameras, sensors_->camera);
       if (is_first_status) require_camera();
     }
@@ -289,6 +296,16 @@ class Viewer::Show {
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
   }
 
+  /// Nothing is asked of the daemon before a person wants to see the panel.
+  void advance_panel(const stream::Inbox& inbox) {
+    if (inbox.is_of_new_connection) panel_.set_connected(false);
+    panel_.set_connected(connection_.status().state == stream::StreamState::kConnected);
+    for (const wire::ControlReply& reply : inbox.replies) panel_.take_reply(reply);
+    if (inbox.sensors) panel_.take_revision(inbox.sensors->parameters_revision);
+    if (!has_panel_) return;
+    while (auto control = panel_.next(now_s())) connection_.send(*control);
+  }
+
   /// Dark until the first status says whether it is open, so that a wall that starts at night stays dark.
   void follow_opening_hours(double passed_s) {
     if (!options_.is_dark_when_closed || !sensors_) return;
@@ -311,7 +328,7 @@ class Viewer::Show {
     stage_->draw(*moment_, camera, *target_);
     if (cameras_.is_fading()) cross_fade_->draw(*target_, static_cast<float>(cameras_.share()));
     dimmer_->draw(static_cast<float>(brightness_));
-    if (!has_overlay_) return;
+    if (!has_overlay_ && !has_panel_) return;
     const light::Sky sky = light::sky_of(sky_.look(), utc_s_);
     overlay_->draw(size, {.wind = moment_->wind,
                           .playback = timeline_.playback(),
@@ -325,7 +342,9 @@ class Viewer::Show {
                           .quality = quality_,
                           .drawn_side = part.side,
                           .heading_deg = camera.place().heading_deg,
-                          .camera = camera_text()});
+                          .camera = camera_text(),
+                          .has_texts = has_overlay_,
+                          .panel = has_panel_ ? &panel_ : nullptr});
   }
 
   /// Is less drawn where that keeps the pace? Where the processor draws into a window, in quality low.
@@ -370,6 +389,8 @@ class Viewer::Show {
   double picture_s_ = 1.0 / 60.0;  // between pictures, smoothed
   double brightness_;              // of the picture, 0 to 1
   bool has_overlay_;
+  bool has_panel_;
+  Panel panel_;
   int samples_ = kSamples;
 };
 

@@ -51,8 +51,9 @@ struct Window::State {
       if (action == GLFW_PRESS) state_of(on).press(key);
     });
     glfwSetCursorPosCallback(window, [](GLFWwindow* on, double x, double y) { state_of(on).move(x, y); });
-    glfwSetScrollCallback(window,
-                          [](GLFWwindow* on, double, double notches) { state_of(on).input.zoom_notches += notches; });
+    glfwSetScrollCallback(window, [](GLFWwindow* on, double, double notches) {
+      if (!state_of(on).is_mouse_taken) state_of(on).input.zoom_notches += notches;
+    });
   }
   ~State() {
     glfwDestroyWindow(window);
@@ -66,6 +67,7 @@ struct Window::State {
   }
 
   void press(int key) {
+    if (are_keys_taken) return;
     switch (key) {
       case GLFW_KEY_ESCAPE:
       case GLFW_KEY_Q:
@@ -82,6 +84,9 @@ struct Window::State {
         break;
       case GLFW_KEY_N:
         input.next_scene = true;
+        break;
+      case GLFW_KEY_P:
+        input.toggle_panel = !input.toggle_panel;
         break;
       case GLFW_KEY_R:
         input.reset_camera = true;
@@ -102,6 +107,7 @@ struct Window::State {
     const double down = (y - cursor_y) / std::max(1, height);
     cursor_x = x;
     cursor_y = y;
+    if (is_mouse_taken) return;
     const auto is_down = [&](int button) { return glfwGetMouseButton(window, button) == GLFW_PRESS; };
     if (is_down(GLFW_MOUSE_BUTTON_LEFT)) {
       input.orbit_right += right;
@@ -136,6 +142,8 @@ struct Window::State {
   GLFWwindow* window = nullptr;
   std::optional<int> monitor;
   WindowInput input;
+  bool is_mouse_taken = false;
+  bool are_keys_taken = false;
   double cursor_x = 0.0;
   double cursor_y = 0.0;
   int windowed_x = 0;
@@ -181,6 +189,10 @@ void Window::wait(double limit_s) {
 }
 WindowInput Window::take_input() {
   return std::exchange(state_->input, {});
+}
+void Window::set_taken(bool is_mouse_taken, bool are_keys_taken) {
+  state_->is_mouse_taken = is_mouse_taken;
+  state_->are_keys_taken = are_keys_taken;
 }
 void Window::swap() {
   glfwSwapBuffers(state_->window);

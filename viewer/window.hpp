@@ -27,6 +27,7 @@ struct WindowInput {
   bool toggle_turning = false;  ///< T
   bool next_scene = false;      ///< N
   bool next_camera = false;     ///< C
+  bool toggle_panel = false;    ///< P
 
   bool moves_camera() const {
     return orbit_right != 0.0 || orbit_down != 0.0 || pan_right != 0.0 || pan_down != 0.0 || zoom_notches != 0.0;
@@ -64,6 +65,10 @@ class Window {
   /// Waits for an event, for at most limit_s, and handles it.
   void wait(double limit_s);
   WindowInput take_input();
+
+  /// From now on, mouse or keys are meant for what is drawn over the picture, and do not come with take_input(), nor
+  /// close the window.
+  void set_taken(bool is_mouse_taken, bool are_keys_taken);
 
   /// Shows what was drawn; waits for the screen's refresh where the driver can.
   void swap();

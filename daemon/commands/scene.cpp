@@ -1,4 +1,4 @@
-// `yuragi scene`: lists, shows and hides the scenes of a running daemon.
+// `yuragi scene`: lists, shows and hides the scenes of a running daemon, and lists and sets their values.
 #include <algorithm>
 #include <memory>
 
@@ -7,6 +7,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
+#include "daemon/commands/parameter_commands.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/commands/send_control.hpp"
 #include "daemon/tools/sensors/sensor_json.hpp"
@@ -43,12 +44,14 @@ void change_scene(const SceneOptions& options) {
 }
 
 void add_scene(CLI::App& app) {
-  CLI::App* scene = app.add_subcommand("scene", "show, hide and switch the scenes of a running daemon");
+  CLI::App* scene = app.add_subcommand("scene", "show, hide, switch and change the scenes of a running daemon");
   scene->require_subcommand(1);
   scene->footer(
       "  yuragi scene list                        all scenes, and which are shown\n"
       "  yuragi scene switch elm --fade 5         show this one and hide all others: a cross-fade\n"
-      "Exit code 0: done; 64: there is no such scene; 69: no daemon answers; 77: the daemon does not allow it\n"
+      "  yuragi scene set elm gain=1.4            change a value of it\n"
+      "Exit code 0: done; 64: there is no such scene, or a mistake in a value; 69: no daemon answers; 77: the daemon "
+      "does not allow it\n"
       "from here (see `yuragi describe`, [stream] control).");
 
   const auto add = [scene](const char* name, const char* help, bool shown, bool hide_others) {
@@ -75,6 +78,7 @@ void add_scene(CLI::App& app) {
   add("show", "fade a scene in", true, false);
   add("hide", "fade a scene out", false, false);
   add("switch", "fade a scene in, and all others out", true, true);
+  add_parameter_commands(*scene, true);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "daemon/service/reload.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -106,7 +107,7 @@ void Reload::Task::try_to_work() {
 }
 
 Reload::Reload(const settings::Config& running, ReloadParts parts)
-    : parts_(std::move(parts)), running_(std::make_shared<const settings::Config>(running)) {}
+    : parts_(std::move(parts)), running_(std::make_shared<const settings::Config>(running)), configured_(running_) {}
 
 Reload::~Reload() {
   if (!task_) return;
@@ -130,19 +131,75 @@ void Reload::request(const std::string& expected_file, Reply reply) {
   if (!expected_file.empty() && expected_file != parts_.file) {
     return refuse("the daemon runs with " + parts_.file + ", not with " + expected_file);
   }
-  std::vector<Reply>& asked = task_ ? asked_since_ : asked_;
-  if (asked.size() >= kMostWaiting) {
+  if (!takes_another_reply()) {
     if (reply) reply(failure(wire::ReloadOutcome::kFailed, "too many ask at once; try again"));
     return;
   }
-  if (reply) asked.push_back(std::move(reply));
-  is_due_ = true;
+  Due& due = due_file();
+  if (reply) due.asked.push_back(std::move(reply));
   go_on();
 }
 
+std::optional<std::string> Reload::mistake_in(const std::vector<settings::ParameterEdit>& edits) const {
+  const bool has_scene = std::ranges::any_of(edits, [](const auto& edit) { return !edit.scene.empty(); });
+  if (has_scene && !parts_.make_scenes) return "this daemon has no scenes";
+  const auto next = settings::edited(*running_, *configured_, edits);
+  if (next) return std::nullopt;
+  return next.error().name + ": " + next.error().message;
+}
+
+void Reload::set(const std::vector<settings::ParameterEdit>& edits, Reply reply) {
+  auto why = mistake_in(edits);
+  if (!why && !takes_another_reply()) why = "too many ask at once; try again";
+  if (why) {
+    if (reply) reply(failure(wire::ReloadOutcome::kMistake, *why));
+    return;
+  }
+  Due& due = due_edits(Due{.edits = edits}.is_of_look_alone());
+  for (const settings::ParameterEdit& edit : edits) {
+    // The last one counts.
+    std::erase_if(due.edits, [&edit](const auto& one) { return one.scene == edit.scene && one.key == edit.key; });
+    due.edits.push_back(edit);
+  }
+  if (reply) due.asked.push_back(std::move(reply));
+  go_on();
+}
+
+bool Reload::is_under_way() const noexcept {
+  return (task_ && present_.reads_file) || std::ranges::any_of(due_, &Due::reads_file);
+}
+
+bool Reload::Due::is_of_look_alone() const {
+  return !reads_file && std::ranges::all_of(edits, [](const auto& edit) { return edit.scene.empty(); });
+}
+
+bool Reload::takes_another_reply() const {
+  std::size_t waiting = 0;
+  for (const Due& due : due_) waiting += due.asked.size();
+  return waiting < kMostWaiting;
+}
+
+Reload::Due& Reload::due_file() {
+  if (due_.empty() || !due_.back().reads_file) due_.push_back({.reads_file = true});
+  return due_.back();
+}
+
+/// Behind the last reading of the file, which would undo them: first those of [look], then those of scenes.
+Reload::Due& Reload::due_edits(bool is_of_look_alone) {
+  const auto last_file = std::find_if(due_.rbegin(), due_.rend(), [](const Due& due) { return due.reads_file; });
+  const auto begin = last_file.base();
+  const auto found =
+      std::find_if(begin, due_.end(), [&](const Due& due) { return due.is_of_look_alone() == is_of_look_alone; });
+  if (found != due_.end()) return *found;
+  return *due_.insert(is_of_look_alone ? begin : due_.end(), Due{});
+}
+
 void Reload::go_on() {
-  if (!is_due_ || task_ || (parts_.is_settling && parts_.is_settling())) return;
-  is_due_ = false;
+  if (due_.empty() || task_) return;
+  const bool is_settling = parts_.is_settling && parts_.is_settling();
+  if (is_settling && !due_.front().is_of_look_alone()) return;
+  present_ = std::move(due_.front());
+  due_.pop_front();
   begin();
 }
 
@@ -152,6 +209,13 @@ void Reload::begin() {
   task_->read = parts_.read;
   task_->make_scenes = parts_.make_scenes;
   task_->running = running_;
+  if (!present_.reads_file) {
+    task_->read = [running = running_, configured = configured_, edits = present_.edits] {
+      auto next = settings::edited(*running, *configured, edits);
+      if (!next) throw settings::ConfigError(next.error().name + ": " + next.error().message);
+      return std::move(*next);
+    };
+  }
   try {
     task_->thread = std::thread([task = task_, this] { task->work([this] { finish(); }); });
   } catch (const std::system_error& error) {
@@ -163,13 +227,16 @@ void Reload::begin() {
 void Reload::finish() {
   const std::shared_ptr<Task> task = std::exchange(task_, nullptr);
   if (task->thread.joinable()) task->thread.join();  // it has posted this as the last thing that it did
+  const Due done = std::exchange(present_, {});
   if (task->report.outcome == wire::ReloadOutcome::kDone) {
     running_ = std::make_shared<const settings::Config>(task->plan->next);
-    if (!task->plan->applied.empty()) parts_.apply(*task->plan);
+    if (done.reads_file) configured_ = running_;
+    const auto& apply = done.reads_file ? parts_.apply : parts_.apply_edits;
+    if (apply && !task->plan->applied.empty()) apply(*task->plan);
     if (task->adopt) task->adopt();
   }
-  log(task->report, parts_.file);
-  for (const Reply& reply : std::exchange(asked_, std::exchange(asked_since_, {}))) reply(task->report);
+  if (done.reads_file) log(task->report, parts_.file);
+  for (const Reply& reply : done.asked) reply(task->report);
   go_on();
 }
 

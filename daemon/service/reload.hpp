@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "daemon/settings/config.hpp"
+#include "daemon/settings/parameter_edit.hpp"
 #include "daemon/settings/reload_plan.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -31,6 +33,9 @@ struct ReloadParts {
   /// Applies all but the scenes, on the I/O thread. Cannot fail.
   std::function<void(const settings::ReloadPlan& plan)> apply;
 
+  /// The same for values that are set: of [look] alone, if anything is to be applied besides scenes.
+  std::function<void(const settings::ReloadPlan& plan)> apply_edits = {};
+
   /// Is the last reload still being carried out, by scenes that fade? The next begins after that (go_on()). Empty:
   /// never.
   std::function<bool()> is_settling = {};
@@ -40,7 +45,11 @@ struct ReloadParts {
 /// of its own, and then, when nothing can fail any more, everything at once on the I/O thread. A mistake changes
 /// nothing. What was done is logged and told to the clients who asked.
 ///
-/// Requests that come while a reload is under way are answered by one more after it. Belongs to the I/O thread.
+/// Single values of [look] and of scenes are set in the same way, without the file; the next reload puts them back to
+/// what the file says.
+///
+/// Requests that come while a reload is under way are answered by one more after it; values that are set meanwhile are
+/// set together, those of [look] without waiting for scenes that fade. Belongs to the I/O thread.
 class Reload {
  public:
   using Reply = std::function<void(const wire::ReloadReport&)>;
@@ -60,24 +69,44 @@ class Reload {
   /// once, with what came of it; not where the daemon ends before.
   void request(const std::string& expected_file = {}, Reply reply = {});
 
+  /// Sets values. A mistake, of which `reply` is told at once, changes nothing.
+  void set(const std::vector<settings::ParameterEdit>& edits, Reply reply = {});
+  /// What is wrong with such edits, if anything.
+  std::optional<std::string> mistake_in(const std::vector<settings::ParameterEdit>& edits) const;
+
+  /// What runs, with the values that were set, and what the file said when it was read last, as far as it is applied.
+  const settings::Config& running() const noexcept { return *running_; }
+  const settings::Config& configured() const noexcept { return *configured_; }
+
   /// Begins the reload that waits, if one does. To be called whenever the last one may have been carried out.
   void go_on();
 
-  /// Has the configuration been asked for, and not been dealt with yet?
-  bool is_under_way() const noexcept { return task_ != nullptr || is_due_; }
+  /// Is the file to be read, or being read, or not been dealt with yet?
+  bool is_under_way() const noexcept;
 
  private:
   struct Task;
 
+  /// What is to be done: read the file, or set values.
+  struct Due {
+    bool reads_file = false;
+    std::vector<settings::ParameterEdit> edits = {};
+    std::vector<Reply> asked = {};  ///< those whom it answers
+
+    bool is_of_look_alone() const;
+  };
+
+  bool takes_another_reply() const;
+  Due& due_file();
+  Due& due_edits(bool is_of_look_alone);
   void begin();
   void finish();
 
   ReloadParts parts_;
-  std::shared_ptr<const settings::Config> running_;
-  std::shared_ptr<Task> task_;      ///< shared with its thread, which may outlive this
-  std::vector<Reply> asked_;        ///< those whom the present reload answers
-  std::vector<Reply> asked_since_;  ///< and the next
-  bool is_due_ = false;             ///< another one has been asked for
+  std::shared_ptr<const settings::Config> running_, configured_;
+  std::shared_ptr<Task> task_;  ///< shared with its thread, which may outlive this
+  Due present_;                 ///< what the task does
+  std::deque<Due> due_;         ///< what is to be done after it, in order
 };
 
 }  // namespace yuragi::daemon::service

@@ -8,9 +8,7 @@
 #include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::service {
-namespace {
 
-/// A text without the folders of the absolute paths in it.
 std::string without_path_folders(const std::string& text) {
   constexpr std::string_view kEnds = " \":;";
   std::string out;
@@ -23,8 +21,6 @@ std::string without_path_folders(const std::string& text) {
   }
   return out;
 }
-
-}  // namespace
 
 wire::ReloadReport without_folders(wire::ReloadReport report) {
   for (auto* const texts : {&report.applied, &report.takes_restart, &report.mistakes}) {

@@ -9,7 +9,10 @@ namespace yuragi::daemon::service {
 /// One line for clients that show the message of a reply only.
 std::string summary_of(const wire::ReloadReport& report);
 
-/// The same without the folders of the absolute paths in its texts: for clients of other machines.
+/// A text without the folders of the absolute paths in it.
+std::string without_path_folders(const std::string& text);
+
+/// The same report without the folders of the absolute paths in its texts: for clients of other machines.
 wire::ReloadReport without_folders(wire::ReloadReport report);
 
 }  // namespace yuragi::daemon::service

@@ -25,6 +25,7 @@
 #include "daemon/sensing/system_clock.hpp"
 #include "daemon/service/config_check.hpp"
 #include "daemon/service/hangup.hpp"
+#include "daemon/service/parameter_director.hpp"
 #include "daemon/service/reload.hpp"
 #include "daemon/service/reload_report.hpp"
 #include "daemon/service/service_manager.hpp"
@@ -90,7 +91,9 @@ class Service::Io {
         players_(config.stream.control, hub_.players()),
         folders_(config, options.record),
         control_(config.stream.control),
-        reload_(config, reload_parts(config)) {
+        reload_(config, reload_parts(config)),
+        parameters_(reload_, animation_ ? &director_ : nullptr, config.stream.control,
+                    static_cast<std::uint64_t>(started_.utc.time_since_epoch().count())) {
     if (animation_) {
       shaper_.keep_site_file(hub_.site());
       loop_ = std::make_unique<animation::AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
@@ -156,6 +159,9 @@ class Service::Io {
     settings.on_reload = [this](const wire::ReloadCommand& command, bool is_local, const auto& reply) {
       request_reload(command, is_local, reply);
     };
+    settings.on_parameters = [this](const wire::ParameterCommand& command, bool is_local, const auto& reply) {
+      parameters_.handle(command, is_local, reply);
+    };
     settings.raw_refusal = [this](bool is_local) {
       return daemon::settings::control_refusal(control_, is_local, "raw messages cannot be watched");
     };
@@ -181,6 +187,7 @@ class Service::Io {
       };
     }
     parts.apply = [this](const settings::ReloadPlan& plan) { apply(plan); };
+    parts.apply_edits = [this](const settings::ReloadPlan& plan) { show_look(plan.next.look); };
     if (options_.with_scenes) {
       parts.make_scenes = [this](const settings::Config& next, const auto&) -> ReloadParts::Adopt {
         auto change = std::make_shared<std::unique_ptr<animation::SceneChange>>(
@@ -230,7 +237,7 @@ class Service::Io {
   /// Hands the scenes that wait to the animation, unless too many cues do; then with the next frame. What they have
   /// replaced is freed once it has faded out.
   void exchange_scenes() {
-    if (next_scenes_) scenes_->begin(next_scenes_);
+    if (next_scenes_ && scenes_->begin(next_scenes_)) parameters_.note_change();
     if (scenes_->take_finished()) reload_.go_on();
   }
 
@@ -239,15 +246,23 @@ class Service::Io {
     const settings::Config& next = plan.next;
     hub_.change(next);
     if (plan.changes_shaping) shaper_.change(next.shaping);
-    look_ = next.look;
     cameras_ = cameras_of(next);
     clock_of_cameras_ = next.clock;
     control_ = next.stream.control;
     director_.allow(control_);
     players_.allow(control_);
+    parameters_.allow(control_);
+    show_look(next.look);
     stream_.set_admission(admission_of(next.stream));
     if (options_.set_log_level) options_.set_log_level(next.log.level);
     if (recorder_) recorder_->begin_session(recording_info(next, clock_.now()), next.recording);
+  }
+
+  /// Viewers need not wait for the next status.
+  void show_look(const look::Look& look) {
+    look_ = look;
+    parameters_.note_change();
+    publish_status();
   }
 
   wire::ControlReply handle(const wire::Control& control, bool is_local) {
@@ -258,7 +273,10 @@ class Service::Io {
 
   wire::ControlReply carry_out(const wire::Control& control, bool is_local) {
     if (control.player) return players_.handle(*control.player, is_local);
-    if (animation_) return director_.handle(control, is_local);
+    if (animation_) {
+      if (!control.scene.empty()) parameters_.note_change();
+      return director_.handle(control, is_local);
+    }
     return {.done = false, .message = "this daemon has no scenes", .scenes = {}};
   }
 
@@ -320,6 +338,18 @@ class Service::Io {
   }
 
   void send_status() {
+    const wire::Sensors status = publish_status();
+    manager_.say_status(status);
+    say_ready();
+
+    status_timer_.expires_after(kStatusInterval);
+    status_timer_.async_wait([this](const boost::system::error_code& error) {
+      if (!error) send_status();
+    });
+  }
+
+  /// Returns what clients of this machine are sent.
+  wire::Sensors publish_status() {
     wire::Sensors status;
     status.sensors = hub_.status();
     status.wind = hub_.wind();
@@ -327,6 +357,7 @@ class Service::Io {
     status.look = look_;
     status.cameras = cameras_;
     status.camera = look::camera_at(cameras_, clock_of_cameras_.hour_of_day(clock_.now().utc));
+    status.parameters_revision = parameters_.revision();
     status.late_ticks = loop_ ? loop_->counters().skipped_ticks.load(std::memory_order_relaxed) : 0;
     status.clients = static_cast<std::uint32_t>(stream_.client_count());
     const stream::ClientCounts& counts = stream_.counts();
@@ -336,20 +367,15 @@ class Service::Io {
     status.io_lateness = lateness_of(io_lateness_);
     if (loop_) status.tick_lateness = lateness_of(loop_->counters().lateness);
     if (recorder_) status.recorder = to_wire(recorder_->status());
-    manager_.say_status(status);
-    say_ready();
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;
     if (stream_.has_remote_clients()) {
-      folders_.remove_from(status);
-      elsewhere = std::make_shared<const wire::Bytes>(wire::encode(status));
+      wire::Sensors told = status;
+      folders_.remove_from(told);
+      elsewhere = std::make_shared<const wire::Bytes>(wire::encode(told));
     }
     stream_.publish_sensors(here, elsewhere);
-
-    status_timer_.expires_after(kStatusInterval);
-    status_timer_.async_wait([this](const boost::system::error_code& error) {
-      if (!error) send_status();
-    });
+    return status;
   }
 
   void log_summary() const;
@@ -412,7 +438,8 @@ class Service::Io {
   bool is_up_ = false;  ///< it has begun, with its first frame where it has scenes
 
   settings::ControlPermission control_;
-  Reload reload_;  ///< last: it uses all of the above
+  Reload reload_;  ///< it uses all of the above
+  ParameterDirector parameters_;
 };
 
 std::unique_ptr<recording::Recorder> Service::Io::make_recorder(const settings::Config& config,

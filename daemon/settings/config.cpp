@@ -34,10 +34,7 @@ std::vector<Parameter> parameters_of(const drivers::sensor::DriverDescription& d
 }
 
 std::vector<Parameter> parameters_of(const scenes::SceneDescription& scene) {
-  std::vector<Parameter> all(scene.parameters.begin(), scene.parameters.end());
-  const std::span<const Parameter> common = common_scene_parameters();
-  all.insert(all.end(), common.begin(), common.end());
-  return all;
+  return scene_parameters(scene);
 }
 
 /// Its retired keys.

@@ -1,10 +1,12 @@
 #include "daemon/settings/scene_config.hpp"
 
 #include <charconv>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include "daemon/pictures/picture_file.hpp"
+#include "daemon/settings/config_tables.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
@@ -22,6 +24,17 @@ std::optional<look::Color> color_of(std::string_view text) {
 }
 
 }  // namespace
+
+std::vector<Parameter> scene_parameters(const scenes::SceneDescription& kind) {
+  std::vector<Parameter> all(kind.parameters.begin(), kind.parameters.end());
+  const std::span<const Parameter> common = common_scene_parameters();
+  all.insert(all.end(), common.begin(), common.end());
+  return all;
+}
+
+bool remakes_scene(std::string_view key) noexcept {
+  return key != "gain" && key != "shown";
+}
 
 SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values) {
   SceneConfig scene{.name = std::move(name), .kind = &kind, .values = std::move(values)};

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/base/parameter.hpp"
@@ -22,6 +23,12 @@ struct SceneConfig {
   bool is_shown = true;     ///< from the start
   look::ClothLook cloth{};  ///< of a flag, a banner or a curtain
 };
+
+/// All keys of a [[scene]] of this kind, besides name and kind: its own, and common_scene_parameters().
+std::vector<Parameter> scene_parameters(const scenes::SceneDescription& kind);
+
+/// Is a scene made anew where this key of it changes? Otherwise it goes on as it is.
+bool remakes_scene(std::string_view key) noexcept;
 
 /// `values`: of common_scene_parameters() and of the kind's own parameters.
 SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values);

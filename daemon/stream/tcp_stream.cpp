@@ -285,6 +285,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void take_control(const wire::Control& wish) {
     queue_.requested(feed_->settings.now());
     if (wish.reload && feed_->settings.on_reload) return take_reload(*wish.reload);
+    if (wish.parameters && feed_->settings.on_parameters) return take_parameters(*wish.parameters);
     const auto& answer = feed_->settings.on_control;
     const wire::ControlReply reply =
         answer ? answer(wish, peer_.is_local)
@@ -302,6 +303,21 @@ class Connection : public std::enable_shared_from_this<Connection> {
     feed_->settings.on_reload(command, peer_.is_local, [weak = weak_from_this()](const wire::ControlReply& reply) {
       if (const auto self = weak.lock()) self->send_reply(reply);
     });
+    if (is_open()) read_prefix();
+  }
+
+  void take_parameters(const wire::ParameterCommand& command) {
+    const bool sets = !command.edits.empty();
+    feed_->settings.on_parameters(command, peer_.is_local,
+                                  [weak = weak_from_this(), sets](const wire::ControlReply& reply) {
+                                    const auto self = weak.lock();
+                                    if (!self) return;
+                                    if (sets) {
+                                      self->feed_->log->info("client {} {}: {}", self->endpoint_, self->client_name_,
+                                                             shortened(reply.message, kShownReplyCharacters));
+                                    }
+                                    self->send_reply(reply);
+                                  });
     if (is_open()) read_prefix();
   }
 

@@ -29,6 +29,10 @@ struct TcpStreamSettings {
   std::function<void(const wire::ReloadCommand& command, bool is_local,
                      std::function<void(const wire::ControlReply&)> reply)>
       on_reload = {};
+  /// Lists and sets values for a client, and calls `reply` in the same way. Empty: such a request goes to on_control.
+  std::function<void(const wire::ParameterCommand& command, bool is_local,
+                     std::function<void(const wire::ControlReply&)> reply)>
+      on_parameters = {};
   /// Why a client may not have raw messages, if so; then the connection ends with that reason. Empty: everybody may.
   std::function<std::optional<std::string>(bool is_local)> raw_refusal = {};
   ClientLimits limits = {};

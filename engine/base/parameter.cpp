@@ -1,5 +1,7 @@
 #include "engine/base/parameter.hpp"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -114,6 +116,32 @@ std::string describe_allowed(const Parameter& parameter) {
     out << "; left out: " << parameter.left_out;
   }
   return out.str();
+}
+
+ParameterValue typed_value(const Parameter& parameter, std::string_view text) {
+  const auto read = [text](auto number) -> ParameterValue {
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool is_read = end.ec == std::errc{} && end.ptr == text.data() + text.size();
+    return is_read ? ParameterValue(number) : ParameterValue(std::string(text));
+  };
+  if (std::holds_alternative<double>(parameter.default_value)) return read(0.0);
+  if (std::holds_alternative<std::int64_t>(parameter.default_value)) return read(std::int64_t{0});
+  if (std::holds_alternative<bool>(parameter.default_value) && (text == "true" || text == "false")) {
+    return text == "true";
+  }
+  return std::string(text);
+}
+
+std::string value_text(const ParameterValue& value) {
+  const auto written = [](auto number) {
+    std::array<char, 32> digits{};
+    return std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr);
+  };
+  const PrintableValue shown = printable(value);
+  if (const auto* flag = std::get_if<bool>(&shown)) return *flag ? "true" : "false";
+  if (const auto* whole = std::get_if<std::int64_t>(&shown)) return written(*whole);
+  if (const auto* number = std::get_if<double>(&shown)) return written(*number);
+  return std::get<std::string>(shown);
 }
 
 Result<ParameterValues, ParameterError> ParameterValues::resolve(std::span<const Parameter> table, const Map& given) {

@@ -82,4 +82,11 @@ class ParameterValues {
 /// One sentence on what a parameter takes: "number from 0 to 40 m/s, default 4", or "number; left out: at the edge".
 std::string describe_allowed(const Parameter& parameter);
 
+/// A value as a person types it behind "KEY=": a number, true or false, or a text without quotes. What is not of the
+/// parameter's type stays the text that it is, so that ParameterValues::resolve() refuses it and says why.
+ParameterValue typed_value(const Parameter& parameter, std::string_view text);
+
+/// The reverse: numbers with the fewest digits that read back as the same number. Of a secret, Secret::printable().
+std::string value_text(const ParameterValue& value);
+
 }  // namespace yuragi

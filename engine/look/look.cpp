@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 
 #include "engine/look/time_of_day.hpp"
@@ -181,12 +180,7 @@ Result<Look, ParameterError> edited(const Look& look, std::span<const std::strin
     const std::string name = edit.substr(0, equals);
     const std::string text = edit.substr(std::min(equals + 1, edit.size()));
     const auto parameter = std::ranges::find(kParameters, name, &Parameter::name);
-    // What is not a number where one is wanted is refused as the text that it is.
-    const bool is_number = parameter != kParameters.end() && std::holds_alternative<double>(parameter->default_value);
-    double number = 0.0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool is_read = is_number && read.ec == std::errc{} && read.ptr == text.data() + text.size();
-    given.insert_or_assign(name, is_read ? ParameterValue(number) : ParameterValue(text));
+    given.insert_or_assign(name, parameter == kParameters.end() ? ParameterValue(text) : typed_value(*parameter, text));
   }
   // Checked as a whole, and applied without the defaults of what was not given.
   auto checked = ParameterValues::resolve(kParameters, given);

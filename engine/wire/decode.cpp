@@ -230,6 +230,7 @@ bool read(const fb::Sensors& from, Sensors& to) {
   to.stuck_clients = from.stuck_clients();
   to.idle_clients = from.idle_clients();
   read(from.look(), to.look);
+  to.parameters_revision = from.parameters_revision();
   return read_cameras(from, to) && read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
          read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder);
 }
@@ -285,6 +286,7 @@ bool read(const fb::ReloadReport& from, ReloadReport& to) {
 bool read(const fb::Control& from, Control& to) {
   if (from.reload() != nullptr && !read(*from.reload(), to.reload.emplace())) return false;
   if (from.player() != nullptr && !read(*from.player(), to.player.emplace())) return false;
+  if (from.parameters() != nullptr && !read_parameters(*from.parameters(), to.parameters.emplace())) return false;
   to.shown = from.shown();
   to.hide_others = from.hide_others();
   to.over_s = static_cast<double>(from.over_s());
@@ -305,6 +307,7 @@ bool read(const fb::ControlReply& from, ControlReply& to) {
   if (players > kMaxSensors) return false;
   for (std::size_t i = 0; i < players; ++i)
     if (!read(*from.players()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.players.emplace_back())) return false;
+  if (from.parameters() != nullptr && !read_parameters(*from.parameters(), to.parameters.emplace())) return false;
   return from.reload() == nullptr || read(*from.reload(), to.reload.emplace());
 }
 

@@ -5,7 +5,7 @@
 #include "engine/wire/schema.hpp"
 #include "engine/wire/wire.hpp"
 
-// Internal: between decode.cpp and decode_models.cpp. Each returns false where the values
+// Internal: between decode.cpp, decode_models.cpp and parameter_tables.cpp. Each returns false where the values
 // contradict each other or are no numbers.
 
 namespace yuragi::wire {
@@ -23,6 +23,9 @@ bool read_scene(const fb::Scene& from, SceneModel& to);
 
 /// A scene's pose, in padded arrays. Of an unknown kind, or left out since it is hidden: strands, none of them.
 bool read_pose(const fb::ScenePose& from, pose::Pose& pose, float& opacity);
+
+bool read_parameters(const fb::ParameterCommand& from, ParameterCommand& to);
+bool read_parameters(const fb::ParameterReport& from, ParameterReport& to);
 
 /// How many strands, joints of cloth and points of surfaces it has, padding included: what kMaxStrands limits.
 std::size_t room_of(const pose::Skeleton& skeleton);

@@ -5,13 +5,8 @@
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::wire {
-namespace {
 
-using Builder = flatbuffers::FlatBufferBuilder;
-using Text = flatbuffers::Offset<flatbuffers::String>;
-
-/// `text`, cut to the longest that decode() takes, at the start of a UTF-8 character.
-Text add_text(Builder& builder, std::string_view text) {
+flatbuffers::Offset<flatbuffers::String> add_text(flatbuffers::FlatBufferBuilder& builder, std::string_view text) {
   std::size_t size = text.size();
   if (size > kMaxTextBytes) {
     size = kMaxTextBytes;
@@ -19,6 +14,11 @@ Text add_text(Builder& builder, std::string_view text) {
   }
   return builder.CreateString(text.data(), size);
 }
+
+namespace {
+
+using Builder = flatbuffers::FlatBufferBuilder;
+using Text = flatbuffers::Offset<flatbuffers::String>;
 
 /// The first `count` values: without the padding.
 template <class T>
@@ -360,6 +360,7 @@ Bytes encode(const Sensors& sensors) {
   table.add_look(look);
   table.add_cameras(camera_list);
   table.add_camera(static_cast<std::uint32_t>(sensors.camera));
+  table.add_parameters_revision(sensors.parameters_revision);
   return finish(builder, fb::Body_Sensors, table.Finish());
 }
 
@@ -369,9 +370,11 @@ Bytes encode(const Control& control) {
   const auto player = control.player ? add_player(builder, *control.player) : flatbuffers::Offset<fb::PlayerCommand>();
   const auto reload = control.reload ? fb::CreateReloadCommand(builder, add_text(builder, control.reload->file))
                                      : flatbuffers::Offset<fb::ReloadCommand>();
+  const auto parameters =
+      control.parameters ? add_parameters(builder, *control.parameters) : flatbuffers::Offset<fb::ParameterCommand>();
   return finish(builder, fb::Body_Control,
                 fb::CreateControl(builder, scene, control.shown, control.hide_others,
-                                  static_cast<float>(control.over_s), player, reload));
+                                  static_cast<float>(control.over_s), player, reload, parameters));
 }
 
 Bytes encode(const ControlReply& reply) {
@@ -389,8 +392,10 @@ Bytes encode(const ControlReply& reply) {
   const auto player_vector = builder.CreateVector(players);
   const auto reload =
       reply.reload ? add_reload_report(builder, *reply.reload) : flatbuffers::Offset<fb::ReloadReport>();
+  const auto parameters =
+      reply.parameters ? add_parameters(builder, *reply.parameters) : flatbuffers::Offset<fb::ParameterReport>();
   return finish(builder, fb::Body_ControlReply,
-                fb::CreateControlReply(builder, reply.done, message, scene_vector, player_vector, reload));
+                fb::CreateControlReply(builder, reply.done, message, scene_vector, player_vector, reload, parameters));
 }
 
 Bytes encode(const RawTrace& trace) {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <string_view>
+
 #include <pose_generated.h>
 
 #include "engine/wind/wind_state.hpp"
+#include "engine/wire/parameters.hpp"
 
 // For the .cpp files of this folder only: what flatc makes of pose.fbs.
 
@@ -20,5 +23,13 @@ inline fb::WindPlace place_to_schema(const wind::WindState& state) {
   return fb::WindPlace(static_cast<float>(state.upwind_m), static_cast<float>(state.to_middle_s),
                        state.is_place_configured);
 }
+
+/// `text`, cut to the longest that decode() takes, at the start of a UTF-8 character.
+flatbuffers::Offset<flatbuffers::String> add_text(flatbuffers::FlatBufferBuilder& builder, std::string_view text);
+
+flatbuffers::Offset<fb::ParameterCommand> add_parameters(flatbuffers::FlatBufferBuilder& builder,
+                                                         const ParameterCommand& command);
+flatbuffers::Offset<fb::ParameterReport> add_parameters(flatbuffers::FlatBufferBuilder& builder,
+                                                        const ParameterReport& report);
 
 }  // namespace yuragi::wire

@@ -22,6 +22,7 @@
 #include "engine/wind/link_state.hpp"
 #include "engine/wind/source_report.hpp"
 #include "engine/wind/wind_state.hpp"
+#include "engine/wire/parameters.hpp"
 
 // The stream's messages as plain values, and their FlatBuffers form (pose.fbs, which is the public description).
 //
@@ -175,6 +176,7 @@ struct Sensors {
   look::Look look = {};                                   ///< within_limits(), whatever was sent
   std::vector<look::Camera> cameras = {};                 ///< the same; at most look::kMostCameras
   std::size_t camera = 0;                                 ///< which is on by the time of day; 0 where there are none
+  std::uint64_t parameters_revision = 0;                  ///< another number where a ParameterReport would be another
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };
@@ -194,7 +196,7 @@ struct ReloadCommand {
 };
 
 /// A request to show or hide scenes; or, with `player`, to change how recordings are played; or, with `reload`, to read
-/// the configuration again.
+/// the configuration again; or, with `parameters`, to list and set values.
 struct Control {
   std::string scene;  ///< its name; empty: change nothing, only report the status
   bool shown = true;
@@ -202,6 +204,7 @@ struct Control {
   double over_s = 2.0;       ///< 0 to kMaxFade_s
   std::optional<PlayerCommand> player = std::nullopt;
   std::optional<ReloadCommand> reload = std::nullopt;
+  std::optional<ParameterCommand> parameters = std::nullopt;
 };
 
 struct SceneState {
@@ -246,6 +249,7 @@ struct ControlReply {
   std::vector<SceneState> scenes;
   std::vector<PlayerState> players = {};
   std::optional<ReloadReport> reload = std::nullopt;
+  std::optional<ParameterReport> parameters = std::nullopt;
 };
 
 /// One message to or from a sensor's device, as it went over the wire.

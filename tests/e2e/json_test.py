@@ -57,6 +57,7 @@ WITHOUT_A_TABLE = {
     "calibrate microphone": "a dialog",
     "support-bundle": "writes a file, and says so",
     "scene show": "says what it did", "scene hide": "says what it did", "scene switch": "says what it did",
+    **{f"{of} {what}": "says what it did" for of in ("scene", "look") for what in ("set", "reset")},
 }
 
 # Commands with --json: their arguments, and where in the table a text stands that the JSON must hold, too.
@@ -73,6 +74,8 @@ TABLES = {
     "spectrum": (["--frequency", "0.01,0.1,1"], [r"^([\d.]+) ([\d.e-]+)$"]),
     "reload": (["--connect", "ADDRESS"], [r"^takes a restart: (.*)$"]),
     "scene list": (["--connect", "ADDRESS"], [r"^(\S+) +(\w+) "]),
+    "scene values": (["--connect", "ADDRESS"], [r"^(\S+) \((\w+)\)$", r"^  (\w+) +([\d.]+)\b"]),
+    "look values": (["--connect", "ADDRESS"], [r"^  (\w+) +([\d.]+)\b"]),
     **{f"player {name}": (["--connect", "ADDRESS", *words], [r"^(\w+): "])
        for name, words in {"status": [], "pause": [], "resume": [], "step": ["2"], "seek": ["1"], "rate": ["2"]}.items()},
 }

@@ -105,7 +105,7 @@ def reload(*arguments):
     return subprocess.run([YURAGI, "reload", *map(str, arguments)], capture_output=True, text=True, timeout=HANG_S, check=False)
 
 
-class Reload(unittest.TestCase):
+class RunningDaemon(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="yuragi-reload-")
         self.addCleanup(folder.cleanup)
@@ -139,6 +139,8 @@ class Reload(unittest.TestCase):
         done = subprocess.run([SCENE_BOUNDS, self.config], capture_output=True, text=True, timeout=HANG_S, check=True)
         return float(done.stdout.split()[1])
 
+
+class Reload(RunningDaemon):
     def test_shaping_changes_by_command_and_by_signal_and_no_joint_jumps(self):
         daemon = self.start_daemon(SENSOR + GRASS)
         frames = self.frames()

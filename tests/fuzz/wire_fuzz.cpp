@@ -35,6 +35,18 @@ void demand_lateness(const std::optional<wire::Lateness>& lateness) {
     if (!(value_s >= 0.0 && value_s <= 1e12)) std::abort();
 }
 
+void demand_parameters(const wire::ParameterReport& report) {
+  if (report.groups.size() > wire::kMaxScenes + 1) std::abort();
+  for (const wire::ParameterGroup& group : report.groups) {
+    if (group.parameters.size() > wire::kMaxParameters) std::abort();
+    for (const wire::ParameterState& parameter : group.parameters) {
+      if (parameter.choices.size() > wire::kMaxParameterChoices) std::abort();
+      if (!std::isfinite(parameter.min.value_or(0.0)) || !std::isfinite(parameter.max.value_or(0.0))) std::abort();
+      if (parameter.min && parameter.max && !(*parameter.min <= *parameter.max)) std::abort();
+    }
+  }
+}
+
 /// What decode() promises of everything that it lets through.
 void demand_consistency(const wire::Message& message) {
   if (const auto* scenes = std::get_if<wire::Scenes>(&message)) {
@@ -55,6 +67,12 @@ void demand_consistency(const wire::Message& message) {
     const wire::PlayerCommand& wish = *control->player;
     if (!(wish.rate >= wire::kMinPlayRate && wish.rate <= wire::kMaxPlayRate)) std::abort();
     if (wish.count < 1 || wish.count > wire::kMaxSteps) std::abort();
+  }
+  if (const auto* control = std::get_if<wire::Control>(&message); control != nullptr && control->parameters) {
+    if (control->parameters->edits.size() > wire::kMaxParameterEdits) std::abort();
+  }
+  if (const auto* reply = std::get_if<wire::ControlReply>(&message); reply != nullptr && reply->parameters) {
+    demand_parameters(*reply->parameters);
   }
   if (const auto* sensors = std::get_if<wire::Sensors>(&message)) {
     demand_place(sensors->wind);

@@ -52,10 +52,14 @@ void StreamServer::read_subscription(const std::shared_ptr<Client>& client) {
     if (error) return clients_.remove(client), void();
     client->reader.feed(std::span(client->received).first(count));
     while (auto message = client->reader.next()) {
-      if (!*message || !std::holds_alternative<wire::Subscribe>(**message)) continue;
-      client->has_subscribed = true;
+      if (!*message) continue;
       const std::lock_guard lock(mutex_);
-      ++subscriptions_;
+      if (std::holds_alternative<wire::Subscribe>(**message)) {
+        client->has_subscribed = true;
+        ++subscriptions_;
+      } else if (const auto* control = std::get_if<wire::Control>(&**message)) {
+        controls_.push_back(*control);
+      }
       subscribed_.notify_all();
     }
     read_subscription(client);
@@ -91,6 +95,12 @@ void StreamServer::cut() {
 bool StreamServer::wait_for_subscriptions(std::size_t count) {
   std::unique_lock lock(mutex_);
   return subscribed_.wait_for(lock, std::chrono::seconds(30), [&] { return subscriptions_ >= count; });
+}
+
+std::vector<wire::Control> StreamServer::wait_for_controls(std::size_t count) {
+  std::unique_lock lock(mutex_);
+  subscribed_.wait_for(lock, std::chrono::seconds(30), [&] { return controls_.size() >= count; });
+  return controls_;
 }
 
 wire::Bytes operator+(wire::Bytes a, const wire::Bytes& b) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -15,7 +16,7 @@
 
 namespace yuragi::viewer {
 
-/// A server on loopback that says what a test tells it to say. It reads each client's Subscribe and nothing more.
+/// A server on loopback that says what a test tells it to say. It reads each client's Subscribe and Controls.
 /// Thread-safe: yes. Sending never waits; what a slow client does not read is kept.
 class StreamServer {
  public:
@@ -36,6 +37,9 @@ class StreamServer {
   /// Waits (up to half a minute) until as many subscriptions as this have come in all.
   bool wait_for_subscriptions(std::size_t count);
 
+  /// Waits (up to half a minute) until as many Controls as this have come in all, and returns them.
+  std::vector<wire::Control> wait_for_controls(std::size_t count);
+
  private:
   struct Client;
   void accept();
@@ -51,6 +55,7 @@ class StreamServer {
   std::mutex mutex_;
   std::condition_variable subscribed_;
   std::size_t subscriptions_ = 0;
+  std::vector<wire::Control> controls_;
 
   std::thread thread_;
 };

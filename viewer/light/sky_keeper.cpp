@@ -90,14 +90,15 @@ Light light_of(const look::Look& look, double utc_s) {
 void SkyKeeper::start(const look::Look& look) {
   look_ = look;
   has_light_ = false;
-  fade_s_ = kFade_s;
+  fade_s_ = over_s_;
 }
 
-void SkyKeeper::set_look(const look::Look& look) {
+void SkyKeeper::set_look(const look::Look& look, double over_s) {
   if (look == look_) return;
   look_ = look;
   before_ = shown_;
   fade_s_ = 0.0;
+  over_s_ = over_s;
 }
 
 const Light& SkyKeeper::advance(double utc_s, double dt_s, const glm::dvec2& wind_m_s) {
@@ -113,13 +114,13 @@ const Light& SkyKeeper::advance(double utc_s, double dt_s, const glm::dvec2& win
   set_colors(look_, now);
   const double wanted_log = exposure_log_for(now);
   // While the look fades, the exposure goes with the fade: what was asked for is not answered by a slow eye.
-  const bool follows_at_once = !has_light_ || fade_s_ < kFade_s;
+  const bool follows_at_once = !has_light_ || fade_s_ < over_s_;
   exposure_log_ += (follows_at_once ? 1.0 : share_of(dt_s, kAdapting_s)) * (wanted_log - exposure_log_);
   now.air.x =
       static_cast<float>(std::exp(exposure_log_) * std::exp2(look_.exposure_ev + static_cast<double>(now.colors.w)));
 
-  fade_s_ = std::min(kFade_s, fade_s_ + dt_s);
-  const auto share = static_cast<float>(fade_s_ / kFade_s);
+  fade_s_ = std::min(over_s_, fade_s_ + dt_s);
+  const auto share = static_cast<float>(fade_s_ / over_s_);
   shown_ = has_light_ && share < 1.0F ? mixed(before_, now, share * share * (3.0F - 2.0F * share)) : now;
   has_light_ = true;
   return shown_;

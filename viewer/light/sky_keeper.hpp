@@ -20,9 +20,9 @@ class SkyKeeper {
   /// How long a change of the look takes.
   static constexpr double kFade_s = 4.0;
 
-  /// The look from now on, at once; or by a cross-fade, where it is another.
+  /// The look from now on, at once; or by a cross-fade of over_s (above 0), where it is another.
   void start(const look::Look& look);
-  void set_look(const look::Look& look);
+  void set_look(const look::Look& look, double over_s = kFade_s);
   const look::Look& look() const { return look_; }
 
   /// Advances by dt_s to utc_s, with the wind of now: east and south, m/s.
@@ -35,6 +35,7 @@ class SkyKeeper {
   Light shown_;
   Light before_;
   double fade_s_ = kFade_s;  // since the last change
+  double over_s_ = kFade_s;
   bool has_light_ = false;
   double exposure_log_ = 0.0;  // without the look's own
   glm::dvec2 slow_wind_m_s_{0.0};

@@ -4,13 +4,16 @@
 #include <array>
 #include <charconv>
 #include <condition_variable>
+#include <deque>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
 
 #include <boost/asio/connect.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
@@ -52,6 +55,14 @@ class StreamConnection::Session {
     return status_;
   }
 
+  void send(const wire::Control& control) {
+    asio::post(context_, [this, bytes = wire::encode(control)]() mutable {
+      if (!is_subscribed_) return;
+      unsent_.push_back(std::move(bytes));
+      if (!is_writing_) write(attempt_);
+    });
+  }
+
   void wait_for_news(Nanoseconds limit) {
     std::unique_lock lock(mutex_);
     news_.wait_for(lock, limit, [this] { return has_news_; });
@@ -78,6 +89,12 @@ class StreamConnection::Session {
     const std::lock_guard lock(mutex_);
     status_ = {state, std::move(text)};
     announce_change();
+  }
+
+  void begin_inbox() {
+    const std::lock_guard lock(mutex_);
+    inbox_.is_of_new_connection = true;
+    inbox_.replies.clear();
   }
 
   /// With mutex_ held.
@@ -113,10 +130,26 @@ class StreamConnection::Session {
     error_code ignored;
     socket_.set_option(tcp::no_delay(true), ignored);
     asio::async_write(socket_, asio::buffer(subscription_), [this, attempt](error_code error, std::size_t) {
-      if (attempt == attempt_ && error) give_up("the connection to " + address() + " was lost: " + error.message());
+      if (attempt != attempt_) return;
+      if (error) return give_up("the connection to " + address() + " was lost: " + error.message());
+      is_subscribed_ = true;
     });
+    begin_inbox();
     set_status(StreamState::kConnected, "connected to " + address());
     read(attempt);
+  }
+
+  /// Writes what send() has left, one after the other.
+  void write(std::uint64_t attempt) {
+    is_writing_ = !unsent_.empty();
+    if (!is_writing_) return;
+    const auto bytes = std::make_shared<const wire::Bytes>(std::move(unsent_.front()));
+    unsent_.pop_front();
+    asio::async_write(socket_, asio::buffer(*bytes), [this, attempt, bytes](error_code error, std::size_t) {
+      if (attempt != attempt_) return;
+      if (error) return give_up("the connection to " + address() + " was lost: " + error.message());
+      write(attempt);
+    });
   }
 
   void read(std::uint64_t attempt) {
@@ -164,6 +197,9 @@ class StreamConnection::Session {
       inbox_.frames.clear();  // of the previous scenes
     } else if (auto* sensors = std::get_if<wire::Sensors>(&message)) {
       inbox_.sensors = std::move(*sensors);
+    } else if (auto* reply = std::get_if<wire::ControlReply>(&message)) {
+      if (inbox_.replies.size() == kMaxWaitingReplies) inbox_.replies.erase(inbox_.replies.begin());
+      inbox_.replies.push_back(std::move(*reply));
     } else if (const auto* hello = std::get_if<wire::Hello>(&message)) {
       status_.text = fmt::format("connected to {} ({})", address(), hello->software);
     }
@@ -182,6 +218,8 @@ class StreamConnection::Session {
 
   void give_up(const std::string& why) {
     ++attempt_;
+    is_subscribed_ = is_writing_ = false;
+    unsent_.clear();
     error_code ignored;
     resolver_.cancel();
     silence_.cancel();
@@ -198,6 +236,9 @@ class StreamConnection::Session {
   wire::Bytes subscription_;
 
   // Of the connection's thread alone.
+  bool is_subscribed_ = false;
+  bool is_writing_ = false;
+  std::deque<wire::Bytes> unsent_;  // Controls
   asio::io_context context_{1};
   tcp::resolver resolver_{context_};
   tcp::socket socket_{context_};
@@ -226,6 +267,9 @@ Inbox StreamConnection::take() {
 }
 StreamStatus StreamConnection::status() const {
   return session_->status();
+}
+void StreamConnection::send(const wire::Control& control) {
+  session_->send(control);
 }
 void StreamConnection::wait_for_news(Nanoseconds limit) {
   session_->wait_for_news(limit);

@@ -18,9 +18,11 @@ struct TimedFrame {
 
 /// What has arrived since the last take(): scenes, then the frames of these scenes.
 struct Inbox {
+  bool is_of_new_connection = false;   ///< replies to what was sent by another one will not come
   std::optional<wire::Scenes> scenes;  ///< the newest
   std::vector<TimedFrame> frames;      ///< oldest first
   std::optional<wire::Sensors> sensors;
+  std::vector<wire::ControlReply> replies;  ///< oldest first
 };
 
 enum class StreamState : std::uint8_t { kConnecting, kConnected, kWaiting };
@@ -41,11 +43,12 @@ struct StreamOptions {
 /// A subscription to a daemon's stream, on a thread of its own, that is renewed without limit: where the daemon does
 /// not answer, ends or sends invalid bytes, it closes the connection, waits, and connects again.
 ///
-/// Memory is bounded: without take() the oldest frames are dropped, never scenes. Thread-safe: yes; meant for one
-/// reader. The destructor stops at once.
+/// Memory is bounded: without take() the oldest frames and replies are dropped, never scenes. Thread-safe: yes; meant
+/// for one reader. The destructor stops at once.
 class StreamConnection {
  public:
   static constexpr std::size_t kMaxWaitingFrames = 64;
+  static constexpr std::size_t kMaxWaitingReplies = 64;
 
   explicit StreamConnection(StreamOptions options);
   ~StreamConnection();
@@ -56,6 +59,9 @@ class StreamConnection {
   Inbox take();
 
   StreamStatus status() const;
+
+  /// Sends a Control, soon. Where there is no connection it is dropped, and no reply comes.
+  void send(const wire::Control& control);
 
   /// Waits until there is something to take(), the status changes, or `limit` has passed.
   void wait_for_news(Nanoseconds limit);

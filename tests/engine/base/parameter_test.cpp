@@ -232,5 +232,23 @@ TEST(DescribeAllowed, SaysTypeRangeUnitAndDefaultInOneSentence) {
             "number of at most 6 dB, default 0");
 }
 
+TEST(Parameter, ATypedValueIsReadAsItsTypeAndWrittenBackAsItWas) {
+  const auto read = [](const ParameterValue& kind, std::string_view text) {
+    return typed_value({.name = "key", .unit = "", .default_value = kind, .help = ""}, text);
+  };
+  for (const char* text : {"0.1", "4", "-2.5", "1e-07"}) EXPECT_EQ(value_text(read(0.0, text)), text);
+  EXPECT_EQ(read(0.0, "0.1"), ParameterValue(0.1));
+  EXPECT_EQ(read(std::int64_t{1}, "12"), ParameterValue(std::int64_t{12}));
+  EXPECT_EQ(read(false, "true"), ParameterValue(true));
+  EXPECT_EQ(value_text(false), "false");
+  EXPECT_EQ(read(std::string(), "12"), ParameterValue(std::string("12")));
+  EXPECT_EQ(value_text(Secret("hunter2")), Secret::kWithheld);
+  // What is not of the type stays a text, for resolve() to refuse it.
+  EXPECT_EQ(read(0.0, "4 m"), ParameterValue(std::string("4 m")));
+  EXPECT_EQ(read(0.0, ""), ParameterValue(std::string()));
+  EXPECT_EQ(read(std::int64_t{1}, "1.5"), ParameterValue(std::string("1.5")));
+  EXPECT_EQ(read(false, "1"), ParameterValue(std::string("1")));
+}
+
 }  // namespace
 }  // namespace yuragi

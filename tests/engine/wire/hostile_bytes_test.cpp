@@ -220,6 +220,41 @@ TEST(HostileBytes, ControlsOutOfBoundsAreRefused) {
   EXPECT_EQ(decode(samples::body(encode(reply))).error(), WireError::kInconsistent);
 }
 
+TEST(HostileBytes, ParametersBeyondTheLimitsAreNeverDecoded) {
+  Control control = samples::parameter_control();
+  control.parameters->edits.assign(1000, {std::string(5000, 'k'), std::string(5000, 'v')});
+  const auto command = decode(samples::body(encode(control)));
+  ASSERT_TRUE(command);
+  const auto& edits = std::get<Control>(*command).parameters->edits;
+  ASSERT_EQ(edits.size(), kMaxParameterEdits);
+  EXPECT_EQ(edits[0].key.size(), kMaxTextBytes);
+
+  // What no encoder of ours makes.
+  const auto refuses_command = [](std::size_t edit_count) {
+    flatbuffers::FlatBufferBuilder builder;
+    std::vector<flatbuffers::Offset<fb::ParameterEdit>> list;
+    for (std::size_t i = 0; i < edit_count; ++i) list.push_back(fb::CreateParameterEditDirect(builder, "haze", "1"));
+    const auto parameters = fb::CreateParameterCommandDirect(builder, "", &list);
+    const auto body = fb::CreateControl(builder, 0, true, false, 2.0F, 0, 0, parameters);
+    fb::FinishSizePrefixedMessageBuffer(builder, fb::CreateMessage(builder, fb::Body_Control, body.Union()));
+    const Bytes bytes(builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize());
+    return !decode(samples::body(bytes));
+  };
+  EXPECT_FALSE(refuses_command(kMaxParameterEdits));
+  EXPECT_TRUE(refuses_command(kMaxParameterEdits + 1));
+
+  const auto refuses_limits = [](double min, double max) {
+    ControlReply reply = samples::parameter_reply();
+    reply.parameters->groups[0].parameters[0].min = min;
+    reply.parameters->groups[0].parameters[0].max = max;
+    return !decode(samples::body(encode(reply)));
+  };
+  EXPECT_FALSE(refuses_limits(-1.0, 1.0));
+  EXPECT_TRUE(refuses_limits(1.0, -1.0));
+  EXPECT_TRUE(refuses_limits(std::nan(""), 1.0));
+  EXPECT_TRUE(refuses_limits(0.0, std::numeric_limits<double>::infinity()));
+}
+
 TEST(HostileBytes, PlayerCommandsOutOfBoundsAreRefused) {
   const auto refusal = [](const PlayerCommand& command) {
     const auto message = decode(samples::body(encode(Control{.scene = "", .player = command})));

@@ -215,6 +215,52 @@ TEST(WireRoundTrip, ControlAndItsReplyComeBackAsTheyWere) {
   EXPECT_FALSE(reply.scenes[1].shown);
 }
 
+TEST(WireRoundTrip, ParametersAndWhatIsSetOfThemComeBackAsTheyWere) {
+  EXPECT_FALSE(decoded<Control>(encode(samples::control())).parameters.has_value());
+  EXPECT_FALSE(decoded<ControlReply>(encode(samples::control_reply())).parameters.has_value());
+  const Control control = decoded<Control>(encode(samples::parameter_control()));
+  ASSERT_TRUE(control.parameters.has_value());
+  EXPECT_EQ(control.parameters->scene, "elm");
+  EXPECT_TRUE(control.parameters->describe);
+  EXPECT_EQ(control.parameters->number, 77u);
+  ASSERT_EQ(control.parameters->edits.size(), 2u);
+  EXPECT_EQ(control.parameters->edits[0].key, "height");
+  EXPECT_EQ(control.parameters->edits[0].value, "7.5");
+  EXPECT_EQ(control.parameters->edits[1].value, std::nullopt) << "back to the configuration's";
+
+  const ControlReply reply = decoded<ControlReply>(encode(samples::parameter_reply()));
+  ASSERT_TRUE(reply.parameters.has_value());
+  EXPECT_EQ(reply.parameters->number, 77u);
+  EXPECT_EQ(reply.parameters->refusal, "not from there");
+  ASSERT_EQ(reply.parameters->groups.size(), 2u);
+  EXPECT_EQ(reply.parameters->groups[1].scene, "elm");
+  EXPECT_EQ(reply.parameters->groups[1].kind, "tree");
+  const ParameterState& haze = reply.parameters->groups[0].parameters.at(0);
+  EXPECT_EQ(haze.name, "haze");
+  EXPECT_EQ(haze.unit, "EV");
+  EXPECT_EQ(haze.kind, ParameterKind::kNumber);
+  EXPECT_EQ(haze.min, 0.0);
+  EXPECT_EQ(haze.max, 1.0);
+  EXPECT_EQ(haze.help, "0: very clear air; 1: fog");
+  EXPECT_EQ(haze.default_value, "0.15");
+  EXPECT_EQ(haze.value, "0.4");
+  EXPECT_EQ(haze.configured, "0.2");
+  EXPECT_EQ(haze.change, ParameterChange::kAtOnce);
+  const ParameterState& species = reply.parameters->groups[1].parameters.at(0);
+  EXPECT_EQ(species.kind, ParameterKind::kText);
+  EXPECT_EQ(species.min, std::nullopt);
+  EXPECT_EQ(species.choices, (std::vector<std::string>{"cherry", "zelkova"}));
+  EXPECT_EQ(species.left_out, "as the season says");
+  EXPECT_EQ(species.value, std::nullopt);
+  EXPECT_EQ(species.change, ParameterChange::kCrossFade);
+
+  ControlReply newer = samples::parameter_reply();
+  newer.parameters->groups[0].parameters[0].kind = static_cast<ParameterKind>(9);
+  const ControlReply understood = decoded<ControlReply>(encode(newer));
+  EXPECT_EQ(understood.parameters->groups[0].parameters[0].kind, ParameterKind::kText) << "of a newer server";
+  EXPECT_EQ(understood.parameters->groups[0].parameters[0].change, ParameterChange::kTakesRestart);
+}
+
 TEST(WireRoundTrip, AReloadAndWhatCameOfItComeBackAsTheyWere) {
   EXPECT_FALSE(decoded<Control>(encode(samples::control())).reload.has_value());
   EXPECT_FALSE(decoded<ControlReply>(encode(samples::control_reply())).reload.has_value());
@@ -316,6 +362,7 @@ TEST(WireRoundTrip, HowTheDaemonDoesComesBack) {
   EXPECT_EQ(sensors.refused_clients, 6U);
   EXPECT_EQ(sensors.stuck_clients, 7U);
   EXPECT_EQ(sensors.idle_clients, 8U);
+  EXPECT_EQ(sensors.parameters_revision, 21U);
   ASSERT_TRUE(sensors.io_lateness && sensors.tick_lateness);
   EXPECT_EQ(sensors.io_lateness->p50_s, 0.0625);
   EXPECT_EQ(sensors.io_lateness->p99_s, 0.125);

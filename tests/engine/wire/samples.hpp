@@ -291,6 +291,36 @@ inline wire::ControlReply reload_reply() {
                                        .mistakes = {"wall.toml:3:1: seed: is \"a\""}}};
 }
 
+inline wire::Control parameter_control() {
+  return {.scene = "",
+          .parameters = wire::ParameterCommand{
+              .scene = "elm", .edits = {{"height", "7.5"}, {"species", std::nullopt}}, .describe = true, .number = 77}};
+}
+
+inline wire::ControlReply parameter_reply() {
+  const wire::ParameterState haze{.name = "haze",
+                                  .unit = "EV",
+                                  .kind = wire::ParameterKind::kNumber,
+                                  .min = 0.0,
+                                  .max = 1.0,
+                                  .help = "0: very clear air; 1: fog",
+                                  .default_value = "0.15",
+                                  .value = "0.4",
+                                  .configured = "0.2"};
+  const wire::ParameterState species{.name = "species",
+                                     .unit = "",
+                                     .kind = wire::ParameterKind::kText,
+                                     .choices = {"cherry", "zelkova"},
+                                     .help = "of the tree",
+                                     .left_out = "as the season says",
+                                     .change = wire::ParameterChange::kCrossFade};
+  return {.done = true,
+          .message = "[look] haze: 0.2 -> 0.4",
+          .scenes = {},
+          .parameters = wire::ParameterReport{
+              .number = 77, .refusal = "not from there", .groups = {{"", "", {haze}}, {"elm", "tree", {species}}}}};
+}
+
 inline wire::Sensors sensors() {
   wire::SensorStatus gauge;
   gauge.name = "roof";
@@ -371,7 +401,8 @@ inline wire::Sensors sensors() {
                                                                                 .period_s = 300.0,
                                                                                 .from_h = 21.0,
                                                                                 .fade_s = 30.0}},
-          .camera = 1};
+          .camera = 1,
+          .parameters_revision = 21};
 }
 
 inline wire::RawTrace raw_trace() {
@@ -387,10 +418,13 @@ inline wire::RawTrace raw_trace() {
 /// One of each, in the order of wire::Message, scenes and a frame of all kinds, and a wish for players; with their size
 /// prefixes.
 inline std::vector<wire::Bytes> one_of_each() {
-  return {
-      wire::encode(hello()),     wire::encode(subscribe()), wire::encode(scenes()),        frame_bytes(),
-      wire::encode(sensors()),   wire::encode(control()),   wire::encode(control_reply()), wire::encode(raw_trace()),
-      wire::encode(all_kinds()), frame_of_all_kinds(),      wire::encode(player_control())};
+  return {wire::encode(hello()),          wire::encode(subscribe()),
+          wire::encode(scenes()),         frame_bytes(),
+          wire::encode(sensors()),        wire::encode(control()),
+          wire::encode(control_reply()),  wire::encode(raw_trace()),
+          wire::encode(all_kinds()),      frame_of_all_kinds(),
+          wire::encode(player_control()), wire::encode(parameter_control()),
+          wire::encode(parameter_reply())};
 }
 
 /// What decode() takes: the bytes behind the size prefix.

@@ -158,6 +158,22 @@ TEST(SkyKeeper, FadesToAnotherLookWithoutAJump) {
   EXPECT_LT(before.to_sun.x, -0.5F) << "it has arrived";
 }
 
+TEST(SkyKeeper, FollowsASliderThatIsDraggedWhileItIsDragged) {
+  SkyKeeper keeper;
+  keeper.start({.clouds = 0.0});
+  const float at_first = keeper.advance(kDay_s, 0.0, {}).air.x;
+  look::Look look{.clouds = 0.0};
+  // Three seconds with another exposure ten times a second, at 60 pictures a second.
+  for (int picture = 0; picture < 180; ++picture) {
+    if (picture % 6 == 0) look.exposure_ev += 1.0 / 30.0;
+    keeper.set_look(look, 0.3);
+    const float before = keeper.light().air.x;
+    const float now = keeper.advance(kDay_s, 1.0 / 60.0, {}).air.x;
+    ASSERT_NEAR(std::log2(now / before), 0.0F, 0.03F) << picture;
+  }
+  EXPECT_GT(keeper.light().air.x, 1.8F * at_first) << "nearly a doubling already";
+}
+
 TEST(SkyKeeper, LetsCloudsDriftWithTheWindAndNotTooFast) {
   SkyKeeper keeper;
   keeper.start({});

@@ -73,6 +73,8 @@ class Viewer {
       if (inbox.scenes) scenes.push_back(inbox.scenes->scenes.at(0).name);
       for (TimedFrame& timed : inbox.frames) frames.push_back(std::move(timed.frame));
       if (inbox.sensors) sensors = std::move(inbox.sensors);
+      for (const wire::ControlReply& reply : inbox.replies) replies.push_back(reply.message);
+      has_new_connection = has_new_connection || inbox.is_of_new_connection;
       if (is_done()) return true;
       if (std::chrono::steady_clock::now() > deadline) return false;
       connection.wait_for_news(std::chrono::seconds(1));
@@ -85,6 +87,8 @@ class Viewer {
     return wait_until([&] { return connection.status().text.find(part) != std::string::npos; });
   }
 
+  std::vector<std::string> replies;
+  bool has_new_connection = false;
   StreamConnection connection;
   std::vector<std::string> scenes;
   std::vector<wire::Frame> frames;
@@ -144,6 +148,42 @@ TEST(StreamConnection, ComesBackWhenTheServerIsRestartedOnThePort) {
   server->send(frame_of(9));
   ASSERT_TRUE(viewer.wait_for_frames(1));
   EXPECT_THAT(viewer.scenes, testing::ElementsAre("first", "second"));
+}
+
+TEST(StreamConnection, SendsControlsInOrderAndHandsOverTheReplies) {
+  StreamServer server(kHello);
+  Viewer viewer(options_for(server.port()));
+  ASSERT_TRUE(server.wait_for_subscriptions(1));
+  server.send(scenes_named("grass"));
+  ASSERT_TRUE(viewer.wait_until([&] { return !viewer.scenes.empty(); }));
+  EXPECT_TRUE(viewer.has_new_connection);
+  for (std::uint32_t number = 0; number < 100; ++number) {
+    viewer.connection.send({.scene = "", .parameters = wire::ParameterCommand{.number = number}});
+  }
+  const std::vector<wire::Control> controls = server.wait_for_controls(100);
+  ASSERT_EQ(controls.size(), 100U);
+  for (std::uint32_t number = 0; number < 100; ++number) EXPECT_EQ(controls[number].parameters->number, number);
+  server.send(wire::encode(wire::ControlReply{.done = true, .message = "one", .scenes = {}}) +
+              wire::encode(wire::ControlReply{.done = false, .message = "two", .scenes = {}}));
+  ASSERT_TRUE(viewer.wait_until([&] { return viewer.replies.size() == 2; }));
+  EXPECT_EQ(viewer.replies, (std::vector<std::string>{"one", "two"}));
+
+  viewer.has_new_connection = false;
+  server.cut();
+  ASSERT_TRUE(viewer.wait_until([&] { return viewer.has_new_connection; }));
+}
+
+TEST(StreamConnection, WithoutAConnectionAControlIsDropped) {
+  std::uint16_t port = 0;
+  {
+    const StreamServer gone(kHello);
+    port = gone.port();
+  }
+  StreamConnection connection(options_for(port));
+  for (int i = 0; i < 1000; ++i) connection.send({.scene = "elm"});
+  StreamServer server(kHello, port);
+  ASSERT_TRUE(server.wait_for_subscriptions(1));
+  EXPECT_TRUE(server.wait_for_controls(0).empty());
 }
 
 TEST(StreamConnection, SkipsAMessageOfUnknownKind) {
