@@ -162,6 +162,9 @@ void explain(const wire::ParameterState& state) {
     ImGui::TextUnformatted("The scene is made anew, and cross-faded to.");
   }
   if (state.change == wire::ParameterChange::kTakesRestart) ImGui::TextUnformatted("Takes a restart of the daemon.");
+  if (state.change == wire::ParameterChange::kTakesReload) {
+    ImGui::TextUnformatted("Is read with the configuration: yuragi reload.");
+  }
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
 }
@@ -176,7 +179,9 @@ void draw_parameter(Panel& panel, const wire::ParameterGroup& group, const wire:
   ImGui::TextUnformatted(state.name.c_str());
   explain(state);
   ImGui::TableNextColumn();
-  if (!panel.refusal().empty() || state.change == wire::ParameterChange::kTakesRestart) {
+  const bool is_fixed =
+      state.change == wire::ParameterChange::kTakesRestart || state.change == wire::ParameterChange::kTakesReload;
+  if (!panel.refusal().empty() || is_fixed) {
     ImGui::AlignTextToFramePadding();
     ImGui::PushTextWrapPos(0.0F);
     ImGui::TextUnformatted((now ? with_unit(state, *now) : "left out").c_str());

@@ -56,8 +56,9 @@ wire::ParameterGroup scene_group(const settings::SceneConfig& scene, const setti
     wire::ParameterState& state = group.parameters.emplace_back(described(parameter));
     state.value = parameter.name == "shown" ? value_text(is_shown) : value_in(scene.values, parameter.name);
     state.configured = configured == nullptr ? state.default_value : value_in(configured->values, parameter.name);
-    state.change =
-        settings::remakes_scene(parameter.name) ? wire::ParameterChange::kCrossFade : wire::ParameterChange::kAtOnce;
+    state.change = settings::names_file(parameter.name)      ? wire::ParameterChange::kTakesReload
+                   : settings::remakes_scene(parameter.name) ? wire::ParameterChange::kCrossFade
+                                                             : wire::ParameterChange::kAtOnce;
   }
   return group;
 }

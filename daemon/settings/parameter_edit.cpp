@@ -53,12 +53,19 @@ std::optional<ParameterError> edit_scene(Config& config, const Config& configure
   }
   const auto gone = std::ranges::find(scene->kind->retired, edit.key, &scenes::RetiredParameter::name);
   if (gone != scene->kind->retired.end()) return ParameterError{"scene." + edit.key, std::string(gone->now)};
+  if (names_file(edit.key)) {
+    return ParameterError{"scene." + edit.key, "is read with the configuration: write it there, then: yuragi reload"};
+  }
   const auto before = std::ranges::find(configured.scenes, edit.scene, &SceneConfig::name);
   const bool is_configured = before != configured.scenes.end() && before->kind == scene->kind;
   auto values =
       with_edit(scene_parameters(*scene->kind), scene->values, is_configured ? &before->values : nullptr, edit);
   if (!values) return error_in("scene", values.error());
+  auto cloth = cloth_look_of(*values, std::nullopt);
+  if (!cloth) return error_in("scene", cloth.error().front());
   // What else belongs to the scene stays.
+  cloth->image = scene->cloth.image;
+  scene->cloth = std::move(*cloth);
   SceneConfig next = scene_config_of(scene->name, *scene->kind, std::move(*values));
   scene->values = std::move(next.values);
   scene->placement = next.placement;

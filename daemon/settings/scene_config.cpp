@@ -36,6 +36,10 @@ bool remakes_scene(std::string_view key) noexcept {
   return key != "gain" && key != "shown";
 }
 
+bool names_file(std::string_view key) noexcept {
+  return key == "image";
+}
+
 SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values) {
   SceneConfig scene{.name = std::move(name), .kind = &kind, .values = std::move(values)};
   scene.placement = {.x_m = scene.values.number("x"),

@@ -30,6 +30,9 @@ std::vector<Parameter> scene_parameters(const scenes::SceneDescription& kind);
 /// Is a scene made anew where this key of it changes? Otherwise it goes on as it is.
 bool remakes_scene(std::string_view key) noexcept;
 
+/// Is it a file, which is read with the configuration alone?
+bool names_file(std::string_view key) noexcept;
+
 /// `values`: of common_scene_parameters() and of the kind's own parameters.
 SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values);
 

@@ -39,6 +39,7 @@ enum class ParameterChange : std::uint8_t {
   kAtOnce,        ///< the picture follows without a jump
   kCrossFade,     ///< the scene is made anew, and the old one cross-fades to it
   kTakesRestart,  ///< it cannot be set
+  kTakesReload,   ///< nor can it: it is read with the configuration
 };
 
 /// A parameter, described by itself, and its value.
