@@ -23,7 +23,7 @@ namespace {
 constexpr GLsizei kSkyColumns = 40;
 constexpr GLsizei kSkyRows = 24;
 
-constexpr float kSunInShadow = 0.22F;  // leaves, threads and the air let some through
+constexpr float kSunInShadow = 0.16F;  // as in sward.part.glsl
 
 /// The bearings between which a circle around the world's middle is in view: where they begin, and how far they go;
 /// radians.
