@@ -59,15 +59,6 @@ Result<std::vector<std::uint8_t>, Failure> bytes_of(const std::filesystem::path&
 
 }  // namespace
 
-Result<void, Failure> checked_size(std::uint64_t width_px, std::uint64_t height_px) {
-  const bool is_empty = width_px == 0 || height_px == 0;
-  const bool is_long = width_px > kLongestFileSide_px || height_px > kLongestFileSide_px;
-  if (!is_empty && !is_long && width_px * height_px <= kMostFilePixels) return {};
-  return refusal("has " + std::to_string(width_px) + " x " + std::to_string(height_px) + " pixels; allowed: up to " +
-                 std::to_string(kMostFilePixels >> 20) + " million, and " + std::to_string(kLongestFileSide_px) +
-                 " along a side; save it smaller");
-}
-
 Result<look::Image, Failure> decoded_picture(std::span<const std::uint8_t> bytes, look::Color background) {
   if (!is_png(bytes) && !is_jpeg(bytes)) return refusal("is neither a PNG nor a JPEG file; save it as one of them");
   auto picture = is_png(bytes) ? decoded_png(bytes, background) : decoded_jpeg(bytes);
