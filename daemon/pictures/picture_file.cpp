@@ -1,8 +1,8 @@
 #include "daemon/pictures/picture_file.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -32,7 +32,7 @@ Result<std::vector<std::uint8_t>, Failure> bytes_of(const std::filesystem::path&
   // Without waiting for somebody who writes into a pipe.
   const Descriptor opened{open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)};
   if (opened.number < 0) {
-    return Failure{.message = "cannot be read: " + std::string(std::strerror(errno)) +
+    return Failure{.message = "cannot be read: " + std::generic_category().message(errno) +
                               "; give the path of a PNG or JPEG file, from the configuration's folder on",
                    .kind = FailureKind::kNoInput};
   }
@@ -49,7 +49,7 @@ Result<std::vector<std::uint8_t>, Failure> bytes_of(const std::filesystem::path&
   while (length < bytes.size()) {
     const ssize_t count = read(opened.number, bytes.data() + length, bytes.size() - length);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return refusal("cannot be read: " + std::string(std::strerror(errno)));
+    if (count < 0) return refusal("cannot be read: " + std::generic_category().message(errno));
     if (count == 0) break;
     length += static_cast<std::size_t>(count);
   }
