@@ -7,6 +7,8 @@
 
 #include <jpeglib.h>
 
+#include "daemon/pictures/picture_size.hpp"
+
 namespace yuragi::daemon::pictures {
 namespace {
 

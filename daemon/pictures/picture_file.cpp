@@ -1,8 +1,8 @@
 #include "daemon/pictures/picture_file.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -32,7 +32,7 @@ Result<std::vector<std::uint8_t>, Failure> bytes_of(const std::filesystem::path&
   // Without waiting for somebody who writes into a pipe.
   const Descriptor opened{open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)};
   if (opened.number < 0) {
-    return Failure{.message = "cannot be read: " + std::string(std::strerror(errno)) +
+    return Failure{.message = "cannot be read: " + std::generic_category().message(errno) +
                               "; give the path of a PNG or JPEG file, from the configuration's folder on",
                    .kind = FailureKind::kNoInput};
   }
@@ -49,7 +49,7 @@ Result<std::vector<std::uint8_t>, Failure> bytes_of(const std::filesystem::path&
   while (length < bytes.size()) {
     const ssize_t count = read(opened.number, bytes.data() + length, bytes.size() - length);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return refusal("cannot be read: " + std::string(std::strerror(errno)));
+    if (count < 0) return refusal("cannot be read: " + std::generic_category().message(errno));
     if (count == 0) break;
     length += static_cast<std::size_t>(count);
   }
@@ -58,15 +58,6 @@ Result<std::vector<std::uint8_t>, Failure> bytes_of(const std::filesystem::path&
 }
 
 }  // namespace
-
-Result<void, Failure> checked_size(std::uint64_t width_px, std::uint64_t height_px) {
-  const bool is_empty = width_px == 0 || height_px == 0;
-  const bool is_long = width_px > kLongestFileSide_px || height_px > kLongestFileSide_px;
-  if (!is_empty && !is_long && width_px * height_px <= kMostFilePixels) return {};
-  return refusal("has " + std::to_string(width_px) + " x " + std::to_string(height_px) + " pixels; allowed: up to " +
-                 std::to_string(kMostFilePixels >> 20) + " million, and " + std::to_string(kLongestFileSide_px) +
-                 " along a side; save it smaller");
-}
 
 Result<look::Image, Failure> decoded_picture(std::span<const std::uint8_t> bytes, look::Color background) {
   if (!is_png(bytes) && !is_jpeg(bytes)) return refusal("is neither a PNG nor a JPEG file; save it as one of them");

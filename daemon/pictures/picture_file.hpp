@@ -12,8 +12,6 @@
 namespace yuragi::daemon::pictures {
 
 inline constexpr std::size_t kLargestFile_bytes = std::size_t{16} << 20;
-inline constexpr std::size_t kMostFilePixels = std::size_t{1} << 24;  ///< before it is scaled down
-inline constexpr std::uint32_t kLongestFileSide_px = 16384;
 
 // A Failure says what is wrong with a picture, and what is allowed or what to do: "is 40 MB large; allowed: up to 16
 // MB".
@@ -26,8 +24,5 @@ Result<std::shared_ptr<const look::Image>, Failure> read_picture(const std::file
 
 /// The same of a file's bytes.
 Result<look::Image, Failure> decoded_picture(std::span<const std::uint8_t> bytes, look::Color background);
-
-/// Are these sides within the limits of a file?
-Result<void, Failure> checked_size(std::uint64_t width_px, std::uint64_t height_px);
 
 }  // namespace yuragi::daemon::pictures

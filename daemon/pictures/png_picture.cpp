@@ -6,6 +6,8 @@
 
 #include <png.h>
 
+#include "daemon/pictures/picture_size.hpp"
+
 namespace yuragi::daemon::pictures {
 namespace {
 

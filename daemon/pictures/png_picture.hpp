@@ -1,6 +1,10 @@
 #pragma once
 
-#include "daemon/pictures/picture_file.hpp"
+#include <cstdint>
+#include <span>
+
+#include "engine/base/result.hpp"
+#include "engine/look/cloth_look.hpp"
 
 namespace yuragi::daemon::pictures {
 

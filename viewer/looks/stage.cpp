@@ -229,8 +229,13 @@ void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_s
   const auto casts = [&](std::size_t scene) {
     return is_seen(moment, scene) && views_[scene]->renderer->casts_shadow();
   };
-  const std::optional<meshes::Bounds> casters = around(casts);
+  std::optional<meshes::Bounds> casters = around(casts);
   if (!casters) return;
+  // What stands on a floor is blown out over it.
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    if (!casts(scene)) continue;
+    if (const auto floor = views_[scene]->renderer->floor()) casters = united(*casters, bounds_of(*floor));
+  }
   const meshes::View shadows = meshes::shadow_view(*casters, to_sun, shadow_map_->texels());
   view_buffer_.set(shadows);
   view_buffer_.set(light_);

@@ -30,12 +30,14 @@ glm::vec3 on_ground(const glm::vec3& place) {
 std::vector<glm::vec3> crests(const pose::GridSkeleton& cloth, const glm::vec3& aside) {
   constexpr float kFlat_m = 0.002F;
   constexpr float kEvery_m = 0.15F;
+  constexpr std::size_t kMostRings = 400;
   std::vector<glm::vec3> found;
   const auto out_m = [&](std::size_t column) { return glm::dot(cloth_joint(cloth, column, 0), aside); };
   for (std::size_t i = 1; i + 1 < cloth.columns; ++i) {
     const bool is_crest = (out_m(i) - out_m(i - 1)) * (out_m(i + 1) - out_m(i)) < 0.0F;
     const glm::vec3 place = cloth_joint(cloth, i, 0);
-    if (is_crest && (found.empty() || glm::distance(found.back(), place) > kFlat_m)) found.push_back(place);
+    if (is_crest && found.size() < kMostRings && (found.empty() || glm::distance(found.back(), place) > kFlat_m))
+      found.push_back(place);
   }
   if (found.size() >= 2) return found;
   found.clear();
@@ -124,6 +126,11 @@ void add_flag_pole(const glm::vec3& top, const glm::vec3& low, SolidMesh& mesh) 
   mesh.add_tube(cleat - 0.8F * radius_m * up, cleat + 0.8F * radius_m * up, 0.4F * radius_m, 0.4F * radius_m, kRope);
 }
 
+/// How many things stand so far apart along a length; not many, however long it is.
+int count_of(float length_m, float every_m) {
+  return static_cast<int>(std::clamp(std::ceil(length_m / every_m), 0.0F, 100.0F));
+}
+
 /// Bamboo from the ground to above the arm, with the loops (chichi) that the cloth is hung by along both.
 void add_banner_pole(const pose::GridSkeleton& cloth, SolidMesh& mesh) {
   const glm::vec3 first = cloth_joint(cloth, 0, 0);
@@ -143,7 +150,8 @@ void add_banner_pole(const pose::GridSkeleton& cloth, SolidMesh& mesh) {
   mesh.add_ball(peak, 1.1F * radius_m, kBamboo);
   mesh.add_ball(arm_end, 1.1F * arm_m, kBrass);
   const float height_m = peak.y - foot.y;
-  for (float y_m = 0.28F; y_m < height_m; y_m += 0.37F) {
+  for (int node = 0; node < count_of(height_m - 0.28F, 0.37F); ++node) {
+    const float y_m = 0.28F + 0.37F * static_cast<float>(node);
     const float here_m = radius_m * (1.15F - 0.30F * y_m / height_m);
     mesh.add_ring(foot + y_m * up, up, here_m, 0.14F * here_m, kBambooNode);
   }
@@ -151,8 +159,8 @@ void add_banner_pole(const pose::GridSkeleton& cloth, SolidMesh& mesh) {
   const float band_m = std::clamp(0.03F * width_m, 0.006F, 0.05F);
   const float length_m = glm::distance(first, low);
   const float down_every_m = std::max(0.45F * width_m, 0.05F);
-  for (float down_m = 2.0F * band_m; down_m < length_m; down_m += down_every_m) {
-    const glm::vec3 middle = first - down_m * up;
+  for (int loop = 0; loop < count_of(length_m - 2.0F * band_m, down_every_m); ++loop) {
+    const glm::vec3 middle = first - (2.0F * band_m + down_every_m * static_cast<float>(loop)) * up;
     const float loop_m = 1.35F * radius_m;
     mesh.add_tube(middle - band_m * up, middle + band_m * up, loop_m, loop_m, kCotton);
   }

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <glm/common.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+
+#include "viewer/meshes/bounds.hpp"
 
 namespace yuragi::viewer::meshes {
 
@@ -20,6 +23,14 @@ inline bool is_on(const Floor& floor, const glm::vec2& at_m, float beyond_m) {
   const float ahead_m = way.y * floor.along.x - way.x * floor.along.y;
   return aside_m <= floor.half_m.x + beyond_m && -aside_m <= floor.half_m.x + beyond_m &&
          ahead_m <= floor.half_m.y + beyond_m && -ahead_m <= floor.half_m.y + beyond_m;
+}
+
+/// The flat box around it.
+inline Bounds bounds_of(const Floor& floor) {
+  const glm::vec2 aside = glm::abs(floor.along);
+  const glm::vec3 half_m(aside.x * floor.half_m.x + aside.y * floor.half_m.y, 0.0F,
+                         aside.y * floor.half_m.x + aside.x * floor.half_m.y);
+  return {floor.middle_m - half_m, floor.middle_m + half_m};
 }
 
 }  // namespace yuragi::viewer::meshes

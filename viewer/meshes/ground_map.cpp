@@ -33,13 +33,6 @@ float middle_m(std::size_t texel) {
   return (static_cast<float>(texel) + 0.5F) * kTexel_m - 0.5F * GrowthMap::kSide_m;
 }
 
-Bounds box_around(const Floor& floor) {
-  const glm::vec2 aside = glm::abs(floor.along);
-  const glm::vec3 half_m(aside.x * floor.half_m.x + aside.y * floor.half_m.y, 0.0F,
-                         aside.y * floor.half_m.x + aside.x * floor.half_m.y);
-  return {floor.middle_m - half_m, floor.middle_m + half_m};
-}
-
 bool is_on_map(float x_m, float z_m) {
   return std::max(std::abs(x_m), std::abs(z_m)) < 0.5F * GrowthMap::kSide_m;
 }
@@ -108,7 +101,7 @@ void GrowthMap::make(std::span<const Standing> things, float most) {
     }
     // On the ground that water takes no blade stands.
     const bool is_water = thing.kind == Standing::Kind::kWater;
-    const Bounds box = thing.floor ? united(thing.bounds, box_around(*thing.floor)) : thing.bounds;
+    const Bounds box = thing.floor ? united(thing.bounds, bounds_of(*thing.floor)) : thing.bounds;
     const float reach_m = kMargin_m + kSlope_m;
     for (std::size_t row = texel_of(box.low_m.z - reach_m); row <= texel_of(box.high_m.z + reach_m); ++row) {
       for (std::size_t column = texel_of(box.low_m.x - reach_m); column <= texel_of(box.high_m.x + reach_m); ++column) {

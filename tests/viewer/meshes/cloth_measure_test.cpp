@@ -80,6 +80,16 @@ TEST_F(ClothMeasureTest, ACurtainNearTheGroundHasAFloorBelowItsHem) {
   EXPECT_FALSE(cloth_floor(ClothStyle::kCurtain, curtain)) << "it hangs high";
 }
 
+TEST_F(ClothMeasureTest, HoldersOfHugeClothsHaveNoMorePieces) {
+  for (const char* const kind : {"curtain", "flag", "banner"}) {
+    pose::GridSkeleton huge = cloth(kind);
+    for (auto* const at_m : {&huge.rest_x_m, &huge.rest_y_m, &huge.rest_z_m}) {
+      for (float& value_m : *at_m) value_m *= 2e5F;
+    }
+    EXPECT_LT(cloth_holder(cloth_style(kind, huge), huge).vertices().size(), 100'000U) << kind;
+  }
+}
+
 TEST_F(ClothMeasureTest, NothingIsNoTrouble) {
   EXPECT_FALSE(cloth_floor(ClothStyle::kCurtain, {}));
   EXPECT_EQ(measure({}).size_m, glm::vec2(0.0F));
