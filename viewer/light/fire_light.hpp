@@ -29,11 +29,11 @@ Fires nearest_fires(std::span<const Fire> fires, const glm::vec3& eye_m);
 /// so of what the exposure gains, it gets about half, in logarithms.
 float flame_brightness(float exposure);
 
-/// The light of a fire that follows its heat, but never faster than flashing would take. Of a surface that it lights, what the
-/// screen shows of each color changes by at most 0.36 of the light's own relative change (the steepest place of the tone curve in
-/// finish()), here by less than 0.4375 in a second. More than three flashes are seven changes and more, of 0.1 each
-/// or, of red, of 0.0625: so there are never more than three in a second (WCAG 2.2, success criterion 2.3.1), however fast the
-/// flame flickers.
+/// The light of a fire that follows its heat, but never faster than flashing would take. Of a surface that it lights,
+/// what the screen shows of each color changes by at most 0.36 of the light's own relative change (the steepest place
+/// of the tone curve in finish()), here by less than 0.4375 in a second. More than three flashes are seven changes and
+/// more, of 0.1 each or, of red, of 0.0625: so there are never more than three in a second (WCAG 2.2, success
+/// criterion 2.3.1), however fast the flame flickers.
 class FireFlicker {
  public:
   static constexpr double kFastest_per_s = 1.2;  ///< of its logarithm

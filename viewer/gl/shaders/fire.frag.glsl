@@ -46,13 +46,13 @@ void main() {
       float two = textureLod(noise_tile, vec2(0.54 * across.y - 0.12 * across.x + 0.25 * one, 0.36 * v - risen.y), 1.8).r;
       float torn = 3.4 * (one + two - 1.0);
       float level = heat - 0.30 - 0.75 * smoothstep(0.45, 1.0, v) + torn * (0.30 + 0.70 * min(v * 2.5, 1.0));
-      level -= 1.2 * smoothstep(floor_m.y, floor_m.x, y_m);
+      level -= 2.5 * smoothstep(floor_m.y, floor_m.x, y_m);
       // It burns in sheets around what is hottest.
       float thick = smoothstep(0.0, 0.30, level) * (1.0 - 0.60 * smoothstep(0.40, 1.0, level));
       vec4 hot = textureLod(ramp, vec2((clamp(0.29 + 0.42 * level - 0.10 * v, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
       sum += hot.rgb * hot.rgb * (thick * step_m);
       // The blue of the root, where air still reaches the gas.
-      sum += vec3(0.01, 0.03, 0.16) * (step_m * thick * smoothstep(0.25, 0.08, v) * smoothstep(0.5, 0.0, level));
+      sum += vec3(0.004, 0.012, 0.06) * (step_m * thick * smoothstep(0.25, 0.08, v) * smoothstep(0.5, 0.0, level));
     }
     at_m += aside * step_m;
     v += up * step_m;
