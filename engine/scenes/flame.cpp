@@ -101,6 +101,7 @@ const std::array kFlameParameters = {
     Parameter{"rows", "", std::int64_t{96}, 8, 1000, "points from the foot to the top: more shows finer tongues"},
     Parameter{"height", "m", 1.2, 0.05, 50, "of the flame in calm air; in a wind it is shorter"},
     Parameter{"width", "m", 0.5, 0.02, 20, "of its thickest part; a wider fire leans less, and puffs more slowly"},
+    Parameter{"foot", "m", 0.35, 0, 10, "how high over the ground its foot is: it burns in a bowl"},
     Parameter{"rise_speed", "m/s", 2.5, 0.05, 20,
               "how fast its tongues rise, and a gust bends it from the foot upward"},
     Parameter{"flicker", "", 0.3, 0, 0.8,
@@ -127,6 +128,7 @@ struct FlameSettings {
   std::size_t rows;
   double height_m;
   double width_m;
+  double foot_m;
   double rise_speed_m_s;
   double flicker;
   double puffing;
@@ -139,6 +141,7 @@ FlameSettings flame_settings(const ParameterValues& values) {
           .rows = static_cast<std::size_t>(values.integer("rows")),
           .height_m = values.number("height"),
           .width_m = values.number("width"),
+          .foot_m = values.number("foot"),
           .rise_speed_m_s = values.number("rise_speed"),
           .flicker = values.number("flicker"),
           .puffing = values.number("puffing"),
@@ -199,7 +202,8 @@ class Flame final : public Scene {
                                .columns = settings.columns,
                                .rows = settings.rows,
                                .height_m = settings.height_m,
-                               .width_m = settings.width_m},
+                               .width_m = settings.width_m,
+                               .foot_m = settings.foot_m},
                               setup.placement),
               settings, setup) {}
 
@@ -295,7 +299,7 @@ class Flame final : public Scene {
         wind_(setup.placement, setup.gusts),
         axis_({.rows = body.surface.rows,
                .height_m = settings.height_m * static_cast<double>(body.along.back()),
-               .felt_at_m = settings.height_m / 2.0,
+               .felt_at_m = settings.height_m / 2.0,  // the bowl's rim shelters it: as if it stood on the ground
                .foot_m = settings.width_m,
                .rise_m_s = settings.rise_speed_m_s,
                .wobble = kWobblePerFlicker * settings.flicker,

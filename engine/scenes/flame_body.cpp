@@ -131,6 +131,7 @@ FlameBody make_flame_body(const FlameBodySpec& spec, const ScenePlacement& place
     body.along.push_back(static_cast<float>(up_m / spec.height_m));
   }
 
+  for (float& y_m : body.surface.rest_y_m) y_m += static_cast<float>(spec.foot_m);
   place(placement, body.surface);
   body.panel_east = std::cos(placement.heading_deg * kRadPerDeg);
   body.panel_south = std::sin(placement.heading_deg * kRadPerDeg);

@@ -19,6 +19,7 @@ struct FlameBodySpec {
   std::size_t rows = 96;
   double height_m = 1.2;  ///< of the flame
   double width_m = 0.5;   ///< of its thickest part
+  double foot_m = 0.0;    ///< how high over the ground its foot is
 };
 
 /// The surface that a flame is shown on, and its operators' data for each point or row.
@@ -37,7 +38,7 @@ struct FlameBody {
   double panel_east = 1.0, panel_south = 0.0;  ///< unit vector along the panel, in the world
 };
 
-/// Lays a flame out on the ground around the world's origin, and places it. Allocates; may throw std::bad_alloc.
+/// Lays a flame out over the world's origin, and places it. Allocates; may throw std::bad_alloc.
 /// Thread-safe: yes. Realtime-safe: no.
 FlameBody make_flame_body(const FlameBodySpec& spec, const ScenePlacement& placement);
 

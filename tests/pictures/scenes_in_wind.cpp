@@ -50,13 +50,15 @@ ScenesInWind::ScenesInWind(const daemon::settings::Config& config,
 void ScenesInWind::advance(double duration_s) {
   for (auto ticks = std::lround(duration_s / tick_s_); ticks > 0; --ticks) {
     now_ += from_seconds(tick_s_);
-    const wind::WindState state = estimator_.advance(now_);  // no sensor speaks: the configuration's default wind
-    animation_.step({state, estimator_.ground(), estimator_.stroke()}, tick_s_);
+    state_ = estimator_.advance(now_);  // no sensor speaks: the configuration's default wind
+    animation_.step({state_, estimator_.ground(), estimator_.stroke()}, tick_s_);
   }
 }
 
 stream::PoseMoment ScenesInWind::moment() const {
   stream::PoseMoment moment;
+  moment.time_s = seconds(now_ - kBegins);
+  moment.wind = state_;
   for (const pose::Pose* pose : animation_.poses()) moment.poses.push_back(*pose);
   moment.opacities.assign(animation_.opacities().begin(), animation_.opacities().end());
   return moment;

@@ -39,7 +39,9 @@ class ScenesInWind {
   double tick_s_;
   daemon::animation::Animation animation_;
   wind::blend::BlendedEstimator estimator_;
-  MonoTime now_{std::chrono::hours(1)};
+  static constexpr MonoTime kBegins{std::chrono::hours(1)};
+  MonoTime now_ = kBegins;
+  wind::WindState state_;
 };
 
 }  // namespace yuragi::viewer

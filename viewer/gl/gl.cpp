@@ -137,8 +137,8 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
   glDetachShader(program.name(), vertex_shader.name);
   glDetachShader(program.name(), fragment_shader.name);
 
-  for (const auto& [block, binding] :
-       {std::pair{"View", kViewBinding}, std::pair{"Light", kLightBinding}, std::pair{"Ground", kGroundBinding}}) {
+  for (const auto& [block, binding] : {std::pair{"View", kViewBinding}, std::pair{"Light", kLightBinding},
+                                       std::pair{"Ground", kGroundBinding}, std::pair{"Fires", kFiresBinding}}) {
     const GLuint place = glGetUniformBlockIndex(program.name(), block);
     if (place != GL_INVALID_INDEX) glUniformBlockBinding(program.name(), place, binding);
   }

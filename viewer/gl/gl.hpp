@@ -75,6 +75,8 @@ inline constexpr GLuint kViewBinding = 0;
 inline constexpr GLuint kLightBinding = 1;
 /// And the block Ground, of those that draw grass (shaders/sward.part.glsl).
 inline constexpr GLuint kGroundBinding = 2;
+/// And the block Fires (viewer/light/fire_light.hpp).
+inline constexpr GLuint kFiresBinding = 3;
 /// The texture units of the shadow map, in every program: compared with a depth, and as depths.
 inline constexpr GLuint kShadowUnit = 6;
 inline constexpr GLuint kShadowDepthUnit = 7;

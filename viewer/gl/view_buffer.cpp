@@ -14,4 +14,9 @@ void ViewBuffer::set(const light::Light& light) {
   glBindBufferBase(GL_UNIFORM_BUFFER, kLightBinding, light_.name());
 }
 
+void ViewBuffer::set(const light::Fires& fires) {
+  stream_to(GL_UNIFORM_BUFFER, fires_, std::span(&fires, 1));
+  glBindBufferBase(GL_UNIFORM_BUFFER, kFiresBinding, fires_.name());
+}
+
 }  // namespace yuragi::viewer::gl

@@ -1,134 +1,282 @@
 #include "viewer/looks/flame_renderer.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
 
-#include <glm/geometric.hpp>
-
+#include "viewer/gl/noise_texture.hpp"
 #include "viewer/gl/shaders.hpp"
 #include "viewer/meshes/bounds.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
 
-const glm::vec3 kIron(0.030F, 0.027F, 0.025F);
-const glm::vec3 kEmbers(0.95F, 0.22F, 0.035F);
 constexpr std::size_t kRampColors = 256;
 constexpr float kGlowPerHeight = 1.15F;  // the glow's radius
 
-}  // namespace
+// Of a flame as thick as its radius, in Light's unit: a wood fire is about as bright as a third of white paper in the
+// sun.
+constexpr float kBodyBrightness = 1.6F;
+constexpr float kSheetBrightness = 2.2F;
+constexpr float kEmbersBrightness = 1.0F;
+constexpr glm::vec3 kGlow{0.050F, 0.017F, 0.004F};
+// On a surface at one metre, for each square metre of its outline: its radiance over the pi of a diffuse surface.
+constexpr glm::vec3 kFireLight{0.95F, 0.43F, 0.13F};
+constexpr float kUsualHeat = 0.42F;  // of all points, on average
 
-meshes::SolidMesh flame_bowl(const pose::SurfaceSkeleton& surface) {
-  meshes::SolidMesh bowl;
-  if (surface.rest_x_m.empty()) return bowl;
-  const meshes::Bounds bounds = meshes::bounds_of(surface);
-  const glm::vec3 size_m = bounds.high_m - bounds.low_m;
-  const float foot_m = *std::min_element(surface.rest_y_m.begin(), surface.rest_y_m.end());
+// Gas rises by so much of sqrt(g h) where most of the flame is (B. McCaffrey 1979, "Purely buoyant diffusion flames").
+// Shown at this part of that, so that no more than three tongues in a second pass a place (WCAG 2.3.1), and with a heat
+// that follows the streamed one within kFollowing_s: flame_flash_test.cpp.
+constexpr double kRise = 0.73;
+constexpr double kShownRise = 0.36;
+constexpr double kFollowing_s = 0.55;
+constexpr double kJump_s = 1.0;
+constexpr double kGravity_m_s2 = 9.81;
 
-  // As wide as the flame in its lowest tenth.
-  meshes::Bounds foot{glm::vec3(1e9F), glm::vec3(-1e9F)};
-  for (std::size_t i = 0; i < surface.rest_x_m.size(); ++i) {
-    const glm::vec3 point(surface.rest_x_m[i], surface.rest_y_m[i], surface.rest_z_m[i]);
-    if (point.y < foot_m + 0.1F * size_m.y) foot = united(foot, {point, point});
-  }
-  const glm::vec3 middle = (foot.low_m + foot.high_m) / 2.0F;
-  // (A flat sheet is wider, so that its flames have room to lean; they burn from its middle.)
-  const float share = surface.is_closed ? 0.55F : 0.09F;
-  const float radius_m = share * std::max(foot.high_m.x - foot.low_m.x, foot.high_m.z - foot.low_m.z) + 0.03F;
-  const auto at = [&](float y_m) { return glm::vec3(middle.x, y_m, middle.z); };
-  const float rim_m = foot_m + 0.25F * radius_m;
-  const float depth_m = 0.45F * radius_m;
-  bowl.add_tube(at(rim_m - depth_m), at(rim_m - 0.4F * depth_m), 0.45F * radius_m, 0.85F * radius_m, kIron);
-  bowl.add_tube(at(rim_m - 0.4F * depth_m), at(rim_m), 0.85F * radius_m, radius_m, kIron);
-  bowl.add_tube(at(rim_m - 0.15F * depth_m), at(rim_m - 0.35F * depth_m), radius_m * 0.97F, 0.0F, kEmbers);
-  if (rim_m - depth_m > 0.0F) {
-    bowl.add_tube(at(0.0F), at(rim_m - 0.9F * depth_m), 0.14F * radius_m, 0.12F * radius_m, kIron);
-    bowl.add_tube(at(0.0F), at(0.08F * radius_m), 0.6F * radius_m, 0.14F * radius_m, kIron);
-  }
-  return bowl;
+constexpr int kStepsLow = 10, kStepsMedium = 16, kStepsHigh = 28;
+
+int steps_of(look::Quality quality) {
+  if (quality == look::Quality::kLow) return kStepsLow;
+  return quality == look::Quality::kMedium ? kStepsMedium : kStepsHigh;
 }
 
-FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface)
+void filter_linearly(GLenum target) {
+  glTexParameteri(target, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  for (const GLenum axis : {GLenum{GL_TEXTURE_WRAP_S}, GLenum{GL_TEXTURE_WRAP_T}, GLenum{GL_TEXTURE_WRAP_R}}) {
+    glTexParameteri(target, axis, GL_CLAMP_TO_EDGE);
+  }
+}
+
+/// Attributes of floats that follow one another in a buffer, so many each.
+void set_attributes(std::initializer_list<GLint> sizes, GLuint divisor) {
+  GLsizei stride = 0;
+  for (const GLint size : sizes) stride += size * static_cast<GLsizei>(sizeof(float));
+  GLuint attribute = 0;
+  std::size_t offset = 0;
+  for (const GLint size : sizes) {
+    // OpenGL takes an offset in a buffer as a pointer.
+    // NOLINTNEXTLINE(performance-no-int-to-ptr)
+    glVertexAttribPointer(attribute, size, GL_FLOAT, GL_FALSE, stride, reinterpret_cast<const void*>(offset));
+    glVertexAttribDivisor(attribute, divisor);
+    glEnableVertexAttribArray(attribute);
+    offset += static_cast<std::size_t>(size) * sizeof(float);
+    ++attribute;
+  }
+}
+
+float part_of(double turns) {
+  return static_cast<float>(turns - std::floor(turns));
+}
+
+}  // namespace
+
+FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface, look::Quality quality)
     : surface_(&surface),
-      points_(surface),
-      sheet_(meshes::layout_of(surface)),
       bowl_(flame_bowl(surface)),
-      program_(gl::link_program("flame", gl::shaders::kFlameVert, gl::shaders::kFlameFrag)),
-      glow_program_(gl::link_program("glow", gl::shaders::kGlowVert, gl::shaders::kGlowFrag)) {
+      bowl_solids_(bowl_.mesh),
+      noise_(gl::make_noise_texture()),
+      volume_(surface),
+      steps_(steps_of(quality)),
+      fire_program_(gl::link_program("fire", gl::shaders::kFireVert, gl::shaders::kFireFrag)),
+      spark_program_(gl::link_program("spark", gl::shaders::kSparkVert, gl::shaders::kSparkFrag)),
+      sheet_program_(gl::link_program("flame", gl::shaders::kFlameVert, gl::shaders::kFlameFrag)),
+      glow_program_(gl::link_program("glow", gl::shaders::kGlowVert, gl::shaders::kGlowFrag)),
+      embers_program_(gl::link_program("embers", gl::shaders::kEmbersVert, gl::shaders::kEmbersFrag)),
+      contact_program_(gl::link_program("contact", gl::shaders::kContactVert, gl::shaders::kContactFrag)) {
   glBindTexture(GL_TEXTURE_2D, ramp_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kRampColors, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
                surface.ramp_rgba.size() == 4 * kRampColors ? surface.ramp_rgba.data() : nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  gl::set_sampler(program_, "ramp", 0);
-  glUniform1i(glGetUniformLocation(program_.name(), "is_closed"), surface.is_closed ? 1 : 0);
-
-  glUniform1i(glGetUniformLocation(program_.name(), "columns"), static_cast<GLint>(surface.columns));
-  glUniform1i(glGetUniformLocation(program_.name(), "shells"), static_cast<GLint>(sheet_.shells()));
-  glUniform1i(glGetUniformLocation(program_.name(), "rows"), static_cast<GLint>(surface.rows));
+  filter_linearly(GL_TEXTURE_2D);
 
   const meshes::Bounds bounds = meshes::bounds_of(surface);
-  glow_radius_m_ = kGlowPerHeight * (bounds.high_m.y - bounds.low_m.y);
-  glow_middle_m_ = (bounds.low_m + bounds.high_m) / 2.0F;
+  const glm::vec3 size_m = bounds.high_m - bounds.low_m;
+  height_m_ = std::max(size_m.y, 0.01F);
+  width_m_ = std::max({volume_.is_empty() ? 0.0F : 2.0F * volume_.thickest_m(), 0.02F});
+  hot_middle_m_ = (bounds.low_m + bounds.high_m) / 2.0F;
+  if (volume_.is_empty()) {
+    points_.emplace(surface);
+    sheet_.emplace(meshes::layout_of(surface));
+    width_m_ = std::max(0.3F * std::max(size_m.x, size_m.z), 0.02F);
+  }
+
+  // The units of textures: 0 the heat, 1 the layers, 2 the noise, 3 the ramp.
+  for (const auto& [name, unit] : {std::pair{"heat_tile", 0}, {"layer_rows", 1}, {"noise_tile", 2}, {"ramp", 3}}) {
+    gl::set_sampler(fire_program_, name, unit);
+    gl::set_sampler(embers_program_, name, unit);
+    gl::set_sampler(sheet_program_, name, unit);
+  }
+  glUseProgram(fire_program_.name());
+  glUniform1i(glGetUniformLocation(fire_program_.name(), "steps"), steps_);
+  glUniform2f(glGetUniformLocation(fire_program_.name(), "size_m"), 0.5F * width_m_, height_m_);
+  const float floor_m = bowl_.embers_m.y;
+  glUniform2f(glGetUniformLocation(fire_program_.name(), "floor_m"), floor_m - 0.06F * width_m_,
+              floor_m + 0.20F * width_m_);
+  risen_place_ = glGetUniformLocation(fire_program_.name(), "risen");
+  fire_brightness_place_ = glGetUniformLocation(fire_program_.name(), "brightness");
+  spark_brightness_place_ = glGetUniformLocation(spark_program_.name(), "brightness");
+  glUseProgram(sheet_program_.name());
+  glUniform1i(glGetUniformLocation(sheet_program_.name(), "columns"), static_cast<GLint>(surface.columns));
+  glUniform1i(glGetUniformLocation(sheet_program_.name(), "rows"), static_cast<GLint>(surface.rows));
+  sheet_brightness_place_ = glGetUniformLocation(sheet_program_.name(), "brightness");
   glow_ball_place_ = glGetUniformLocation(glow_program_.name(), "ball_m");
-  glow_strength_place_ = glGetUniformLocation(glow_program_.name(), "strength");
+  glow_light_place_ = glGetUniformLocation(glow_program_.name(), "light");
+  glUseProgram(embers_program_.name());
+  glUniform4f(glGetUniformLocation(embers_program_.name(), "disc_m"), bowl_.embers_m.x, bowl_.embers_m.y,
+              bowl_.embers_m.z, bowl_.embers_radius_m);
+  embers_brightness_place_ = glGetUniformLocation(embers_program_.name(), "brightness");
+  embers_breath_place_ = glGetUniformLocation(embers_program_.name(), "breath");
+
+  glBindTexture(GL_TEXTURE_3D, heat_tile_.name());
+  filter_linearly(GL_TEXTURE_3D);
+  glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
+  filter_linearly(GL_TEXTURE_2D);
+
+  glBindVertexArray(hull_array_.name());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, hull_indices_.name());
+  const auto indices = volume_.hull_indices();
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size_bytes()), indices.data(), GL_STATIC_DRAW);
+  gl::stream_to(GL_ARRAY_BUFFER, hull_buffer_, volume_.hull());
+  set_attributes({3, 3}, 0);
+  glBindVertexArray(spark_array_.name());
+  gl::stream_to(GL_ARRAY_BUFFER, spark_buffer_, sparks_.all());
+  set_attributes({4, 4}, 1);
 }
 
 void FlameRenderer::move_to(const pose::Pose& pose) {
-  const auto* const burning = std::get_if<pose::SurfacePose>(&pose);
-  const pose::SurfaceKinematicsJob job{.skeleton = surface_, .pose = burning, .points = &points_};
-  if (job.run() != pose::SurfaceKinematicsJob::Problem::kNone || burning->heat.size() != points_.size()) return;
-  sheet_.move_to(std::as_const(points_).data());
-  sheet_.set_level(burning->heat);
+  const auto& burning = *std::get_if<pose::SurfacePose>(&pose);
+  if (volume_.is_empty()) {
+    move_sheet(burning);
+  } else {
+    const double passed_s = std::abs(moment_.time_s - moved_at_s_);
+    const double share = passed_s < kJump_s ? 1.0 - std::exp(-passed_s / kFollowing_s) : 1.0;
+    volume_.move_to(*surface_, burning, static_cast<float>(share));
+    moved_at_s_ = moment_.time_s;
+    sparks_.move_to(moment_.time_s, moment_.wind_m_s, volume_);
+    heat_ = volume_.mean_heat();
+    hot_middle_m_ = volume_.hot_middle_m();
 
-  // The glow's middle is that of the heat.
+    const auto layers = static_cast<GLsizei>(volume_.layers());
+    constexpr auto across = static_cast<GLsizei>(meshes::FlameVolume::kAcross);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glBindTexture(GL_TEXTURE_3D, heat_tile_.name());
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_R8, across, across, layers, 0, GL_RED, GL_UNSIGNED_BYTE, volume_.heat().data());
+    gl::count_upload(volume_.heat().size_bytes());
+    glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 2, layers, 0, GL_RGBA, GL_FLOAT, volume_.layer_rows().data());
+    gl::count_upload(volume_.layer_rows().size_bytes());
+    gl::stream_to(GL_ARRAY_BUFFER, hull_buffer_, volume_.hull());
+    gl::stream_to(GL_ARRAY_BUFFER, spark_buffer_, sparks_.all());
+  }
+  shown_heat_ = flicker_.follow(heat_, moment_.time_s);
+}
+
+void FlameRenderer::move_sheet(const pose::SurfacePose& burning) {
+  const pose::SurfaceKinematicsJob job{.skeleton = surface_, .pose = &burning, .points = &*points_};
+  if (job.run() != pose::SurfaceKinematicsJob::Problem::kNone || burning.heat.size() != points_->size()) return;
+  sheet_->move_to(std::as_const(*points_).data());
+  sheet_->set_level(burning.heat);
   float heat = 0.0F;
   glm::vec3 sum_m(0.0F);
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const pose::JointPosition at = points_.point(i);
-    heat += burning->heat[i];
-    sum_m += burning->heat[i] * glm::vec3(at.x_m, at.y_m, at.z_m);
+  for (std::size_t i = 0; i < points_->size(); ++i) {
+    const pose::JointPosition at = points_->point(i);
+    heat += burning.heat[i];
+    sum_m += burning.heat[i] * glm::vec3(at.x_m, at.y_m, at.z_m);
   }
-  strength_ = heat / static_cast<float>(std::max<std::size_t>(1, burning->heat.size()));
-  if (heat > 0.0F) glow_middle_m_ = sum_m / heat;
+  heat_ = heat / static_cast<float>(std::max<std::size_t>(1, burning.heat.size()));
+  if (heat > 0.0F) hot_middle_m_ = sum_m / heat;
+}
+
+std::optional<light::Fire> FlameRenderer::fire() const {
+  const float area_m2 = width_m_ * height_m_;
+  return light::Fire{.place_m = hot_middle_m_,
+                     .radius_m = 0.8F * width_m_,
+                     .light = kFireLight * (moment_.flame_brightness * area_m2 * shown_heat_ / kUsualHeat)};
 }
 
 void FlameRenderer::draw(const meshes::View&) {
-  bowl_.draw();
+  bowl_solids_.draw();
 }
 
 void FlameRenderer::draw_light() {
   glEnable(GL_BLEND);
   glDepthMask(GL_FALSE);
-
-  // A glow adds to what is behind it.
-  glBlendFunc(GL_ONE, GL_ONE);
-  glUseProgram(glow_program_.name());
-  glUniform1f(glow_strength_place_, strength_);
-  glUniform4f(glow_ball_place_, glow_middle_m_.x, glow_middle_m_.y, glow_middle_m_.z, glow_radius_m_);
-  glBindVertexArray(no_attributes_.name());
-  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-
-  // The far side of a body is drawn before the near one, and the inner shells between the two sides of the outer.
-  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  glUseProgram(program_.name());
-  glActiveTexture(GL_TEXTURE0);
+  glBlendFunc(GL_DST_COLOR, GL_ZERO);
+  draw_contact();
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_COLOR);
+  glActiveTexture(GL_TEXTURE3);
   glBindTexture(GL_TEXTURE_2D, ramp_.name());
-  if (surface_->is_closed) {
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_FRONT);
-    for (std::size_t shell = 0; shell < sheet_.shells(); ++shell) sheet_.draw_shell(shell);
-    glCullFace(GL_BACK);
-    for (std::size_t shell = sheet_.shells(); shell-- > 0;) sheet_.draw_shell(shell);
-    glDisable(GL_CULL_FACE);
+  glActiveTexture(GL_TEXTURE2);
+  glBindTexture(GL_TEXTURE_2D, noise_.name());
+  draw_glow();
+  draw_embers();
+  if (sheet_) {
+    glUseProgram(sheet_program_.name());
+    glUniform1f(sheet_brightness_place_, kSheetBrightness * moment_.flame_brightness);
+    sheet_->draw();
   } else {
-    sheet_.draw();
+    draw_body();
+    draw_sparks();
   }
-
+  glActiveTexture(GL_TEXTURE0);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
+}
+
+void FlameRenderer::draw_contact() {
+  constexpr float kPartOfReach = 0.30F;  // the shade reaches so many bowls' radii as the shader has radii of a trunk
+  glEnable(GL_POLYGON_OFFSET_FILL);      // in front of the ground
+  glPolygonOffset(-2.0F, -2.0F);
+  glUseProgram(contact_program_.name());
+  glBindVertexArray(no_attributes_.name());
+  glVertexAttrib4f(0, bowl_.embers_m.x, 0.0F, bowl_.embers_m.z, kPartOfReach * bowl_.embers_radius_m);
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void FlameRenderer::draw_glow() {
+  glUseProgram(glow_program_.name());
+  const glm::vec3 light = kGlow * (moment_.flame_brightness * shown_heat_ / kUsualHeat);
+  glUniform3f(glow_light_place_, light.r, light.g, light.b);
+  glUniform4f(glow_ball_place_, hot_middle_m_.x, hot_middle_m_.y, hot_middle_m_.z, kGlowPerHeight * height_m_);
+  glBindVertexArray(no_attributes_.name());
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+void FlameRenderer::draw_embers() {
+  constexpr double kBreath_s = 5.0;
+  glUseProgram(embers_program_.name());
+  glUniform1f(embers_brightness_place_,
+              kEmbersBrightness * moment_.flame_brightness * std::min(shown_heat_ / kUsualHeat, 1.0F));
+  glUniform1f(embers_breath_place_, part_of(moment_.time_s / kBreath_s));
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+void FlameRenderer::draw_body() {
+  // The noises rise as the gas does, one faster than the other; the shader has 0.26 and 0.36 tiles over the height.
+  const double rise_per_s = kShownRise * kRise * std::sqrt(kGravity_m_s2 / static_cast<double>(height_m_));
+  glUseProgram(fire_program_.name());
+  glUniform2f(risen_place_, part_of(0.26 * rise_per_s * moment_.time_s),
+              part_of(0.36 * 1.2 * rise_per_s * moment_.time_s));
+  glUniform1f(fire_brightness_place_, kBodyBrightness * moment_.flame_brightness);
+  glActiveTexture(GL_TEXTURE1);
+  glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_3D, heat_tile_.name());
+  glBindVertexArray(hull_array_.name());
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(volume_.hull_indices().size()), GL_UNSIGNED_SHORT, nullptr);
+  glDisable(GL_CULL_FACE);
+}
+
+void FlameRenderer::draw_sparks() {
+  glUseProgram(spark_program_.name());
+  glUniform1f(spark_brightness_place_, moment_.flame_brightness);
+  glBindVertexArray(spark_array_.name());
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(sparks_.all().size()));
 }
 
 }  // namespace yuragi::viewer::looks

@@ -1,42 +1,75 @@
 #pragma once
 
-#include <glm/vec3.hpp>
+#include <optional>
 
+#include "engine/look/look.hpp"
 #include "engine/pose/point_kinematics.hpp"
+#include "viewer/looks/flame_bowl.hpp"
 #include "viewer/looks/grid_sheet.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/solids.hpp"
+#include "viewer/meshes/flame_volume.hpp"
+#include "viewer/meshes/sparks.hpp"
 
 namespace yuragi::viewer::looks {
 
-/// Draws a surface that burns: each point's heat through the skeleton's ramp, blended over everything else, in a glow,
-/// over an iron bowl.
+/// Draws a surface that burns, over a bowl: a closed one as a body of gas (FlameVolume) with sparks, a flat one as a
+/// sheet. Its colours are those of the skeleton's ramp. Light is added to what is behind it as the tone curve nearly
+/// does (1 - (1 - a) (1 - b)), so that it is pale by day and glows by night.
 class FlameRenderer : public SceneRenderer {
  public:
   /// `surface` must outlive this.
-  explicit FlameRenderer(const pose::SurfaceSkeleton& surface);
+  FlameRenderer(const pose::SurfaceSkeleton& surface, look::Quality quality);
 
+  void set_moment(const Moment& moment) override { moment_ = moment; }
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
   void draw_light() override;
+  std::optional<light::Fire> fire() const override;
+  bool casts_shadow() const override { return true; }
 
  private:
-  const pose::SurfaceSkeleton* surface_;
-  pose::PointPositions points_;
-  GridSheet sheet_;
-  Solids bowl_;
-  gl::GlTexture ramp_;
-  gl::GlProgram program_;
-  gl::GlProgram glow_program_;
-  GLint glow_ball_place_ = -1;
-  GLint glow_strength_place_ = -1;
-  gl::GlVertexArray no_attributes_;
-  glm::vec3 glow_middle_m_{0.0F};
-  float glow_radius_m_ = 1.0F;
-  float strength_ = 0.0F;  // of the glow: the mean heat
-};
+  void move_sheet(const pose::SurfacePose& burning);
+  void draw_contact();
+  void draw_glow();
+  void draw_embers();
+  void draw_body();
+  void draw_sparks();
 
-/// A bowl of embers under the flame's foot. Pure.
-meshes::SolidMesh flame_bowl(const pose::SurfaceSkeleton& surface);
+  const pose::SurfaceSkeleton* surface_;
+  Moment moment_;
+  FlameBowl bowl_;
+  Solids bowl_solids_;
+  gl::GlTexture ramp_, noise_;
+  gl::GlVertexArray no_attributes_;
+  float height_m_ = 1.0F, width_m_ = 1.0F;
+
+  // Where the heat is, how much of it there is, and how much of that its light shows.
+  glm::vec3 hot_middle_m_{0.0F};
+  float heat_ = 0.0F;
+  float shown_heat_ = 0.0F;
+  light::FireFlicker flicker_;
+
+  // A body of gas.
+  meshes::FlameVolume volume_;
+  meshes::Sparks sparks_;
+  double moved_at_s_ = -1e9;
+  int steps_;
+  gl::GlProgram fire_program_, spark_program_;
+  gl::GlTexture heat_tile_, layer_rows_;
+  gl::GlBuffer hull_buffer_, hull_indices_, spark_buffer_;
+  gl::GlVertexArray hull_array_, spark_array_;
+  GLint risen_place_ = -1, fire_brightness_place_ = -1, spark_brightness_place_ = -1;
+
+  // A sheet.
+  std::optional<pose::PointPositions> points_;
+  std::optional<GridSheet> sheet_;
+  gl::GlProgram sheet_program_;
+  GLint sheet_brightness_place_ = -1;
+
+  gl::GlProgram glow_program_, embers_program_, contact_program_;
+  GLint glow_ball_place_ = -1, glow_light_place_ = -1;
+  GLint embers_brightness_place_ = -1, embers_breath_place_ = -1;
+};
 
 }  // namespace yuragi::viewer::looks

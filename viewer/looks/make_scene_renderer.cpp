@@ -34,9 +34,9 @@ std::unique_ptr<SceneRenderer> renderer_of(const pose::TreeSkeleton& tree, const
   return std::make_unique<TreeRenderer>(tree);
 }
 std::unique_ptr<SceneRenderer> renderer_of(const pose::SurfaceSkeleton& surface, const wire::SceneModel&,
-                                           look::Quality) {
+                                           look::Quality quality) {
   if (surface.ramp_rgba.empty()) return std::make_unique<WaterRenderer>(surface);
-  return std::make_unique<FlameRenderer>(surface);
+  return std::make_unique<FlameRenderer>(surface, quality);
 }
 
 }  // namespace

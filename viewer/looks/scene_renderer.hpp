@@ -1,9 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+
+#include <glm/vec2.hpp>
 
 #include "engine/look/look.hpp"
 #include "engine/wire/wire.hpp"
+#include "viewer/light/fire_light.hpp"
 #include "viewer/meshes/view.hpp"
 
 namespace yuragi::viewer::looks {
@@ -17,6 +21,15 @@ class SceneRenderer {
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
+  /// What move_to() is to go by besides: the stream's time, the wind toward east and south, and how bright flames are
+  /// in the picture (light::flame_brightness). Called before it.
+  struct Moment {
+    double time_s = 0.0;
+    glm::vec2 wind_m_s{0.0F};
+    float flame_brightness = 1.0F;
+  };
+  virtual void set_moment(const Moment&) {}
+
   /// Takes the pose of the next picture, which fits the skeleton. Called before anything is drawn.
   virtual void move_to(const pose::Pose& pose) = 0;
 
@@ -29,6 +42,9 @@ class SceneRenderer {
 
   /// Fills, in the stencil alone, the part of the ground that is open: under water.
   virtual void draw_hole() {}
+
+  /// The light that it throws on what is around it, after move_to().
+  virtual std::optional<light::Fire> fire() const { return std::nullopt; }
 
   /// Does it cast a shadow? Then draw() is also called with a View that projects everything onto the ground.
   virtual bool casts_shadow() const { return false; }

@@ -36,6 +36,7 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
       view->scene = std::move(scene);
       view->bounds = meshes::bounds_of(view->scene.skeleton);
       view->renderer = make_scene_renderer(view->scene, quality_);
+      if (view->renderer->fire()) view->bounds.low_m.y = std::min(view->bounds.low_m.y, 0.0F);  // with its bowl's legs
       if (const auto* strands = std::get_if<pose::StrandSkeleton>(&view->scene.skeleton)) {
         view->grid = meshes::bend_grid_of(*strands);
         if (view->renderer->is_field() && !view->renderer->is_ground()) view->stand = meshes::stand_of(*strands);
@@ -92,6 +93,25 @@ bool Stage::is_seen(const stream::PoseMoment& moment, std::size_t scene) const {
          moment.opacities[scene] > 0.0F && pose::fits(moment.poses[scene], scenes_[scene]->skeleton);
 }
 
+/// Gives each renderer its pose, and asks which light it throws.
+void Stage::move_to(const stream::PoseMoment& moment) {
+  const SceneRenderer::Moment now{
+      .time_s = moment.time_s,
+      .wind_m_s = {static_cast<float>(moment.wind.wind.u_m_s), -static_cast<float>(moment.wind.wind.v_m_s)},
+      .flame_brightness = light::flame_brightness(light_.air.x)};
+  fires_.clear();
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    if (!is_seen(moment, scene)) continue;
+    SceneRenderer& renderer = *views_[scene]->renderer;
+    renderer.set_moment(now);
+    renderer.move_to(moment.poses[scene]);
+    if (std::optional<light::Fire> fire = renderer.fire()) {
+      fire->light *= moment.opacities[scene];
+      fires_.push_back(*fire);
+    }
+  }
+}
+
 /// What stands on the ground, and how its grass is bent.
 void Stage::move_ground(const stream::PoseMoment& moment) {
   standing_.clear();
@@ -130,9 +150,8 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
         stand_ = *view.stand;
         near_by = std::get_if<pose::StrandPose>(&moment.poses[scene]);
       }
-    } else if (const auto* surface = std::get_if<pose::SurfaceSkeleton>(&view.scene.skeleton);
-               surface != nullptr && surface->ramp_rgba.empty()) {
-      thing.kind = meshes::Standing::Kind::kWater;
+    } else if (const auto* surface = std::get_if<pose::SurfaceSkeleton>(&view.scene.skeleton); surface != nullptr) {
+      thing.kind = surface->ramp_rgba.empty() ? meshes::Standing::Kind::kWater : meshes::Standing::Kind::kFire;
     }
   }
   if (is_bare && ground_opacity > 0.0F) {
@@ -203,9 +222,8 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   if (clock_ != nullptr) clock_->begin();
   const glm::vec3 to_sun(light_.to_sun);
   const bool has_shadows = to_sun.y > kLowestSun;
-  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    if (is_seen(moment, scene)) views_[scene]->renderer->move_to(moment.poses[scene]);
-  }
+  move_to(moment);
+  view_buffer_.set(light::nearest_fires(fires_, glm::vec3(view.eye_m)));
   if (has_shadows && shadow_map_) draw_shadows(moment, to_sun, view);
   const bool has_flat_shadows = has_shadows && !shadow_map_;
   const meshes::View flat = has_flat_shadows ? meshes::laid_flat(view, to_sun) : view;

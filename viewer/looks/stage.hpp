@@ -70,6 +70,7 @@ class Stage {
   void mark_pass(std::string_view name) {
     if (clock_ != nullptr) clock_->mark(name);
   }
+  void move_to(const stream::PoseMoment& moment);
   void move_ground(const stream::PoseMoment& moment);
   void draw_sward(const meshes::View& view);
 
@@ -77,6 +78,7 @@ class Stage {
   std::vector<const wire::SceneModel*> scenes_;    // of views_
   std::optional<std::string> only_;
   light::Light light_ = light::light_of({}, 0.0);
+  std::vector<light::Fire> fires_;
   Landscape landscape_;
   GroundMaps ground_;
   std::vector<meshes::Standing> standing_;

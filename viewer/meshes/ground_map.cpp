@@ -10,10 +10,11 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kTexel_m = GrowthMap::kSide_m / static_cast<float>(GrowthMap::kTexels);
-constexpr float kLawn = 0.25F;     // the growth of a lawn
-constexpr float kMargin_m = 0.8F;  // of lawn around a thing
-constexpr float kSlope_m = 2.8F;   // from there on to tall grass
-constexpr float kShore_m = 0.5F;   // around water, without blades
+constexpr float kLawn = 0.25F;        // the growth of a lawn
+constexpr float kMargin_m = 0.8F;     // of lawn around a thing
+constexpr float kSlope_m = 2.8F;      // from there on to tall grass
+constexpr float kTrampled_m = 0.45F;  // around a fire
+constexpr float kShore_m = 0.5F;      // around water, without blades
 /// A texel with so many blades, of those that its area has on average, is taken as full.
 constexpr float kFullTexel = 0.5F;
 
@@ -109,6 +110,7 @@ void GrowthMap::make(std::span<const Standing> things) {
                      glm::vec2(0.0F));
         const float out_m = glm::length(out);
         float growth = kLawn + (1.0F - kLawn) * smooth((out_m - kMargin_m) / kSlope_m);
+        if (thing.kind == Standing::Kind::kFire) growth *= smooth((out_m - kTrampled_m) / kTrampled_m);
         if (is_water && out_m <= kShore_m) {
           float& water = water_[row * kTexels + column];
           water = std::max(water, thing.opacity);

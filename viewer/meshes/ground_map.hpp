@@ -46,7 +46,7 @@ BendGrid bend_grid_of(const pose::StrandSkeleton& skeleton);
 
 /// What stands on the ground, with how much of it is to be seen (0 to 1).
 struct Standing {
-  enum class Kind : std::uint8_t { kGrass, kWater, kOther };
+  enum class Kind : std::uint8_t { kGrass, kWater, kFire, kOther };
   Kind kind = Kind::kOther;
   Bounds bounds;
   float opacity = 1.0F;
@@ -54,7 +54,8 @@ struct Standing {
 };
 
 /// How tall grass grows, and where the ground is taken, by streamed blades: a square map around the middle of the
-/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things. Where there is
+/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things, and trampled
+/// around a fire. Where there is
 /// water no blade of the viewer's own stands, either. Beyond the map it is as on its edge.
 class GrowthMap {
  public:

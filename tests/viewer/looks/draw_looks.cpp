@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
     camera.frame(stage.home(static_cast<double>(width_px) / height_px));
     for (const double strength : {0.0, 0.4, 1.0}) {
       viewer::stream::PoseMoment moment = viewer::stream::rest_moment(models);
+      moment.time_s = 10.0 * strength;
       for (std::size_t i = 0; i < models.size(); ++i) moment.poses[i] = viewer::test_pose(models[i], 2.0, strength);
       stage.draw(moment, camera, target);
       viewer::write_picture(fmt::format("{}/{}-{:.0f}.png", words[0], kind, 10 * strength), width_px, height_px,

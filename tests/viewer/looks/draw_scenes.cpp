@@ -89,6 +89,8 @@ int draw_scenes(std::vector<std::string> words) {
       camera.frame(stage.home(static_cast<double>(width_px) / height_px));
       viewer::stream::PoseMoment moment = viewer::stream::rest_moment(models);
       moment.poses[0] = scene->pose();
+      moment.time_s = kSettlingTicks * kTick_s;
+      moment.wind.wind = wind::wind_from(speed_m_s, kWindFrom_deg);
       stage.draw(moment, camera, target);
       viewer::write_picture(fmt::format("{}/{}-{}.png", words[0], kind, name), width_px, height_px, target.read_rgb());
     }

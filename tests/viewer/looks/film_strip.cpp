@@ -183,6 +183,7 @@ void make_strip(const StripOptions& options) {
       moment = viewer::stream::rest_moment(scenes);
       if (options.is_lean_shown) lean.emplace(std::get<pose::StrandSkeleton>(stage.scenes()[0]->skeleton));
     }
+    moment.time_s = time_s;
     for (std::size_t scene = 0; scene < moment.poses.size(); ++scene) moment.poses[scene] = *animation.poses()[scene];
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       stage.draw(moment, cameras[i], target);

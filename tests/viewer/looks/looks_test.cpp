@@ -61,6 +61,7 @@ class OnScreenTest : public testing::Test {
 
   Pixels draw(double strength, const std::vector<float>& opacities, double time_s = 2.0) {
     stream::PoseMoment moment = stream::rest_moment(models_);
+    moment.time_s = time_s;
     for (std::size_t i = 0; i < models_.size(); ++i) moment.poses[i] = test_pose(models_[i], time_s, strength);
     moment.opacities = opacities;
     stage_->draw(moment, camera_, *target_);
@@ -406,6 +407,27 @@ TEST_F(StageTest, HasNoTroubleWithModelsOfNothing) {
   stage_->set_quality(look::Quality::kHigh);
   EXPECT_TRUE(std::isfinite(stage_->home(1.5).distance_m));
   stage_->draw(stream::rest_moment(models_), camera_, *target_);
+}
+
+/// How much brighter the lowest rows of a picture are than those of another, of 255.
+double brighter_ground(const Pixels& a, const Pixels& b) {
+  double sum = 0.0;
+  const std::size_t from = 3 * kWidth_px * (kHeight_px - kHeight_px / 8);
+  for (std::size_t i = from; i < a.size(); ++i) sum += static_cast<double>(a[i]) - static_cast<double>(b[i]);
+  return sum / static_cast<double>(a.size() - from);
+}
+
+TEST_F(StageTest, AFlameShinesOnTheGroundByNightAndHardlyByDay) {
+  show({test_model("flame")});
+  const auto light_at = [](const std::string& height) {
+    return light::light_of(look::edited({}, std::vector<std::string>{"sun=fixed", "sun_height=" + height}).value(), 0.0);
+  };
+  stage_->set_light(light_at("-15"));
+  const double by_night = brighter_ground(draw(0.3, {1.0F}), draw(0.3, {0.01F}));
+  stage_->set_light(light_at("60"));
+  const double by_day = brighter_ground(draw(0.3, {1.0F}), draw(0.3, {0.01F}));
+  EXPECT_GT(by_night, 8.0);
+  EXPECT_LT(std::abs(by_day), 4.0);
 }
 
 TEST_F(StageTest, IsAtHomeInNothing) {

@@ -42,6 +42,7 @@ void main() {
   float open = smoothstep(0.35, 1.15, length(in_crown));
   vec3 light = paint * soft_light(facing) * (0.45 + 0.55 * open);
   light += paint * sun_light.rgb * mix(0.15, 1.0, sunlight_near(place_m + 0.35 * to_sun.xyz)) * max(dot(facing, to_sun.xyz), 0.0) * (0.25 + 0.75 * open);
+  light += paint * fire_light(place_m, facing);
   float rim = 1.0 - abs(dot(facing, from_eye));
   light += 0.05 * rim * rim * rim * sky_light.rgb * open;
   color = vec4(seen(light, place_m), 1.0);

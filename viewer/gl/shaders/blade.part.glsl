@@ -45,10 +45,11 @@ void put_vertex(vec3 place, vec3 along, float t, float side, float width_m, floa
   gl_Position = to_clip * vec4(place, 1.0);
 
   float sunlight = mix(kSunInShadow, 1.0, sunlight_near(place));
+  vec3 fire = tint * fire_light(place, vec3(0.0, 0.7, 0.0) + 0.5 * to_eye) * (0.2 + 0.8 * t);
   // Far away it takes on the light of the grass as a whole, as the ground behind it has it.
   vec3 canopy = canopy_light(bend, to_eye, patch_at, (t - 0.55) * 0.6 + 0.35 * (fract(chance * 61.0) - 0.5), tall, sunlight);
   if (is_far) {
-    shade = seen(canopy, place);
+    shade = seen(canopy + fire, place);
     return;
   }
   // A blade is folded along its middle: the normals of its two edges differ a little.
@@ -56,5 +57,5 @@ void put_vertex(vec3 place, vec3 along, float t, float side, float width_m, floa
   normal *= dot(normal, to_eye) < 0.0 ? -1.0 : 1.0;
   normal = normalize(normal + across * (side * 0.55));
   vec3 light = blade_light(to_eye, along, normal, t, tint, lean, sunlight);
-  shade = seen(mix(light, canopy, smoothstep(kFarFrom_m, kFar_m, distance_m)), place);
+  shade = seen(mix(light, canopy, smoothstep(kFarFrom_m, kFar_m, distance_m)) + fire, place);
 }

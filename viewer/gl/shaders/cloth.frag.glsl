@@ -113,6 +113,8 @@ void main() {
               (0.42 + 0.40 * against * against);
   vec3 light = lit + glow + paint * (soft_light(facing) * 0.85 + sun_light.rgb * 0.035);
 
+  light += paint * (fire_light(place_m, facing) + 0.5 * through * fire_light(place_m, -facing));
+
   // Threads reflect more at a grazing angle.
   float rim = 1.0 - abs(dot(facing, from_eye));
   light += paint * (sky_light.rgb + 0.25 * sun_light.rgb * max(sun, 0.0)) * 0.35 * rim * rim * rim;

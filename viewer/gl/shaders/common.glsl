@@ -31,6 +31,39 @@ layout(std140) uniform Light {
   vec4 drift;         // of the clouds
 };
 
+// The fires that are nearest to the eye (viewer/light/fire_light.hpp).
+layout(std140) uniform Fires {
+  vec4 fire_count;           // x
+  vec4 fire_place_radius[4];
+  vec4 fire_color[4];        // on a surface that faces it at one metre
+};
+
+// The light of fires on a surface; a flame is as high as wide things are near it, so that a little comes around edges.
+vec3 fire_light(vec3 place_m, vec3 normal) {
+  vec3 light = vec3(0.0);
+  for (int i = 0; i < int(fire_count.x); ++i) {
+    vec3 way = fire_place_radius[i].xyz - place_m;
+    float square = dot(way, way);
+    float radius = fire_place_radius[i].w;
+    float facing = max(0.2 + 0.8 * dot(normal, way) * inversesqrt(square + 1e-6), 0.0);
+    light += fire_color[i].rgb * (facing / (square + radius * radius));
+  }
+  return light;
+}
+
+// What a mirror at a place shows of fires along a ray: each a ball.
+vec3 fire_mirrored(vec3 place_m, vec3 ray) {
+  vec3 light = vec3(0.0);
+  for (int i = 0; i < int(fire_count.x); ++i) {
+    vec3 way = fire_place_radius[i].xyz - place_m;
+    float along = max(dot(way, ray), 0.0);
+    vec3 aside = way - along * ray;
+    float radius = 1.5 * fire_place_radius[i].w + 0.01 * along;
+    light += fire_color[i].rgb / (radius * radius) * exp(-dot(aside, aside) / (radius * radius));
+  }
+  return light;
+}
+
 // The light of the air along a unit direction, without clouds and hills: another at the horizon than above, and a glow
 // around the sun.
 vec3 air_light(vec3 direction) {

@@ -1,26 +1,16 @@
 layout(location = 0) in float x_m;
 layout(location = 1) in float y_m;
 layout(location = 2) in float z_m;
-layout(location = 3) in float normal_x;
-layout(location = 4) in float normal_y;
-layout(location = 5) in float normal_z;
 layout(location = 6) in float level;
 
-out vec3 place_m;
-out vec3 normal;
 out float heat;
 out float along;
-out float inward;
 
 uniform int columns;
 uniform int rows;
-uniform int shells;
 
 void main() {
-  place_m = vec3(x_m, y_m, z_m);
-  normal = vec3(normal_x, normal_y, normal_z);
   heat = level;
-  inward = shells > 1 ? float(gl_VertexID % columns / (columns / shells)) / float(shells - 1) : 1.0;
   along = float(gl_VertexID / columns) / float(max(rows - 1, 1));
-  gl_Position = to_clip * vec4(place_m, 1.0);
+  gl_Position = to_clip * vec4(x_m, y_m, z_m, 1.0);
 }

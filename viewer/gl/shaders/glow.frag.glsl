@@ -1,5 +1,5 @@
-uniform float strength;
 uniform vec4 ball_m;
+uniform vec3 light;
 
 in vec2 at;
 in float height_m;
@@ -8,5 +8,5 @@ out vec4 color;
 void main() {
   float near = max(1.0 - length(at), 0.0);
   float over_ground = smoothstep(0.0, 0.5 * ball_m.w, height_m);
-  color = vec4(vec3(0.85, 0.33, 0.09) * strength * near * near * near * over_ground, 0.0);
+  color = vec4(finish(light * (near * near * near * over_ground)), 0.0);
 }

@@ -37,5 +37,6 @@ void main() {
   float far = mix(smoothstep(1.0, 14.0, distance_m), smoothstep(3.0, 32.0, distance_m), tall);
   vec3 light = mix(below, canopy, far);
   light = mix(vec3(0.07, 0.05, 0.03) * (sky_light.rgb + sun_light.rgb * (0.3 * lit)), light, smoothstep(0.0, 0.1, growth_here));
+  light += mix(vec3(0.10, 0.07, 0.045), tint_of(patch_at, 0.5), 0.5 * far * smoothstep(0.0, 0.1, growth_here)) * fire_light(place_m, vec3(0.0, 1.0, 0.0));
   color = vec4(dithered(seen(light, place_m), gl_FragCoord.xy), 1.0);
 }

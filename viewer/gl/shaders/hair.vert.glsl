@@ -43,6 +43,7 @@ void main() {
   shine *= shine;
   float deep = 0.25 + 0.75 * t;
   vec3 sum = albedo * soft_light(out_of_body) * 1.5 * deep;
+  sum += albedo * fire_light(place, out_of_body) * deep;
   sum += albedo * sun_light.rgb * 0.75 * across_sun * lit * deep;
   sum += sun_light.rgb * vec3(0.10, 0.085, 0.065) * shine * shine * lit * t;
   float rim = 1.0 - abs(dot(out_of_body, to_eye));

@@ -109,6 +109,7 @@ void main() {
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
   vec3 through = tint * vec3(1.25, 1.10, 0.75) * max(-to_sun_part, 0.14) * (0.50 + 1.35 * against * against);
   vec3 sum = face * soft_light(normal) * (0.55 + 0.45 * open);
+  sum += face * (fire_light(place, normal) + 0.4 * fire_light(place, -normal));
   float in_sun = mix(0.30, 1.0, sunlight_near(place + 0.25 * to_sun.xyz));
   sum += sun_light.rgb * in_sun * (face * max(to_sun_part, 0.0) * 0.75 + through) * (0.22 + 0.78 * open) * (0.42 + 0.58 * to_light);
   float shine = max(dot(normal, normalize(to_sun.xyz + to_eye)), 0.0);

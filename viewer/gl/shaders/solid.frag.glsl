@@ -10,6 +10,7 @@ void main() {
   facing *= dot(facing, from_eye) > 0.0 ? -1.0 : 1.0;
   vec3 sun = sun_light.rgb * mix(0.1, 1.0, sunlight_near(place_m + 0.06 * to_sun.xyz));
   vec3 light = tint * (soft_light(facing) + 0.85 * sun * max(dot(facing, to_sun.xyz), 0.0));
+  light += tint * fire_light(place_m, facing);
   float shine = max(dot(facing, normalize(to_sun.xyz - from_eye)), 0.0);
   shine *= shine;
   shine *= shine;

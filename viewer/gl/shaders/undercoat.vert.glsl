@@ -16,5 +16,5 @@ void main() {
   place -= out_of_body * (0.4 * disc_m);
   gl_Position = to_clip * vec4(place, 1.0);
   float lit = smoothstep(-0.35, 0.75, dot(out_of_body, to_sun.xyz));
-  shade = seen(tint_facing.rgb * 0.30 * (soft_light(out_of_body) * 0.6 + sun_light.rgb * 0.35 * lit), place);
+  shade = seen(tint_facing.rgb * 0.30 * (soft_light(out_of_body) * 0.6 + sun_light.rgb * 0.35 * lit + 0.5 * fire_light(place, out_of_body)), place);
 }

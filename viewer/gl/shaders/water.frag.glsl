@@ -26,5 +26,6 @@ void main() {
   float against = max(dot(from_eye, to_sun.xyz), 0.0);
   vec3 within = vec3(0.022, 0.073, 0.057) * sky_light.rgb + vec3(0.003, 0.020, 0.026) * sun_light.rgb * (sun + 0.7 * against * missing);
   vec3 light = mix(within, sky, mirrored) + sun_light.rgb * 1.3 * glint;
+  light += mirrored * fire_mirrored(place_m, up_ray) + (1.0 - mirrored) * vec3(0.022, 0.073, 0.057) * fire_light(place_m, up_facing);
   color = vec4(seen(light, place_m), 1.0);
 }

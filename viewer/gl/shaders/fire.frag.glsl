@@ -1,0 +1,65 @@
+// The body of a flame: the light of all its gas along the ray, which goes straight in the world and bends in the body, row
+// by row. The streamed heat says where it burns; noise that rises through it tears it into tongues, the more the higher.
+uniform sampler3D heat_tile;
+uniform sampler2D layer_rows;  // two texels a layer: FlameVolume::Layer
+uniform sampler2D noise_tile;
+uniform sampler2D ramp;        // 256 colours, sRGB, straight alpha
+uniform int steps;
+uniform vec2 size_m;           // its radius and its height at rest
+uniform vec2 risen;            // how far both noises have, in tiles
+uniform vec2 floor_m;          // no gas burns below the first height, nothing keeps it from burning above the second
+uniform float brightness;
+
+in vec3 place_m;
+in vec3 inside;
+out vec4 color;
+
+void main() {
+  vec3 ray = normalize(place_m - eye_m.xyz);
+  vec2 at_m = inside.xy;
+  float v = inside.z;
+  float y_m = place_m.y;
+  vec2 layers = vec2(textureSize(layer_rows, 0));
+  float chance = pixel_chance(gl_FragCoord.xy);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < steps; ++i) {
+    float layer = clamp(v, 0.0, 1.0) * (layers.y - 1.0) + 0.5;
+    vec4 row = textureLod(layer_rows, vec2(0.25, layer / layers.y), 0.0);    // to the top; half its side
+    vec4 slope = textureLod(layer_rows, vec2(0.75, layer / layers.y), 0.0);  // east, south; how they grow
+    float up = (ray.y + dot(slope.xy, ray.xz)) / max(row.y + dot(slope.xy, row.xz) - dot(slope.zw, at_m), 0.2 * size_m.y);
+    vec2 aside = ray.xz - row.xz * up;
+    // As long as a part of the body is thick, across it or along it.
+    float step_m = 2.0 / (float(steps) * max(length(aside) / row.w, 1.3 * abs(up)));
+    if (i == 0) {
+      at_m += aside * (step_m * chance);
+      v += up * (step_m * chance);
+      y_m += ray.y * (step_m * chance);
+    }
+
+    vec2 q = at_m / row.w;
+    if (dot(q, q) > 1.2 || v < -0.01 || v > 1.01) break;
+    float heat = textureLod(heat_tile, vec3(0.5 + 0.5 * q, layer / layers.y), 0.0).r;
+    if (heat > 0.03) {
+      // Two noises at right angles to each other, drawn out along the flame.
+      vec2 across = mat2(0.8, 0.6, -0.6, 0.8) * at_m / size_m.x;
+      float one = textureLod(noise_tile, vec2(0.46 * across.x + 0.14 * across.y, 0.26 * v - risen.x), 1.8).r;
+      float two = textureLod(noise_tile, vec2(0.54 * across.y - 0.12 * across.x + 0.25 * one, 0.36 * v - risen.y), 1.8).r;
+      float torn = 3.4 * (one + two - 1.0);
+      float level = heat - 0.30 - 0.75 * smoothstep(0.45, 1.0, v) + torn * (0.30 + 0.70 * min(v * 2.5, 1.0));
+      level -= 2.5 * smoothstep(floor_m.y, floor_m.x, y_m);
+      // It burns in sheets around what is hottest.
+      float thick = smoothstep(0.0, 0.30, level) * (1.0 - 0.60 * smoothstep(0.40, 1.0, level));
+      vec4 hot = textureLod(ramp, vec2((clamp(0.29 + 0.42 * level - 0.10 * v, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
+      sum += hot.rgb * hot.rgb * (thick * step_m);
+      // The blue of the root, where air still reaches the gas.
+      sum += vec3(0.004, 0.012, 0.06) * (step_m * thick * smoothstep(0.25, 0.08, v) * smoothstep(0.5, 0.0, level));
+    }
+    at_m += aside * step_m;
+    v += up * step_m;
+    y_m += ray.y * step_m;
+  }
+  // Never a saturated red (R / (R + G + B) of 0.8), whose flicker is the most harmful: orange at most.
+  vec3 value = finish(sum * (brightness / size_m.x));
+  value.g = max(value.g, 0.555 * value.r);
+  color = vec4(value, 0.0);
+}
