@@ -190,7 +190,7 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
       }
       // Nothing is cut off at the end of the layer.
       level *= std::min(1.0F, 8.0F * std::max(0.0F, 0.95F - at.radius));
-      *texel++ = static_cast<std::uint8_t>(255.0F * std::clamp(level, 0.0F, 1.0F) + 0.5F);
+      *texel++ = static_cast<std::uint8_t>(std::lrint(255.0F * std::clamp(level, 0.0F, 1.0F)));
     }
   }
   mean_heat_ = static_cast<float>(heat / static_cast<double>(layers_ * surface.columns));
@@ -213,7 +213,7 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
   };
   for (std::size_t ring = 0; ring < kHullRings; ++ring) {
     const float v = static_cast<float>(ring) / static_cast<float>(kHullRings - 1);
-    const auto at = static_cast<std::size_t>(v * layers + 0.5F);
+    const auto at = static_cast<std::size_t>(std::lrint(v * layers));
     const float half_m = out * rows_[at].half_m;
     for (std::size_t side = 0; side < kHullSides; ++side) {
       const float turn_rad = kTurn_rad * static_cast<float>(side) / static_cast<float>(kHullSides);

@@ -58,7 +58,8 @@ Heat heat_of(const Scene& scene) {
     heat.south_m += here * static_cast<double>(at.z_m);
     heat.mean += here;
   }
-  return {heat.east_m / heat.mean, heat.up_m / heat.mean, heat.south_m / heat.mean,
+  const double foot_m = static_cast<double>(std::get<pose::SurfaceSkeleton>(scene.skeleton()).rest_y_m.front());
+  return {heat.east_m / heat.mean, heat.up_m / heat.mean - foot_m, heat.south_m / heat.mean,
           heat.mean / static_cast<double>(points.size())};
 }
 
