@@ -31,9 +31,10 @@ GlTexture make_ripple_texture() {
     const double south = std::round(cycles * std::sin(2.0 * std::numbers::pi * way));
     const double whole = std::max(std::hypot(east, south), 1.0);
     for (std::size_t i = 0; i < kRippleTexels * kRippleTexels; ++i) {
+      const std::size_t column = i % kRippleTexels;
+      const std::size_t row = i / kRippleTexels;
       const double turn =
-          (east * static_cast<double>(i % kRippleTexels) + south * static_cast<double>(i / kRippleTexels)) /
-          static_cast<double>(kRippleTexels);
+          (east * static_cast<double>(column) + south * static_cast<double>(row)) / static_cast<double>(kRippleTexels);
       const double slope = wave_slope * std::cos(2.0 * std::numbers::pi * turn + phase);
       slopes[2 * i] += slope * east / whole;
       slopes[2 * i + 1] += slope * south / whole;

@@ -95,9 +95,9 @@ void main() {
   // How deep in the coat it is, and how far the light comes to it there: less from low above the skin.
   float sun_up = dot(out_of_body, to_sun.xyz);
   float deep = (1.0 - t * mix(0.8, 1.0, longer)) * (is_guard ? 0.85 : 1.0);
-  float lit = smoothstep(-0.30, 0.35, sun_up) * exp(-1.55 * deep / (0.35 + max(sun_up, 0.0)));
+  float lit = smoothstep(-0.30, 0.35, sun_up) * exp(-1.15 * deep / (0.35 + max(sun_up, 0.0)));
   lit *= mix(0.2, 1.0, sunlight_near(own_root + 0.15 * out_of_body));
-  float open_sky = 0.34 + 0.66 * (1.0 - deep) * (1.0 - deep) + 0.15 * (1.0 - deep);
+  float open_sky = 0.42 + 0.66 * (1.0 - deep) * (1.0 - deep) + 0.15 * (1.0 - deep);
 
   float along_sun = dot(along, to_sun.xyz);
   float across_sun = sqrt(max(1.0 - along_sun * along_sun, 0.0));

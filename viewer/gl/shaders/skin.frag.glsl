@@ -11,7 +11,7 @@ void main() {
   vec3 albedo = mix(vec3(0.33, 0.205, 0.115), vec3(0.62, 0.46, 0.30), wool);
   float lit = mix(0.25, 1.0, sunlight_near(place_m + 0.14 * facing)) * smoothstep(-0.1, 0.6, dot(facing, to_sun.xyz));
   // What comes down to it has been coloured by hairs.
-  vec3 light = albedo * (vec3(0.66, 0.53, 0.42) * soft_light(facing) + 0.42 * sun_light.rgb * lit);
+  vec3 light = albedo * (vec3(0.95, 0.76, 0.58) * soft_light(facing) + 0.62 * sun_light.rgb * lit);
   light += 0.5 * albedo * fire_light(place_m, facing);
   color = vec4(seen(light, place_m), 1.0);
 }
