@@ -98,10 +98,21 @@ enum class FoliageColor : std::uint8_t {
 };
 inline constexpr std::array<std::string_view, 4> kFoliageColorNames = {"green", "blossom", "autumn", "bare"};
 
+/// Where a tree is shown again: its grove. One value a copy in each vector. At most kMaxTreeCopies.
+struct TreeCopies {
+  std::vector<float> x_m, z_m;  ///< where the foot of the trunk stands, as high up as the tree's own
+  std::vector<float> turn_rad;  ///< clockwise from above, about the foot; the wind bends it as it does the tree
+  std::vector<float> scale;     ///< above 0
+
+  friend bool operator==(const TreeCopies&, const TreeCopies&) = default;
+};
+inline constexpr std::size_t kMaxTreeCopies = 255;
+
 /// Strands that grow on strands: level 0 stands on the ground. At most kMaxTreeLevels levels.
 struct TreeSkeleton {
   std::vector<TreeLevel> levels;
   FoliageColor foliage = FoliageColor::kGreen;
+  TreeCopies copies = {};
 
   friend bool operator==(const TreeSkeleton&, const TreeSkeleton&) = default;
 };

@@ -49,6 +49,9 @@ void place(const ScenePlacement& placement, pose::GridSkeleton& grid) noexcept {
 
 void place(const ScenePlacement& placement, pose::TreeSkeleton& tree) noexcept {
   for (pose::TreeLevel& level : tree.levels) place(placement, level.strands);
+  turn(placement, tree.copies.x_m, tree.copies.z_m);
+  move(placement.x_m, tree.copies.x_m);
+  move(placement.z_m, tree.copies.z_m);
 }
 
 void place(const ScenePlacement& placement, pose::SurfaceSkeleton& surface) noexcept {

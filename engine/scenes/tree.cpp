@@ -68,6 +68,9 @@ const std::array kTreeParameters = {
               {},
               "the colour of its leaves; bare: as in winter, with twigs in their place",
               pose::kFoliageColorNames},
+    Parameter{"grove", "", std::int64_t{1}, 1, 64,
+              "trees in all: the others are this one, turned and scaled; they cost the stream nothing"},
+    Parameter{"grove_radius", "m", 20.0, 1, 500, "how far from it they stand"},
     Parameter{"flexibility", "", 1.0, 0, 10,
               "how far wood bends in every wind: 2 bends and sways it twice as far as its species does, 0 not at all"},
     Parameter{"streamline_speed", "m/s", 6.0, 0.1, 60,
@@ -191,6 +194,7 @@ pose::TreeSkeleton placed_tree(const ParameterValues& values, const SceneSetup& 
                                        .seed = setup.seed});
   const auto* const color = std::ranges::find(pose::kFoliageColorNames, values.text("foliage"));
   tree.foliage = static_cast<pose::FoliageColor>(color - pose::kFoliageColorNames.begin());
+  tree.copies = grove_of(count("grove"), values.number("grove_radius"), setup.seed);
   place(setup.placement, tree);
   return tree;
 }

@@ -292,6 +292,23 @@ pose::TreeSkeleton make_tree(const TreeSpec& spec) {
   return Grower(spec).grow();
 }
 
+pose::TreeCopies grove_of(std::size_t trees, double radius_m, std::uint64_t seed) {
+  const math::RandomStream random(seed, math::stream_id("tree grove"));
+  const double spacing_m = radius_m / std::sqrt(static_cast<double>(trees));
+  pose::TreeCopies copies;
+  for (std::size_t i = 1; i < trees; ++i) {
+    const double around_rad = kGoldenAngle_rad * static_cast<double>(i) + 2.0 * kPi * random.uniform(0);
+    const double away_m = radius_m * std::sqrt(static_cast<double>(i) / static_cast<double>(trees - 1));
+    const double shifted_rad = 2.0 * kPi * random.uniform(4 * i);
+    const double shift_m = 0.3 * spacing_m * random.uniform(4 * i + 1);
+    copies.x_m.push_back(static_cast<float>(away_m * std::cos(around_rad) + shift_m * std::cos(shifted_rad)));
+    copies.z_m.push_back(static_cast<float>(away_m * std::sin(around_rad) + shift_m * std::sin(shifted_rad)));
+    copies.turn_rad.push_back(static_cast<float>(0.5 * kPi * static_cast<double>(i % 4)));
+    copies.scale.push_back(static_cast<float>(0.8 + 0.35 * random.uniform(4 * i + 2)));
+  }
+  return copies;
+}
+
 std::array<double, pose::kMaxTreeLevels> tree_levers_m(const pose::TreeSkeleton& tree) {
   std::array<double, pose::kMaxTreeLevels> largest_m = {};
   for (std::size_t top = 0; top < tree.levels.size(); ++top) {

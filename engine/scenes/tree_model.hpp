@@ -54,6 +54,11 @@ enum TreePart : std::size_t { kTrunk, kLimbs, kTwigs, kLeaves, kTreePartCount };
 /// plant form"). Deterministic by seed. Allocates; may throw std::bad_alloc. Thread-safe: yes. Realtime-safe: no.
 pose::TreeSkeleton make_tree(const TreeSpec& spec);
 
+/// Where the other trees of a grove of `trees` in all stand around one at the world's origin: evenly over a disc
+/// (sunflower: Vogel 1979), shifted at random, turned by quarters, 0.8 to 1.15 times as large. Deterministic by seed.
+/// May throw std::bad_alloc. Thread-safe: yes. Realtime-safe: no.
+pose::TreeCopies grove_of(std::size_t trees, double radius_m, std::uint64_t seed);
+
 /// How far a joint may be moved by the bends of each level: if no bend of level l changes by more than d[l] (as a
 /// vector, rad), no joint moves farther than the sum of lever[l] d[l], metres.
 ///

@@ -15,6 +15,7 @@ static_assert(std::endian::native == std::endian::little);
 
 // Far beyond every real model, and small enough that sums and products of them stay finite.
 constexpr float kMaxExtent_m = 1e6f;
+constexpr float kMaxTreeScale = 100.0f;
 constexpr float kMaxAngle_rad = 2.0f * std::numbers::pi_v<float>;
 constexpr float kMaxBendStep_rad = 1e-3f;
 constexpr float kMaxWayStep_m = 1.0f;
@@ -146,6 +147,17 @@ bool read(const fb::TreeLevel& from, std::span<const pose::TreeLevel> before, po
          read_indices(from.parent_link(), all, parents.links_per_strand, to.parent_link);
 }
 
+bool read(const fb::TreeSkeleton& from, pose::TreeCopies& to) {
+  const std::size_t count = size_of(from.copy_x_m());
+  if (count > pose::kMaxTreeCopies) return false;
+  const Layout all{.columns = count, .rows = 1, .stride = count};
+  return read_numbers(from.copy_x_m(), all, kMaxExtent_m, to.x_m) &&
+         read_numbers(from.copy_z_m(), all, kMaxExtent_m, to.z_m) &&
+         read_numbers(from.copy_turn_rad(), all, kMaxAngle_rad, to.turn_rad) &&
+         read_numbers(from.copy_scale(), all, kMaxTreeScale, to.scale) &&
+         std::all_of(to.scale.begin(), to.scale.end(), [](float scale) { return scale > 0.0f; });
+}
+
 bool read(const fb::TreeSkeleton& from, pose::TreeSkeleton& to) {
   const std::size_t count = size_of(from.levels());
   if (count < 1 || count > pose::kMaxTreeLevels) return false;
@@ -160,7 +172,7 @@ bool read(const fb::TreeSkeleton& from, pose::TreeSkeleton& to) {
     if (room > kMaxStrands) return false;
     to.levels.push_back(std::move(level));
   }
-  return true;
+  return read(from, to.copies);
 }
 
 bool read(const fb::SurfaceSkeleton& from, pose::SurfaceSkeleton& to) {

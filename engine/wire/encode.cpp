@@ -77,7 +77,17 @@ flatbuffers::Offset<fb::TreeSkeleton> add_skeleton(Builder& builder, const pose:
                                          parent_link, level.is_turned_by_block, level.is_leaves, base_radius,
                                          tip_radius));
   }
-  return fb::CreateTreeSkeleton(builder, builder.CreateVector(levels), static_cast<fb::FoliageColor>(skeleton.foliage));
+  const auto all_levels = builder.CreateVector(levels);
+  const pose::TreeCopies& copies = skeleton.copies;
+  if (copies.x_m.empty()) {
+    return fb::CreateTreeSkeleton(builder, all_levels, static_cast<fb::FoliageColor>(skeleton.foliage));
+  }
+  const auto x = add_values(builder, copies.x_m, copies.x_m.size());
+  const auto z = add_values(builder, copies.z_m, copies.z_m.size());
+  const auto turn = add_values(builder, copies.turn_rad, copies.turn_rad.size());
+  const auto scale = add_values(builder, copies.scale, copies.scale.size());
+  return fb::CreateTreeSkeleton(builder, all_levels, static_cast<fb::FoliageColor>(skeleton.foliage), x, z, turn,
+                                scale);
 }
 
 flatbuffers::Offset<fb::SurfaceSkeleton> add_skeleton(Builder& builder, const pose::SurfaceSkeleton& skeleton) {

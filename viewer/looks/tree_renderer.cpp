@@ -17,14 +17,14 @@ GLsizei sides_of(std::size_t level) {
 meshes::SprayDetail detail_of(look::Quality quality) {
   switch (quality) {
     case look::Quality::kLow:
-      return {.leaf_px = 7.0F, .largest = 5.0F, .shaped_leaf_px = 60.0F};
+      return {.leaf_px = 5.0F, .largest = 4.0F, .shaped_leaf_px = 60.0F};
     case look::Quality::kMedium:
-      return {.leaf_px = 5.5F, .largest = 4.0F, .shaped_leaf_px = 40.0F};
+      return {.leaf_px = 4.5F, .largest = 3.5F, .shaped_leaf_px = 40.0F};
     case look::Quality::kHigh:
     case look::Quality::kAuto:
       break;
   }
-  return {.leaf_px = 4.0F, .largest = 3.0F, .shaped_leaf_px = 30.0F};
+  return {.leaf_px = 3.5F, .largest = 3.0F, .shaped_leaf_px = 30.0F};
 }
 
 /// Shadows are soft, and hide what a leaf is like.
@@ -95,14 +95,29 @@ meshes::Bounds crown_bounds(const pose::TreeSkeleton& tree) {
   return meshes::bounds_of(tree);
 }
 
-/// Where the trees of a skeleton stand: the streamed one.
+/// Where the trees of a skeleton stand: the streamed one, and its copies.
 std::vector<meshes::TreePlace> places_of(const pose::TreeSkeleton& tree) {
   meshes::TreePlace own;
   if (!tree.levels.empty() && tree.levels[0].strands.strand_count > 0) {
     const pose::StrandSkeleton& trunk = tree.levels[0].strands;
     own.from_m = own.to_m = glm::vec3(trunk.root_x_m[0], trunk.root_y_m[0], trunk.root_z_m[0]);
   }
-  return {own};
+  std::vector<meshes::TreePlace> places{own};
+  for (std::size_t i = 0; i < tree.copies.x_m.size(); ++i) {
+    places.push_back({.from_m = own.from_m,
+                      .to_m = {tree.copies.x_m[i], own.from_m.y, tree.copies.z_m[i]},
+                      .cosine = std::cos(tree.copies.turn_rad[i]),
+                      .sine = std::sin(tree.copies.turn_rad[i]),
+                      .scale = tree.copies.scale[i]});
+  }
+  return places;
+}
+
+bool fits(const pose::TreePose& pose, const pose::TreeSkeleton& tree) {
+  return std::ranges::equal(pose.levels, tree.levels, [](const pose::StrandPose& bends, const pose::TreeLevel& level) {
+    return bends.bend_east_rad.size() == level.strands.padded_count() &&
+           bends.bend_south_rad.size() == level.strands.padded_count();
+  });
 }
 
 void set_int(const gl::GlProgram& program, const char* name, std::size_t value) {
@@ -125,22 +140,22 @@ void set_place(const gl::GlProgram& program, const meshes::TreePlace& place) {
 TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality)
     : tree_(&tree),
       crown_bounds_(crown_bounds(tree)),
-      places_(places_of(tree)),
-      joints_(tree),
       detail_(detail_of(quality)),
       bark_(gl::link_program("bark", gl::shaders::kBarkVert, gl::shaders::kBarkFrag)),
       leaf_(gl::link_program("leaf", gl::shaders::kLeafVert, gl::shaders::kShadeFrag)),
       contact_(gl::link_program("contact", gl::shaders::kContactVert, gl::shaders::kContactFrag)) {
   for (std::size_t i = 0; i < tree.levels.size(); ++i) {
     if (tree.levels[i].is_leaves) {
-      Foliage& foliage = *foliages_.emplace_back(std::make_unique<Foliage>(Foliage{.crown = meshes::Crown(tree, i)}));
-      glBindBuffer(GL_ARRAY_BUFFER, foliage.place_buffer.name());
-      make_spray(foliage.near_spray, meshes::near_spray(foliage.crown.shape()));
-      make_spray(foliage.far_spray, meshes::far_spray(foliage.crown.shape()));
+      Foliage& foliage = *foliages_.emplace_back(std::make_unique<Foliage>());
+      foliage.level = i;
+      foliage.shape = meshes::spray_shape(tree);
+      make_spray(foliage.near_spray, meshes::near_spray(foliage.shape));
+      make_spray(foliage.far_spray, meshes::far_spray(foliage.shape));
       continue;
     }
-    Wood& wood = *woods_.emplace_back(
-        std::make_unique<Wood>(Wood{.level = i, .sides = sides_of(i), .branches = meshes::Branches(tree, i)}));
+    Wood& wood = *woods_.emplace_back(std::make_unique<Wood>());
+    wood.level = i;
+    wood.sides = sides_of(i);
     glBindVertexArray(wood.array.name());
     glBindBuffer(GL_ARRAY_BUFFER, wood.part_buffer.name());
     enable_instances(5);
@@ -148,7 +163,38 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
          tube_triangles(tree.levels[i].strands.links_per_strand, wood.sides));
   }
   gl::set_sampler(bark_, "joints", 0);
-  glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());  // creates the buffer, even if no pose is ever taken
+  for (const meshes::TreePlace& place : places_of(tree)) add_place(place);
+}
+
+void TreeRenderer::add_place(const meshes::TreePlace& place) {
+  constexpr float kAlike = 1e-4F;
+  const auto is_alike = [&](const std::unique_ptr<Alike>& alike) {
+    return std::abs(alike->cosine - place.cosine) < kAlike && std::abs(alike->sine - place.sine) < kAlike;
+  };
+  const auto same = std::find_if(trees_.begin(), trees_.end(), is_alike);
+  if (same != trees_.end()) {
+    (*same)->places.push_back(place);
+    return;
+  }
+  Alike& alike = *trees_.emplace_back(std::make_unique<Alike>(Alike{.cosine = place.cosine,
+                                                                    .sine = place.sine,
+                                                                    .places = {place},
+                                                                    .bends = {},
+                                                                    .joints = pose::TreeJoints(*tree_),
+                                                                    .branches = {},
+                                                                    .crowns = {}}));
+  for (const pose::TreeLevel& level : tree_->levels) {
+    const std::vector<float> rest(level.strands.padded_count(), 0.0F);
+    alike.bends.levels.push_back({.bend_east_rad = rest, .bend_south_rad = rest});
+  }
+  const Alike& first = *trees_.front();
+  for (std::size_t i = 0; i < woods_.size(); ++i) {
+    alike.branches.push_back(&first == &alike ? meshes::Branches(*tree_, woods_[i]->level) : first.branches[i]);
+  }
+  for (std::size_t i = 0; i < foliages_.size(); ++i) {
+    alike.crowns.push_back(&first == &alike ? meshes::Crown(*tree_, foliages_[i]->level) : first.crowns[i]);
+  }
+  glBindBuffer(GL_TEXTURE_BUFFER, alike.joint_buffer.name());  // creates the buffer, even if no pose is ever taken
 }
 
 void TreeRenderer::make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh) {
@@ -167,17 +213,31 @@ void TreeRenderer::make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh) 
 
 void TreeRenderer::move_to(const pose::Pose& pose) {
   const auto* const bends = std::get_if<pose::TreePose>(&pose);
-  const pose::TreeKinematicsJob job{.skeleton = tree_, .pose = bends, .row = {}, .joints = &joints_};
+  if (bends == nullptr || !fits(*bends, *tree_)) return;
+  for (const auto& alike : trees_) move(*alike, *bends);
+}
+
+void TreeRenderer::move(Alike& alike, const pose::TreePose& bends) {
+  // The tree is turned after it is bent: so that it bends to where the wind goes, bends are turned back before.
+  for (std::size_t level = 0; level < bends.levels.size(); ++level) {
+    const pose::StrandPose& from = bends.levels[level];
+    pose::StrandPose& to = alike.bends.levels[level];
+    for (std::size_t i = 0; i < from.bend_east_rad.size(); ++i) {
+      to.bend_east_rad[i] = alike.cosine * from.bend_east_rad[i] + alike.sine * from.bend_south_rad[i];
+      to.bend_south_rad[i] = alike.cosine * from.bend_south_rad[i] - alike.sine * from.bend_east_rad[i];
+    }
+  }
+  const pose::TreeKinematicsJob job{.skeleton = tree_, .pose = &alike.bends, .row = {}, .joints = &alike.joints};
   if (job.run() != pose::TreeKinematicsJob::Problem::kNone) return;
-  for (const auto& foliage : foliages_) foliage->crown.move_to(joints_);
+  for (meshes::Crown& crown : alike.crowns) crown.move_to(alike.joints);
+  for (meshes::Branches& branches : alike.branches) branches.move_to(alike.joints);
 
   // The wood's joints, level behind level, in a new buffer each time, since the GPU may still read the old one.
-  glBindBuffer(GL_TEXTURE_BUFFER, joint_buffer_.name());
+  glBindBuffer(GL_TEXTURE_BUFFER, alike.joint_buffer.name());
   const std::size_t count = meshes::first_joint_at(*tree_, tree_->levels.size());
   glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(count * sizeof(float)), nullptr, GL_STREAM_DRAW);
   for (const auto& wood : woods_) {
-    wood->branches.move_to(joints_);
-    const std::span<const float> joints = std::as_const(joints_).level(wood->level).data();
+    const std::span<const float> joints = std::as_const(alike.joints).level(wood->level).data();
     glBufferSubData(GL_TEXTURE_BUFFER,
                     static_cast<GLintptr>(meshes::first_joint_at(*tree_, wood->level) * sizeof(float)),
                     static_cast<GLsizeiptr>(joints.size_bytes()), joints.data());
@@ -195,36 +255,45 @@ void TreeRenderer::draw_shadow(const meshes::View& view) {
 
 void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail& detail) {
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_BUFFER, joint_texture_.name());
-  glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, joint_buffer_.name());
-  for (const meshes::TreePlace& place : places_) {
-    for (const auto& wood : woods_) draw_branches(*wood, view, place);
-    for (const auto& foliage : foliages_) draw_sprays(*foliage, view, detail, place);
+  for (const auto& alike : trees_) {
+    glBindTexture(GL_TEXTURE_BUFFER, alike->joint_texture.name());
+    glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, alike->joint_buffer.name());
+    for (const meshes::TreePlace& place : alike->places) {
+      for (std::size_t i = 0; i < woods_.size(); ++i) {
+        alike->branches[i].choose(view, place);
+        draw_branches(*woods_[i], alike->branches[i], place);
+      }
+      for (std::size_t i = 0; i < foliages_.size(); ++i) {
+        alike->crowns[i].choose(view, detail, place);
+        draw_sprays(*foliages_[i], alike->crowns[i]);
+      }
+    }
   }
 }
 
 void TreeRenderer::draw_light() {
-  if (woods_.empty() || woods_[0]->level != 0) return;
+  if (woods_.empty() || woods_[0]->level != 0 || tree_->levels[0].strands.strand_count == 0) return;
   glEnable(GL_BLEND);
   glBlendFunc(GL_DST_COLOR, GL_ZERO);
   glDepthMask(GL_FALSE);
   glEnable(GL_POLYGON_OFFSET_FILL);  // in front of the ground
   glPolygonOffset(-2.0F, -2.0F);
   glUseProgram(contact_.name());
-  for (const meshes::TreePlace& place : places_) {
-    set_place(contact_, place);
-    glUniform1f(glGetUniformLocation(contact_.name(), "radius_m"), tree_->levels[0].base_radius_m[0]);
-    glBindVertexArray(woods_[0]->array.name());
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  glUniform1f(glGetUniformLocation(contact_.name(), "radius_m"), tree_->levels[0].base_radius_m[0]);
+  glBindVertexArray(woods_[0]->array.name());
+  for (const auto& alike : trees_) {
+    for (const meshes::TreePlace& place : alike->places) {
+      set_place(contact_, place);
+      glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    }
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
 }
 
-void TreeRenderer::draw_branches(Wood& wood, const meshes::View& view, const meshes::TreePlace& place) {
-  wood.branches.choose(view, place);
-  if (wood.branches.parts().empty()) return;
+void TreeRenderer::draw_branches(const Wood& wood, const meshes::Branches& branches, const meshes::TreePlace& place) {
+  if (branches.parts().empty()) return;
   glUseProgram(bark_.name());
   set_place(bark_, place);
   set_vec3(bark_, "crown_middle_m", place.moved((crown_bounds_.low_m + crown_bounds_.high_m) / 2.0F));
@@ -233,8 +302,8 @@ void TreeRenderer::draw_branches(Wood& wood, const meshes::View& view, const mes
   set_int(bark_, "links", tree_->levels[wood.level].strands.links_per_strand);
   set_int(bark_, "sides", static_cast<std::size_t>(wood.sides));
   glBindVertexArray(wood.array.name());
-  gl::stream_to(GL_ARRAY_BUFFER, wood.part_buffer, wood.branches.parts());
-  for (const meshes::BranchGroup& group : wood.branches.groups()) {
+  gl::stream_to(GL_ARRAY_BUFFER, wood.part_buffer, branches.parts());
+  for (const meshes::BranchGroup& group : branches.groups()) {
     if (group.count == 0) continue;
     set_int(bark_, "rings", group.rings);
     describe_parts(group.first);
@@ -243,14 +312,12 @@ void TreeRenderer::draw_branches(Wood& wood, const meshes::View& view, const mes
   }
 }
 
-void TreeRenderer::draw_sprays(Foliage& foliage, const meshes::View& view, const meshes::SprayDetail& detail,
-                               const meshes::TreePlace& place) {
-  foliage.crown.choose(view, detail, place);
-  if (foliage.crown.places().empty()) return;
+void TreeRenderer::draw_sprays(const Foliage& foliage, const meshes::Crown& crown) {
+  if (crown.places().empty()) return;
   glUseProgram(leaf_.name());
-  set_int(leaf_, "kind", static_cast<std::size_t>(foliage.crown.shape().kind));
-  gl::stream_to(GL_ARRAY_BUFFER, foliage.place_buffer, foliage.crown.places());
-  for (const meshes::SprayGroup& group : foliage.crown.groups()) {
+  set_int(leaf_, "kind", static_cast<std::size_t>(foliage.shape.kind));
+  gl::stream_to(GL_ARRAY_BUFFER, foliage.place_buffer, crown.places());
+  for (const meshes::SprayGroup& group : crown.groups()) {
     if (group.count == 0) continue;
     const SprayOnGpu& spray = group.is_near ? foliage.near_spray : foliage.far_spray;
     glBindVertexArray(spray.array.name());

@@ -13,8 +13,8 @@
 
 namespace yuragi::viewer::looks {
 
-/// Draws a tree: tapering branches with bark, and sprays of leaves, flowers or bare twigs. Each is as fine as the
-/// picture and the quality need.
+/// Draws a tree and its grove: tapering branches with bark, and sprays of leaves, flowers or bare twigs. Each is as
+/// fine as the picture and the quality need.
 class TreeRenderer : public SceneRenderer {
  public:
   /// `tree` must outlive this.
@@ -32,7 +32,6 @@ class TreeRenderer : public SceneRenderer {
   struct Wood {
     std::size_t level = 0;
     GLsizei sides = 0;
-    meshes::Branches branches;
     gl::GlBuffer part_buffer = {};
     gl::GlBuffer index_buffer = {};  // the triangles of a tube, ring behind ring
     gl::GlVertexArray array = {};
@@ -49,30 +48,42 @@ class TreeRenderer : public SceneRenderer {
 
   /// A level of leaves.
   struct Foliage {
-    meshes::Crown crown;
+    std::size_t level = 0;
+    meshes::SprayShape shape = {};
     gl::GlBuffer place_buffer = {};
     SprayOnGpu near_spray = {};
     SprayOnGpu far_spray = {};
   };
 
+  /// The trees that are turned alike: those have the same joints, since the wind bends all toward the same side.
+  struct Alike {
+    float cosine = 1.0F;
+    float sine = 0.0F;
+    std::vector<meshes::TreePlace> places;
+    pose::TreePose bends;  // turned back
+    pose::TreeJoints joints;
+    std::vector<meshes::Branches> branches;  // of woods_
+    std::vector<meshes::Crown> crowns;       // of foliages_
+    gl::GlBuffer joint_buffer = {};
+    gl::GlTexture joint_texture = {};
+  };
+
+  void add_place(const meshes::TreePlace& place);
+  void move(Alike& alike, const pose::TreePose& bends);
   static void make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh);
   void draw_all(const meshes::View& view, const meshes::SprayDetail& detail);
-  void draw_branches(Wood& wood, const meshes::View& view, const meshes::TreePlace& place);
-  void draw_sprays(Foliage& foliage, const meshes::View& view, const meshes::SprayDetail& detail,
-                   const meshes::TreePlace& place);
+  void draw_branches(const Wood& wood, const meshes::Branches& branches, const meshes::TreePlace& place);
+  void draw_sprays(const Foliage& foliage, const meshes::Crown& crown);
 
   const pose::TreeSkeleton* tree_;
   meshes::Bounds crown_bounds_;  // of the leaves, or of all where there are none
-  std::vector<meshes::TreePlace> places_;
-  pose::TreeJoints joints_;
   std::vector<std::unique_ptr<Wood>> woods_;
   std::vector<std::unique_ptr<Foliage>> foliages_;
   meshes::SprayDetail detail_;
   gl::GlProgram bark_;
   gl::GlProgram leaf_;
   gl::GlProgram contact_;
-  gl::GlBuffer joint_buffer_;
-  gl::GlTexture joint_texture_;
+  std::vector<std::unique_ptr<Alike>> trees_;  // the streamed one is the first of the first
 };
 
 }  // namespace yuragi::viewer::looks

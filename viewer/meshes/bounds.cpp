@@ -92,7 +92,21 @@ Bounds bounds_of(const pose::TreeSkeleton& tree) {
       is_empty = false;
     }
   }
-  return is_empty ? Bounds{} : bounds;
+  if (is_empty) return {};
+  // A copy may be turned to any side of its foot.
+  const pose::StrandSkeleton& trunk = tree.levels.front().strands;
+  const glm::vec3 foot = trunk.strand_count > 0 ? glm::vec3(trunk.root_x_m[0], trunk.root_y_m[0], trunk.root_z_m[0])
+                                                : (bounds.low_m + bounds.high_m) / 2.0F;
+  const glm::vec3 reach_m = glm::max(bounds.high_m - foot, foot - bounds.low_m);
+  const float aside_m = std::max(reach_m.x, reach_m.z);
+  const float up_m = bounds.high_m.y - foot.y;
+  for (std::size_t i = 0; i < tree.copies.x_m.size(); ++i) {
+    const glm::vec3 at(tree.copies.x_m[i], foot.y, tree.copies.z_m[i]);
+    const float scale = tree.copies.scale[i];
+    bounds = united(bounds,
+                    {at - scale * glm::vec3(aside_m, 0.0F, aside_m), at + scale * glm::vec3(aside_m, up_m, aside_m)});
+  }
+  return bounds;
 }
 
 Bounds bounds_of(const pose::SurfaceSkeleton& surface) {

@@ -161,6 +161,23 @@ TEST(TreeModelTest, SizeIsAllLengths) {
   }
 }
 
+TEST(TreeModelTest, AGrovesTreesStandApartAndWithinItsRadius) {
+  EXPECT_TRUE(grove_of(1, 20.0, 1).x_m.empty());
+  const pose::TreeCopies grove = grove_of(12, 30.0, 1);
+  ASSERT_EQ(grove.x_m.size(), 11U);
+  EXPECT_EQ(grove, grove_of(12, 30.0, 1));
+  EXPECT_NE(grove, grove_of(12, 30.0, 2));
+  for (std::size_t i = 0; i < grove.x_m.size(); ++i) {
+    EXPECT_LE(std::hypot(grove.x_m[i], grove.z_m[i]), 30.0F + 0.3F * 30.0F / std::sqrt(12.0F));
+    EXPECT_GE(grove.scale[i], 0.8F);
+    EXPECT_LE(grove.scale[i], 1.15F);
+    EXPECT_GT(std::hypot(grove.x_m[i], grove.z_m[i]), 3.0F) << "the tree itself stands in the middle";
+    for (std::size_t k = 0; k < i; ++k) {
+      EXPECT_GT(std::hypot(grove.x_m[i] - grove.x_m[k], grove.z_m[i] - grove.z_m[k]), 3.0F);
+    }
+  }
+}
+
 TEST(TreeModelTest, TheSameSeedGivesTheSameTreeAndAnotherSeedAnother) {
   const pose::TreeSkeleton tree = make_tree(spec_of("cherry", 4));
   const pose::TreeSkeleton same = make_tree(spec_of("cherry", 4));

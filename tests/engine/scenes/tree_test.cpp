@@ -104,6 +104,19 @@ TEST(TreeTest, ItsFoliageIsGreenUnlessAskedFor) {
   }
 }
 
+TEST(TreeTest, AGroveIsPlacedWithItsTreeAndMovesNothing) {
+  EXPECT_TRUE(tree_of(*tree_scene(little())).copies.x_m.empty());
+  const ParameterValues::Map grove = little("cherry", {{"grove", std::int64_t{7}}, {"grove_radius", 25.0}});
+  const auto here = tree_scene(grove);
+  const auto there = tree_scene(grove, {.seed = 1, .placement = {.x_m = 100.0, .z_m = -50.0, .heading_deg = 90.0}});
+  ASSERT_EQ(tree_of(*here).copies.x_m.size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(tree_of(*there).copies.x_m[i], 100.0F - tree_of(*here).copies.z_m[i], 1e-4F);
+    EXPECT_NEAR(tree_of(*there).copies.z_m[i], -50.0F + tree_of(*here).copies.x_m[i], 1e-4F);
+  }
+  EXPECT_EQ(pose::node_count(here->skeleton()), pose::node_count(tree_scene(little())->skeleton()));
+}
+
 TEST(TreeTest, HasThePapers105536NodesByDefaultWhateverItsSpecies) {
   for (const std::string_view species : kTreeSpeciesNames) {
     EXPECT_EQ(pose::node_count(tree_scene({{"species", std::string(species)}})->skeleton()), 105'536U);

@@ -184,6 +184,18 @@ TEST(HostileBytes, TreesOutOfBoundsAreRefused) {
       [](auto& s) { s.levels[1].strands.links_per_strand = 0; },
       [](auto& s) { s.levels[1].base_radius_m[0] = -1.0f; },
       [](auto& s) { s.levels[2].tip_radius_m[0] = kInfinity; },
+      [](auto& s) { s.copies.x_m[0] = kNan; },
+      [](auto& s) { s.copies.z_m[1] = kInfinity; },
+      [](auto& s) { s.copies.turn_rad[0] = 100.0f; },
+      [](auto& s) { s.copies.scale[0] = 0.0f; },
+      [](auto& s) { s.copies.scale[1] = 1e3f; },
+      [](auto& s) { s.copies.scale.pop_back(); },
+      [](auto& s) { s.copies.x_m.pop_back(); },
+      [](auto& s) {
+        for (auto* values : {&s.copies.x_m, &s.copies.z_m, &s.copies.turn_rad, &s.copies.scale}) {
+          values->assign(pose::kMaxTreeCopies + 1, 1.0f);
+        }
+      },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const auto result = kinds_with<pose::TreeSkeleton>(2, changes[i]);

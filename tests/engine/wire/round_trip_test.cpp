@@ -130,6 +130,7 @@ TEST(WireRoundTrip, SkeletonsOfAllKindsComeBackBitForBitAndPadded) {
   const auto& tree = std::get<pose::TreeSkeleton>(got.scenes[2].skeleton);
   const pose::TreeSkeleton sent_tree = samples::tree();
   EXPECT_EQ(tree.foliage, pose::FoliageColor::kAutumn);
+  EXPECT_EQ(tree.copies, sent_tree.copies);
   ASSERT_EQ(tree.levels.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const pose::TreeLevel& a = sent_tree.levels[i];

@@ -114,6 +114,7 @@ inline pose::TreeSkeleton tree() {
     tree.levels.push_back(std::move(here));
   }
   tree.foliage = pose::FoliageColor::kAutumn;
+  tree.copies = {.x_m = {10.0f, -7.5f}, .z_m = {3.0f, 4.0f}, .turn_rad = {0.0f, 1.5f}, .scale = {1.0f, 0.75f}};
   return tree;
 }
 

@@ -363,6 +363,24 @@ TEST_F(StageTest, ThrowsShadowsOnTheGround) {
   }
 }
 
+TEST_F(StageTest, ShowsATreesGroveAndItsShadows) {
+  const wire::SceneModel alone = test_model("tree");
+  wire::SceneModel grove = alone;
+  auto& copies = std::get<pose::TreeSkeleton>(grove.skeleton).copies;
+  copies = {.x_m = {12.0F}, .z_m = {0.0F}, .turn_rad = {1.5F}, .scale = {1.0F}};
+  for (const look::Quality quality : {look::Quality::kLow, look::Quality::kHigh}) {
+    stage_->set_quality(quality);
+    show({alone});
+    camera_.frame({{12.0, 1.5, 0.0}, 0.0, 20.0, 9.0});
+    const Pixels without = draw(0.0, 1.0F);
+    show({grove});
+    camera_.frame({{12.0, 1.5, 0.0}, 0.0, 20.0, 9.0});
+    const Pixels with = draw(0.0, 1.0F);
+    EXPECT_GT(changed(without, with), 500U) << name_of(quality);
+    EXPECT_GT(changed(with, draw(3.0, 1.0F)), 100U) << "it moves";
+  }
+}
+
 TEST_F(StageTest, IsDarkerByNightThanAtNoonAndShowsBoth) {
   show({test_model("tree")});
   const auto brightness = [&](double sun_height_deg) {

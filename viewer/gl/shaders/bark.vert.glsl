@@ -19,7 +19,7 @@ out vec3 tint;
 out vec2 bark_m;  // position around the branch and along it
 out float above_foot_m;
 
-vec3 turned(vec3 v) { return vec3(place_turn.x * v.x + place_turn.y * v.z, v.y, place_turn.x * v.z - place_turn.y * v.x); }
+vec3 turned(vec3 v) { return vec3(place_turn.x * v.x - place_turn.y * v.z, v.y, place_turn.y * v.x + place_turn.x * v.z); }
 
 void main() {
   int ring = gl_VertexID / (sides + 1);
