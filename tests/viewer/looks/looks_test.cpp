@@ -175,6 +175,46 @@ TEST_F(StageTest, CrossFadesFromOneCameraToAnotherAsTheirLightsMix) {
   EXPECT_EQ(draw(0.3, 1.0F), now);
 }
 
+/// The mean of a channel over one of 4 x 3 fields of a picture.
+double mean_of(const Pixels& pixels, std::size_t column, std::size_t row) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (std::size_t y = row * kHeight_px / 3; y < (row + 1) * kHeight_px / 3; ++y) {
+    for (std::size_t x = column * kWidth_px / 4; x < (column + 1) * kWidth_px / 4; ++x) {
+      sum += pixels[3 * (y * kWidth_px + x) + 1];
+      ++count;
+    }
+  }
+  return sum / static_cast<double>(count);
+}
+
+TEST_F(StageTest, APictureOfFewerPixelsIsTheSameAndFillsTheWhole) {
+  show(test_garden());
+  const Pixels whole = draw(0.5, 1.0F);
+  target_->set_drawn_side(0.5F);
+  EXPECT_EQ(target_->drawn_width_px(), kWidth_px / 2);
+  EXPECT_EQ(target_->width_px(), kWidth_px);
+  const Pixels half = draw(0.5, 1.0F);
+  EXPECT_NE(half, whole);
+  // No blade is thinner than a pixel: of larger ones the grass is a little lighter.
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 4; ++column) {
+      EXPECT_NEAR(mean_of(half, column, row), mean_of(whole, column, row), 10.0) << column << " " << row;
+    }
+  }
+  target_->set_drawn_side(1.0F);
+  EXPECT_EQ(draw(0.5, 1.0F), whole);
+}
+
+TEST_F(StageTest, DrawsFewerBladesWhereThatIsAsked) {
+  show({test_model("grass")});
+  const Pixels all = draw(0.5, 1.0F);
+  stage_->set_blade_share(0.3F);
+  EXPECT_GT(changed(draw(0.5, 1.0F), all), 200U);
+  stage_->set_blade_share(1.0F);
+  EXPECT_EQ(draw(0.5, 1.0F), all);
+}
+
 TEST_F(StageTest, DrawsHiddenScenesNotAtAll) {
   show(test_garden());
   const Pixels empty = draw(0.5, 0.0F);
