@@ -234,7 +234,7 @@ void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_s
   // What stands on a floor is blown out over it.
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!casts(scene)) continue;
-    if (const auto floor = views_[scene]->renderer->floor()) casters = united(*casters, bounds_of(*floor));
+    if (const auto floor = views_[scene]->renderer->floor()) casters = united(*casters, meshes::bounds_of(*floor));
   }
   const meshes::View shadows = meshes::shadow_view(*casters, to_sun, shadow_map_->texels());
   view_buffer_.set(shadows);
