@@ -78,11 +78,8 @@ Landscape::Landscape()
     glBindVertexArray(ranges_.at(range).array.name());
     glBindBuffer(GL_ARRAY_BUFFER, ranges_.at(range).corners.name());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(std::span(walls).size_bytes()), walls.data(), GL_STATIC_DRAW);
-    constexpr GLsizei stride = sizeof(meshes::FarCorner);
     glEnableVertexAttribArray(0);
-    glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, stride, nullptr);
-    glEnableVertexAttribArray(1);
-    glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, stride, reinterpret_cast<const void*>(sizeof(glm::vec3)));
+    glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(meshes::FarCorner), nullptr);
   }
   glBindVertexArray(0);
 }

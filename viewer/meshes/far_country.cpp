@@ -110,8 +110,6 @@ std::vector<FarCorner> far_corners(std::size_t range) {
     corners[i].top_m = {std::sin(bearing) * distance_m, outline.land_m(turn) + outline.trees_m(turn),
                         -std::cos(bearing) * distance_m};
     corners[i].along_m = turn * around_m;
-    corners[i].slope =
-        (outline.land_m(turn + 4.0F * step) - outline.land_m(turn - 4.0F * step)) / (8.0F * step * around_m);
   }
   std::copy_n(corners.begin(), corners.size() - kFarCorners, corners.begin() + kFarCorners);
   return corners;

@@ -27,7 +27,6 @@ inline constexpr std::array<FarRange, 5> kFarRanges{{{580.0F, 170.0F, 0.0F, 13.0
 struct FarCorner {
   glm::vec3 top_m{0.0F};
   float along_m = 0.0F;  ///< on the way around, from north over east
-  float slope = 0.0F;    ///< of the land's outline, in that direction
 };
 
 inline constexpr int kFarCorners = 8640;  ///< around the circle

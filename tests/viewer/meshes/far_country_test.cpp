@@ -56,7 +56,6 @@ TEST(FarCountry, StandsBehindOneAnotherAndOnTheGround) {
       farthest_m = std::max(farthest_m, distance_m);
       ASSERT_GE(corner.top_m.y, 0.0F);
       ASSERT_LT(corner.top_m.y, 0.15F * distance_m) << "it would be a wall";
-      ASSERT_TRUE(std::isfinite(corner.slope));
     }
     EXPECT_GT(nearest_m, before_m) << range;
     before_m = farthest_m;

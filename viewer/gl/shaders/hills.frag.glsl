@@ -3,7 +3,7 @@ uniform sampler2D noise_tile;
 uniform int range;
 in vec3 place_m;
 in vec2 wall_m;
-in vec2 top_slope;
+in float top_m;
 out vec4 color;
 
 void main() {
@@ -12,17 +12,17 @@ void main() {
   vec3 ray = from_eye / distance_m;
   bool is_wood = range < 2;
 
-  // Crowns bulge toward the eye and up; slopes face the way that the outline falls.
+  // Crowns and slopes bulge toward the eye and up, unevenly.
   float grain_m = is_wood ? 26.0 : range == 2 ? 260.0 : range == 3 ? 1400.0 : 5200.0;
   vec2 at = wall_m * vec2(1.0, is_wood ? 1.3 : 2.4) / grain_m;
   float bumps = texture(noise_tile, at).r - 0.5;
   float bumps_up = texture(noise_tile, at + vec2(0.0, 0.035)).r - 0.5;
   float bumps_aside = texture(noise_tile, at + vec2(0.035, 0.0)).r - 0.5;
   vec3 aside = normalize(vec3(-ray.z, 0.0, ray.x));
-  vec3 normal = normalize(vec3(-ray.x, is_wood ? 0.5 : 0.9, -ray.z) - aside * (1.5 * top_slope.y * (is_wood ? 0.3 : 1.0) + 5.0 * (bumps_aside - bumps)) +
+  vec3 normal = normalize(vec3(-ray.x, is_wood ? 0.5 : 0.9, -ray.z) - aside * ((is_wood ? 5.0 : 2.5) * (bumps_aside - bumps)) +
                           vec3(0.0, 1.0, 0.0) * (4.0 * (bumps - bumps_up)));
 
-  float up = clamp(wall_m.y / top_slope.x, 0.0, 1.0);
+  float up = clamp(wall_m.y / top_m, 0.0, 1.0);
   float open = is_wood ? (0.35 + 0.65 * up) * (0.75 + 0.9 * bumps) : 0.85 + 0.4 * bumps;  // to the sky
   vec3 paint = range < 3 ? mix(vec3(0.030, 0.050, 0.017), vec3(0.062, 0.082, 0.024), 0.5 + bumps) : vec3(0.060, 0.075, 0.050);
   paint *= mix(vec3(1.0), woods.rgb, range < 3 ? 1.0 : 0.2);  // hardly any on mountains

@@ -1,22 +1,21 @@
 // A wall of the far country (viewer/meshes/far_country.hpp): its top, and its foot on the ground or behind the ground's end.
-layout(location = 0) in vec3 top_m;
-layout(location = 1) in vec2 along_slope;  // on the way around, metres; of the outline
+layout(location = 0) in vec4 top_along;  // of the wall's top, metres; w: on the way around
 
 uniform int range;  // 0 is the nearest
 
 const float kGroundEnd_m = 1400.0;  // the ground's sheet goes at least that far
 
 out vec3 place_m;
-out vec2 wall_m;      // along it and above the ground
-out vec2 top_slope;   // its height there, metres; how steeply its outline rises along the way
+out vec2 wall_m;  // along it and above the ground
+out float top_m;  // its height there
 
 void main() {
   bool is_on_ground = range < 2;
-  float distance_m = length(top_m.xz);
+  float distance_m = length(top_along.xz);
   float foot_m = is_on_ground ? 0.0 : min(0.0, eye_m.y - eye_m.y / kGroundEnd_m * distance_m);
-  place_m = vec3(top_m.x, (gl_VertexID & 1) == 1 ? top_m.y : foot_m, top_m.z);
-  wall_m = vec2(along_slope.x, place_m.y);
-  top_slope = vec2(max(top_m.y, 0.5), along_slope.y);
+  place_m = vec3(top_along.x, (gl_VertexID & 1) == 1 ? top_along.y : foot_m, top_along.z);
+  wall_m = vec2(top_along.w, place_m.y);
+  top_m = max(top_along.y, 0.5);
 
   // Nearer than the end of the depth range on the way to the eye; behind everything but the sky.
   gl_Position = to_clip * vec4(is_on_ground ? place_m : mix(eye_m.xyz, place_m, 1500.0 / distance_m), 1.0);
