@@ -43,6 +43,7 @@ glm::vec3 direction_to(const glm::vec3& from, const glm::vec3& to) {
 class LeafCells {
  public:
   static constexpr int kSide = 28;
+  static constexpr std::size_t kCells = std::size_t{kSide} * kSide * kSide;
 
   explicit LeafCells(const Bounds& box)
       : low_m_(box.low_m - 0.2F), cell_m_((box.high_m - box.low_m + 0.4F) / static_cast<float>(kSide)) {}
@@ -76,7 +77,7 @@ class LeafCells {
 
   glm::vec3 low_m_;
   glm::vec3 cell_m_;
-  std::vector<float> density_ = std::vector<float>(kSide * kSide * kSide, 0.0F);
+  std::vector<float> density_ = std::vector<float>(kCells, 0.0F);
 };
 
 }  // namespace
@@ -164,8 +165,9 @@ void Crown::move_to(const pose::TreeJoints& joints) {
       spray.tip_m = vector_of(own.joint(i, links - 1));
       spray.bow_m = glm::vec3(0.0F);
       if (links > 1) {
-        const float u = static_cast<float>(links / 2) / static_cast<float>(links);
-        const glm::vec3 middle_m = vector_of(own.joint(i, links / 2 - 1));
+        const std::size_t half = links / 2;
+        const float u = static_cast<float>(half) / static_cast<float>(links);
+        const glm::vec3 middle_m = vector_of(own.joint(i, half - 1));
         spray.bow_m = (middle_m - glm::mix(spray.root_m, spray.tip_m, u)) / (u * (1.0F - u));
       }
       const glm::vec3 rest = vector_of(parts_[i].rest);
