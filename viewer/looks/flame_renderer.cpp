@@ -74,7 +74,7 @@ float part_of(double turns) {
 
 FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface, look::Quality quality)
     : surface_(&surface),
-      bowl_(flame_bowl(surface)),
+      bowl_(meshes::flame_bowl(surface)),
       bowl_solids_(bowl_.mesh),
       noise_(gl::make_noise_texture()),
       volume_(surface),
