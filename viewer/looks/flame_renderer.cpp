@@ -151,7 +151,8 @@ void FlameRenderer::move_to(const pose::Pose& pose) {
     move_sheet(burning);
   } else {
     const double passed_s = std::abs(moment_.time_s - moved_at_s_);
-    const double share = passed_s < kJump_s ? 1.0 - std::exp(-passed_s / kFollowing_s) : 1.0;
+    // Another moment at the same time is of another stream, or a test: it is taken as it is.
+    const double share = passed_s > 0.0 && passed_s < kJump_s ? 1.0 - std::exp(-passed_s / kFollowing_s) : 1.0;
     volume_.move_to(*surface_, burning, static_cast<float>(share));
     moved_at_s_ = moment_.time_s;
     sparks_.move_to(moment_.time_s, moment_.wind_m_s, volume_);
