@@ -9,7 +9,8 @@ namespace yuragi::viewer::light {
 namespace {
 
 constexpr double kLeastHeat = 0.01;
-/// After a jump in time the light is what it is, as after the first picture.
+/// After a jump in time the light is what it is, as after the first picture; and where no time has passed: that is
+/// another stream, or a test.
 constexpr double kJump_s = 2.0;
 constexpr float kFollowing = 0.38F;
 
@@ -46,7 +47,7 @@ float flame_brightness(float exposure) {
 float FireFlicker::follow(float heat, double time_s) {
   const double wanted = std::log(std::max(static_cast<double>(heat), kLeastHeat));
   const double passed_s = std::abs(time_s - time_s_);
-  if (!has_begun_ || passed_s > kJump_s) {
+  if (!has_begun_ || passed_s == 0.0 || passed_s > kJump_s) {
     log_ = wanted;
   } else {
     const double reach = kFastest_per_s * passed_s;

@@ -4,10 +4,10 @@
 
 #include "engine/look/look.hpp"
 #include "engine/pose/point_kinematics.hpp"
-#include "viewer/looks/flame_bowl.hpp"
 #include "viewer/looks/grid_sheet.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/solids.hpp"
+#include "viewer/meshes/flame_bowl.hpp"
 #include "viewer/meshes/flame_volume.hpp"
 #include "viewer/meshes/sparks.hpp"
 
@@ -38,7 +38,7 @@ class FlameRenderer : public SceneRenderer {
 
   const pose::SurfaceSkeleton* surface_;
   Moment moment_;
-  FlameBowl bowl_;
+  meshes::FlameBowl bowl_;
   Solids bowl_solids_;
   gl::GlTexture ramp_, noise_;
   gl::GlVertexArray no_attributes_;

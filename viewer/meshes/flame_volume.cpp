@@ -133,10 +133,10 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
     middle_m /= static_cast<float>(around_);
     if (moves_rows) {
       middle_m += glm::vec3(pose.row_east_m[row], -pose.row_drop_m[row], pose.row_south_m[row]);
-      here.slope_east = pose.row_slope_east[row];
-      here.slope_south = pose.row_slope_south[row];
+      here.slope_east += share * (pose.row_slope_east[row] - here.slope_east);
+      here.slope_south += share * (pose.row_slope_south[row] - here.slope_south);
     }
-    middles_m_[layer] = middle_m;
+    middles_m_[layer] += share * (middle_m - middles_m_[layer]);
 
     // How far each point stands from the middle, in radii of the outermost shell at rest.
     double sum = 0.0;
@@ -158,7 +158,7 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
       }
     }
     heat += sum;
-    hot_m += sum * glm::dvec3(middle_m);
+    hot_m += sum * glm::dvec3(middles_m_[layer]);
 
     std::uint8_t* texel = heat_.data() + layer * kAcross * kAcross;
     for (const Texel& at : texels_) {

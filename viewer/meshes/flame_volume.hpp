@@ -27,8 +27,7 @@ class FlameVolume {
   explicit FlameVolume(const pose::SurfaceSkeleton& surface);
   bool is_empty() const { return layers_ == 0; }
 
-  /// Takes the rows of a pose that fits the skeleton, and so much of the way to its heat and its swelling (1: all of
-  /// it).
+  /// Goes so much of the way to a pose that fits the skeleton (1: all of it).
   void move_to(const pose::SurfaceSkeleton& surface, const pose::SurfacePose& pose, float share = 1.0F);
 
   std::size_t layers() const { return layers_; }

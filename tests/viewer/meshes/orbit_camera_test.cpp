@@ -169,7 +169,7 @@ TEST(PlaceOnShore, StandsAtTheWaterAndLooksOverItToTheHorizon) {
       glm::normalize(glm::dvec2(camera.place().target_m.x, camera.place().target_m.z) - glm::dvec2(eye_m.x, eye_m.z));
   const glm::dvec2 to_middle = glm::normalize(glm::dvec2(shore.middle_m()) - glm::dvec2(eye_m.x, eye_m.z));
   EXPECT_GT(glm::dot(ahead, to_middle), 0.97);
-  EXPECT_LT(camera.place().pitch_deg, 0.5 * OrbitCamera::kFieldOfView_deg);
+  EXPECT_LT(camera.place().pitch_deg, 0.5 * camera.place().field_of_view_deg);
 }
 
 TEST(PlaceBeside, LooksUpToTheRidgeFromOutside) {

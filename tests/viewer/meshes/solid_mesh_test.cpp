@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/viewer/test_models.hpp"
-#include "viewer/looks/flame_bowl.hpp"
+#include "viewer/meshes/flame_bowl.hpp"
 
 namespace yuragi::viewer::meshes {
 namespace {
@@ -61,11 +61,11 @@ TEST(SolidMesh, PiecesOfNoSizeAreLeftOut) {
 
 TEST(FlameBowl, IsUnderTheFlame) {
   for (const char* kind : {"flame", "flame panel"}) {
-    const SolidMesh bowl = looks::flame_bowl(std::get<pose::SurfaceSkeleton>(test_model(kind).skeleton)).mesh;
+    const SolidMesh bowl = flame_bowl(std::get<pose::SurfaceSkeleton>(test_model(kind).skeleton)).mesh;
     expect_sound(bowl);
     for (const SolidVertex& vertex : bowl.vertices()) EXPECT_LT(vertex.place_m.y, 0.75F) << kind;  // the foot is at 0.5
   }
-  EXPECT_TRUE(looks::flame_bowl({}).mesh.vertices().empty());
+  EXPECT_TRUE(flame_bowl({}).mesh.vertices().empty());
 }
 
 }  // namespace

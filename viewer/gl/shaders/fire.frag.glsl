@@ -42,9 +42,9 @@ void main() {
     if (heat > 0.03) {
       // Two noises at right angles to each other, drawn out along the flame.
       vec2 across = mat2(0.8, 0.6, -0.6, 0.8) * at_m / size_m.x;
-      float one = textureLod(noise_tile, vec2(0.46 * across.x + 0.14 * across.y, 0.26 * v - risen.x), 1.8).r;
-      float two = textureLod(noise_tile, vec2(0.54 * across.y - 0.12 * across.x + 0.25 * one, 0.36 * v - risen.y), 1.8).r;
-      float torn = 3.4 * (one + two - 1.0);
+      float one = textureLod(noise_tile, vec2(0.46 * across.x + 0.14 * across.y, 0.26 * v - risen.x), 2.4).r;
+      float two = textureLod(noise_tile, vec2(0.54 * across.y - 0.12 * across.x + 0.25 * one, 0.36 * v - risen.y), 2.4).r;
+      float torn = 3.0 * (one + two - 1.0);
       float level = heat - 0.30 - 0.75 * smoothstep(0.45, 1.0, v) + torn * (0.30 + 0.70 * min(v * 2.5, 1.0));
       level -= 2.5 * smoothstep(floor_m.y, floor_m.x, y_m);
       // It burns in sheets around what is hottest.

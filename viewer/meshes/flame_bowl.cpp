@@ -1,4 +1,4 @@
-#include "viewer/looks/flame_bowl.hpp"
+#include "viewer/meshes/flame_bowl.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include "engine/math/philox.hpp"
 #include "viewer/meshes/bounds.hpp"
 
-namespace yuragi::viewer::looks {
+namespace yuragi::viewer::meshes {
 namespace {
 
 const glm::vec3 kIron(0.034F, 0.030F, 0.027F);
@@ -30,14 +30,14 @@ glm::vec3 on_ring(float turn_rad, float radius_m, float y_m) {
 FlameBowl flame_bowl(const pose::SurfaceSkeleton& surface) {
   FlameBowl bowl;
   if (surface.rest_x_m.empty()) return bowl;
-  const meshes::Bounds bounds = meshes::bounds_of(surface);
+  const Bounds bounds = bounds_of(surface);
   const float foot_m = *std::min_element(surface.rest_y_m.begin(), surface.rest_y_m.end());
   const glm::vec3 middle((bounds.low_m.x + bounds.high_m.x) / 2.0F, 0.0F, (bounds.low_m.z + bounds.high_m.z) / 2.0F);
   // (A flat sheet is wider, so that its flames have room to lean; they burn from its middle.)
   const float reach_m = std::max(bounds.high_m.x - bounds.low_m.x, bounds.high_m.z - bounds.low_m.z);
   const float radius_m = 0.5F * (surface.is_closed ? 1.0F : 0.22F) * reach_m;
 
-  meshes::SolidMesh& mesh = bowl.mesh;
+  SolidMesh& mesh = bowl.mesh;
   const auto at = [&](float turn_rad, float out_m, float y_m) { return middle + on_ring(turn_rad, out_m, y_m); };
   const auto up = [&](float y_m) { return middle + glm::vec3(0.0F, y_m, 0.0F); };
 
@@ -104,4 +104,4 @@ FlameBowl flame_bowl(const pose::SurfaceSkeleton& surface) {
   return bowl;
 }
 
-}  // namespace yuragi::viewer::looks
+}  // namespace yuragi::viewer::meshes
