@@ -34,7 +34,7 @@ constexpr double kFollowing_s = 0.55;
 constexpr double kJump_s = 1.0;
 constexpr double kGravity_m_s2 = 9.81;
 
-constexpr int kStepsLow = 10, kStepsMedium = 16, kStepsHigh = 28;
+constexpr int kStepsLow = 16, kStepsMedium = 20, kStepsHigh = 28;
 
 int steps_of(look::Quality quality) {
   if (quality == look::Quality::kLow) return kStepsLow;

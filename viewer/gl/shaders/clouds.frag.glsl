@@ -56,14 +56,13 @@ void main() {
   float first = kEarth * (sqrt(height * height + 2.0 / kEarth) - height);
   float last = kEarth * (sqrt(height * height + 2.0 * (1.0 + kThickness) / kEarth) - height);
   float step_long = (last - first) / float(kSteps);
-  float chance = pixel_chance(gl_FragCoord.xy);
   float left = 1.0;
   float sun = 0.0;
   float sky = 0.0;
   float blur = log2(256.0 * 0.3 * first * kTexel);
   for (int i = 0; i < kSteps; ++i) {
-    float up = kThickness * (float(i) + chance) / float(kSteps);
-    vec2 at = way * (first + step_long * (float(i) + chance)) - cover.xy;
+    float up = kThickness * (float(i) + 0.5) / float(kSteps);
+    vec2 at = way * (first + step_long * (float(i) + 0.5)) - cover.xy;
     float here = density(at, up, blur);
     if (here <= 0.0) continue;
     float part = left * (1.0 - exp(-kDensity * min(step_long, 0.25) * here));

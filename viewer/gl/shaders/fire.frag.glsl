@@ -20,8 +20,9 @@ void main() {
   float v = inside.z;
   float y_m = place_m.y;
   vec2 layers = vec2(textureSize(layer_rows, 0));
-  float chance = pixel_chance(gl_FragCoord.xy);
+  float chance = 0.25 + 0.5 * pixel_chance(gl_FragCoord.xy);
   vec3 sum = vec3(0.0);
+  bool was_inside = false;
   for (int i = 0; i < steps; ++i) {
     float layer = clamp(v, 0.0, 1.0) * (layers.y - 1.0) + 0.5;
     vec4 row = textureLod(layer_rows, vec2(0.25, layer / layers.y), 0.0);    // to the top; half its side
@@ -37,8 +38,11 @@ void main() {
     }
 
     vec2 q = at_m / row.w;
-    if (dot(q, q) > 1.2 || v < -0.01 || v > 1.01) break;
-    float heat = textureLod(heat_tile, vec3(0.5 + 0.5 * q, layer / layers.y), 0.0).r;
+    // The ray begins on a mesh around the body, which may be a little outside of it.
+    bool is_inside = dot(q, q) < 1.2 && v > -0.01 && v < 1.01;
+    if (was_inside && !is_inside) break;
+    was_inside = is_inside;
+    float heat = is_inside ? textureLod(heat_tile, vec3(0.5 + 0.5 * q, layer / layers.y), 0.0).r : 0.0;
     if (heat > 0.03) {
       // Two noises at right angles to each other, drawn out along the flame.
       vec2 across = mat2(0.8, 0.6, -0.6, 0.8) * at_m / size_m.x;
