@@ -1,4 +1,9 @@
 // The flame as large as the picture, by night, in every wind: it may not flash (WCAG 2.2, success criterion 2.3.1).
+// YURAGI_FLASH_S=20 looks at 20 seconds of each wind.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -15,9 +20,14 @@ namespace {
 constexpr int kWidth_px = 64;
 constexpr int kHeight_px = 48;
 constexpr double kRate_hz = 60.0;
-constexpr int kPictures = 80;  // a second and a third
+constexpr double kLength_s = 4.0 / 3.0;  // or as YURAGI_FLASH_S says
 constexpr double kSettling_s = 6.0;
 constexpr double kMostShare = 0.25;  // of a field, W3C
+
+double length_s() {
+  const char* const wanted = std::getenv("YURAGI_FLASH_S");
+  return wanted == nullptr ? kLength_s : std::strtod(wanted, nullptr);
+}
 
 class FlameFlash : public testing::TestWithParam<Weather> {};
 
@@ -35,10 +45,12 @@ FlashMeter seen(const Weather& weather) {
   meshes::OrbitCamera camera;
   camera.frame({.target_m = {0.0, 0.85, 0.0}, .heading_deg = 340.0, .pitch_deg = 4.0, .distance_m = 1.1});
   FlashMeter meter(kWidth_px, kHeight_px);
-  for (int picture = 0; picture < kPictures; ++picture) {
+  const auto pictures = std::lround(kRate_hz * length_s());
+  EXPECT_GT(pictures, 60);  // more than a second, which is what it is judged by
+  for (long picture = 0; picture < pictures; ++picture) {
     scenes.advance(1.0 / kRate_hz);
     stage.draw(scenes.moment(), camera, target);
-    meter.add(target.read_rgb(), picture / kRate_hz);
+    meter.add(target.read_rgb(), static_cast<double>(picture) / kRate_hz);
   }
   return meter;
 }
@@ -48,8 +60,8 @@ TEST_P(FlameFlash, FlashesNoMoreThanThreeTimesInASecond) {
   EXPECT_LE(meter.general_share(), kMostShare);
   EXPECT_LE(meter.red_share(), kMostShare);
   EXPECT_FALSE(meter.has_field_that_flashes());
-  RecordProperty("general_share", std::to_string(meter.general_share()));
-  RecordProperty("red_share", std::to_string(meter.red_share()));
+  std::printf("%s: of a field %.3f flash, red %.3f\n", std::string(GetParam().name).c_str(), meter.general_share(),
+              meter.red_share());
 }
 
 INSTANTIATE_TEST_SUITE_P(Winds, FlameFlash, testing::ValuesIn(kWeathers),

@@ -13,10 +13,15 @@ import tempfile
 VALIDATOR = "glslangValidator"
 
 
+def parts_of(room):
+    """The names of the parts that shaders may include, in their order."""
+    return re.search(r"^set\(parts ([\w ]+)\)", (room / "CMakeLists.txt").read_text(), re.MULTILINE)[1].split()
+
+
 def expanded(file):
     """A shader's text with its parts, as viewer/gl/CMakeLists.txt puts it together."""
     text = file.read_text()
-    for line, part in enumerate(("sward", "blade", "shore"), start=2):
+    for line, part in enumerate(parts_of(file.parents[1]), start=2):
         included = (file.parent / f"{part}.part.glsl").read_text()
         text = text.replace(f'#include "{part}.part.glsl"\n', f"#line {line}0001\n{included}#line {line}\n")
     return text

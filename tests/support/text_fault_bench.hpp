@@ -33,7 +33,7 @@ class TextFaultBench : public testing::Test {
                ParameterValues::Map given, const MakeSensor& make_sensor) {
     bench_.put(nullptr, nullptr);  // the name of the port is free again
     auto carried = wire == Wire::kPty   ? simulators::text::make_pty_wire((folder_ / "device").string())
-                   : wire == Wire::kTcp ? simulators::text::make_tcp_wire("127.0.0.1", 0)
+                   : wire == Wire::kTcp ? simulators::text::make_tcp_wire("127.0.0.1", free_port(SOCK_STREAM))
                                         : simulators::text::make_udp_wire("127.0.0.1", udp_port_);
     const std::string place = carried->place();
     if (wire == Wire::kPty) {

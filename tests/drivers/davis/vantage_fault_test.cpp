@@ -11,6 +11,7 @@
 #include "simulators/davis/vantage_console.hpp"
 #include "tests/drivers/davis/davis_fault.hpp"
 #include "tests/support/driver_named.hpp"
+#include "tests/support/free_port.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::drivers::davis {
@@ -28,8 +29,8 @@ class VantageFault : public DavisFault {
   void connect(Wire wire, const VantageConsoleOptions& options = {}) {
     bench_.put(nullptr, nullptr);  // the name of the port is free again
     const std::string link = (folder_ / "console").string();
-    auto carried =
-        wire == Wire::kPty ? simulators::text::make_pty_wire(link) : simulators::text::make_tcp_wire("127.0.0.1", 0);
+    auto carried = wire == Wire::kPty ? simulators::text::make_pty_wire(link)
+                                      : simulators::text::make_tcp_wire("127.0.0.1", free_port(SOCK_STREAM));
     const std::string place = carried->place();
     ParameterValues::Map given = {{"device", link}};
     if (wire == Wire::kTcp) {

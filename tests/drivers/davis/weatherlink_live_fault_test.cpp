@@ -24,7 +24,7 @@ class WeatherLinkLiveFault : public DavisFault {
  protected:
   void connect(ParameterValues::Map given = {}) {
     const std::uint16_t udp_port = free_port(SOCK_DGRAM);
-    auto http = simulators::text::make_tcp_wire("127.0.0.1", 0);
+    auto http = simulators::text::make_tcp_wire("127.0.0.1", free_port(SOCK_STREAM));
     const std::string place = http->place();
     given["host"] = std::string("127.0.0.1");
     given["http_port"] = std::int64_t{std::stoi(place.substr(place.rfind(':') + 1))};

@@ -10,6 +10,7 @@
 #include "drivers/lufft/umb_sensor.hpp"
 #include "simulators/lufft/umb_station.hpp"
 #include "tests/support/driver_named.hpp"
+#include "tests/support/free_port.hpp"
 #include "tests/support/station_fault.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -30,8 +31,8 @@ class UmbFault : public StationFault {
   void connect(Wire wire, const UmbStationOptions& options = {}) {
     bench_.put(nullptr, nullptr);  // the name of the port is free again
     const std::string link = (folder_ / "station").string();
-    auto carried =
-        wire == Wire::kPty ? simulators::text::make_pty_wire(link) : simulators::text::make_tcp_wire("127.0.0.1", 0);
+    auto carried = wire == Wire::kPty ? simulators::text::make_pty_wire(link)
+                                      : simulators::text::make_tcp_wire("127.0.0.1", free_port(SOCK_STREAM));
     const std::string place = carried->place();
     ParameterValues::Map given = {
         {"device", link}, {"class", std::int64_t{options.device_class}}, {"id", std::int64_t{options.id}}};

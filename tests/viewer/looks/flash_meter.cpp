@@ -43,7 +43,7 @@ void FlashCounter::add(float value, double time_s, bool is_marked) {
   is_low_marked_ = is_high_marked_ = is_marked;
   times_s_[changes_ % times_s_.size()] = time_s;
   ++changes_;
-  if (changes_ >= times_s_.size() && time_s - times_s_[changes_ % times_s_.size()] < kSecond_s) is_too_much_ = true;
+  if (changes_ >= times_s_.size() && time_s - times_s_[changes_ % times_s_.size()] < kSecond_s) too_much_s_ = time_s;
 }
 
 FlashMeter::FlashMeter(int width_px, int height_px)
@@ -66,15 +66,17 @@ void FlashMeter::add(std::span<const std::uint8_t> rgb, double time_s) {
   }
   const std::vector<double> means = field_means([this](std::size_t i) { return luminance_[i]; });
   if (fields_.empty()) fields_.assign(means.size(), FlashCounter(static_cast<float>(kShare) * kChange, kBrightest));
-  for (std::size_t i = 0; i < means.size(); ++i) fields_[i].add(static_cast<float>(means[i]), time_s);
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    fields_[i].add(static_cast<float>(means[i]), time_s);
+    has_field_that_flashes_ = has_field_that_flashes_ || fields_[i].is_too_much(time_s);
+  }
+  general_share_ = std::max(general_share_, largest_share(general_, time_s));
+  red_share_ = std::max(red_share_, largest_share(red_, time_s));
 }
 
-bool FlashMeter::has_field_that_flashes() const {
-  return std::ranges::any_of(fields_, &FlashCounter::is_too_much);
-}
-
-double FlashMeter::largest_share(const std::vector<FlashCounter>& pixels) const {
-  const std::vector<double> shares = field_means([&](std::size_t i) { return pixels[i].is_too_much() ? 1.0 : 0.0; });
+double FlashMeter::largest_share(const std::vector<FlashCounter>& pixels, double time_s) const {
+  const std::vector<double> shares =
+      field_means([&](std::size_t i) { return pixels[i].is_too_much(time_s) ? 1.0 : 0.0; });
   return *std::ranges::max_element(shares);
 }
 

@@ -220,6 +220,13 @@ TEST(GrowthMapTest, IsShortAroundThingsTallElsewhereAndTakenByWater) {
   EXPECT_GT(map.growth_at(0.0F, 0.0F), 0.0F);
   EXPECT_EQ(map.water_at(22.0F, 22.0F), 1.0F);
   EXPECT_EQ(map.water_at(0.0F, 0.0F), 0.0F);
+  EXPECT_EQ(map.growth_at(-30.0F, 10.0F), 1.0F);
+  EXPECT_FALSE(map.is_free({21.0F, 21.0F}, {23.0F, 23.0F}, false));
+  EXPECT_TRUE(map.is_free({-30.0F, 10.0F}, {-28.0F, 12.0F}, true));
+  // And nowhere a step that is seen as a line: half a metre changes it by less than a third.
+  for (float x_m = 0.0F; x_m < 15.0F; x_m += 0.5F) {
+    EXPECT_LT(std::abs(map.growth_at(x_m + 0.5F, 0.0F) - map.growth_at(x_m, 0.0F)), 0.33F) << x_m;
+  }
 
   // Nor does a blade stand on a floor.
   const std::vector<Standing> on_floor{
@@ -229,13 +236,6 @@ TEST(GrowthMapTest, IsShortAroundThingsTallElsewhereAndTakenByWater) {
   map.make(on_floor);
   EXPECT_EQ(map.water_at(1.5F, 2.0F), 1.0F);
   EXPECT_EQ(map.water_at(2.5F, -2.0F), 0.0F);
-  EXPECT_EQ(map.growth_at(-30.0F, 10.0F), 1.0F);
-  EXPECT_FALSE(map.is_free({21.0F, 21.0F}, {23.0F, 23.0F}, false));
-  EXPECT_TRUE(map.is_free({-30.0F, 10.0F}, {-28.0F, 12.0F}, true));
-  // And nowhere a step that is seen as a line: half a metre changes it by less than a third.
-  for (float x_m = 0.0F; x_m < 15.0F; x_m += 0.5F) {
-    EXPECT_LT(std::abs(map.growth_at(x_m + 0.5F, 0.0F) - map.growth_at(x_m, 0.0F)), 0.33F) << x_m;
-  }
 }
 
 TEST(GrowthMapTest, IsTallUpToFur) {
