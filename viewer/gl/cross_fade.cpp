@@ -6,14 +6,12 @@ namespace yuragi::viewer::gl {
 namespace {
 
 // Of their own, so that no renderer's texture is unbound.
-constexpr GLint kUnitBefore = 8;
-constexpr GLint kUnitNow = 9;
 
 }  // namespace
 
 CrossFade::CrossFade() : program_(link_program("cross-fade", shaders::kDoorVert, shaders::kCrossFadeFrag)) {
-  set_sampler(program_, "picture_before", kUnitBefore);
-  set_sampler(program_, "picture_now", kUnitNow);
+  set_sampler(program_, "picture_before", kBeforeUnit);
+  set_sampler(program_, "picture_now", kNowUnit);
   share_ = glGetUniformLocation(program_.name(), "share");
 }
 
@@ -31,15 +29,15 @@ void CrossFade::take(Copy& copy, const RenderTarget& target) {
 }
 
 void CrossFade::keep(const RenderTarget& target) {
-  glActiveTexture(GL_TEXTURE0 + kUnitBefore);
+  glActiveTexture(GL_TEXTURE0 + kBeforeUnit);
   take(before_, target);
   glActiveTexture(GL_TEXTURE0);
 }
 
 void CrossFade::draw(const RenderTarget& target, float share) {
-  glActiveTexture(GL_TEXTURE0 + kUnitNow);
+  glActiveTexture(GL_TEXTURE0 + kNowUnit);
   take(now_, target);
-  glActiveTexture(GL_TEXTURE0 + kUnitBefore);
+  glActiveTexture(GL_TEXTURE0 + kBeforeUnit);
   glBindTexture(GL_TEXTURE_2D, before_.texture.name());
   glActiveTexture(GL_TEXTURE0);
   glDisable(GL_DEPTH_TEST);

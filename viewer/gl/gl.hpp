@@ -77,11 +77,27 @@ inline constexpr GLuint kLightBinding = 1;
 inline constexpr GLuint kGroundBinding = 2;
 /// And the block Fires (viewer/light/fire_light.hpp).
 inline constexpr GLuint kFiresBinding = 3;
-/// The texture units of the shadow map, in every program: compared with a depth, and as depths.
-inline constexpr GLuint kShadowUnit = 6;
-inline constexpr GLuint kShadowDepthUnit = 7;
-/// And of what water mirrors (Mirror).
-inline constexpr GLuint kMirrorUnit = 8;
+
+/// The texture units: one for each texture that stays bound while others draw. 0 is anybody's, for a moment.
+enum TextureUnit : GLint {
+  kNoiseUnit = 1,    // of grass and what stands in it (looks/ground_maps.hpp), like the next two
+  kBendsUnit,        //
+  kGrowthUnit,       //
+  kBladesUnit,       // of those that are drawn, and their tiles or blocks
+  kTilesUnit,        //
+  kShadowUnit,       // the shadow map, in every program: compared with a depth, and as depths
+  kShadowDepthUnit,  //
+  kMirrorUnit,       // what water mirrors (Mirror)
+  kSlopesUnit,       // of its waves
+  kRipplesUnit,      //
+  kCloudsFromUnit,   // two maps of clouds
+  kCloudsToUnit,     //
+  kFlameRowsUnit,    //
+  kFlameNoiseUnit,   //
+  kFlameRampUnit,    //
+  kBeforeUnit,       // two pictures that cross-fade
+  kNowUnit,          //
+};
 
 /// Compiles and links. Each stage begins with #version and shaders/common.glsl. On an error throws std::runtime_error
 /// with `name` and the compiler's message. The uniform blocks and the samplers of shadows are bound as above.

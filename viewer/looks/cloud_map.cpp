@@ -19,9 +19,6 @@ constexpr int kRows = 256;
 constexpr int kColumnsAPicture = 4;
 constexpr int kColumnsInAHurry = 64;  // while the sky changes
 
-constexpr GLint kFromUnit = 8;
-constexpr GLint kToUnit = 9;
-
 constexpr float kLowestSun = -0.12F;  // the sine of its height; farther below the clouds have the moon's light
 
 }  // namespace
@@ -69,7 +66,7 @@ void CloudMap::advance(const light::Light& light, const gl::GlTexture& noise) {
            std::abs(a.clouds_begin - b.clouds_begin) < tolerance;
   };
   const Sky before = std::exchange(now_, sky_of(light));
-  for (const GLint unit : {kFromUnit, kToUnit}) {  // not to be read while they are drawn
+  for (const GLint unit : {gl::kCloudsFromUnit, gl::kCloudsToUnit}) {  // not to be read while they are drawn
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_2D, 0);
   }
@@ -104,8 +101,8 @@ void CloudMap::bind(const gl::GlProgram& sky) const {
     const glm::vec2 since = now_.drift - map.sky.drift;
     glUniform2f(glGetUniformLocation(sky.name(), drifted), since.x, since.y);
   };
-  show(kFromUnit, maps_.at(from_), "clouds_from", "drifted_from");
-  show(kToUnit, maps_.at(to_), "clouds_to", "drifted_to");
+  show(gl::kCloudsFromUnit, maps_.at(from_), "clouds_from", "drifted_from");
+  show(gl::kCloudsToUnit, maps_.at(to_), "clouds_to", "drifted_to");
   glUniform1f(glGetUniformLocation(sky.name(), "clouds_share"),
               from_ == to_ ? 1.0F : static_cast<float>(drawn_) / static_cast<float>(kColumns));
   glActiveTexture(GL_TEXTURE0);

@@ -102,8 +102,10 @@ FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface, look::Quality
     width_m_ = std::max(0.3F * std::max(size_m.x, size_m.z), 0.02F);
   }
 
-  // The units of textures: 0 the heat, 1 the layers, 2 the noise, 3 the ramp.
-  for (const auto& [name, unit] : {std::pair{"heat_tile", 0}, {"layer_rows", 1}, {"noise_tile", 2}, {"ramp", 3}}) {
+  for (const auto& [name, unit] : {std::pair<const char*, GLint>{"heat_tile", 0},
+                                   {"layer_rows", gl::kFlameRowsUnit},
+                                   {"noise_tile", gl::kFlameNoiseUnit},
+                                   {"ramp", gl::kFlameRampUnit}}) {
     gl::set_sampler(fire_program_, name, unit);
     gl::set_sampler(embers_program_, name, unit);
     gl::set_sampler(sheet_program_, name, unit);
@@ -207,9 +209,9 @@ void FlameRenderer::draw_light() {
   glBlendFunc(GL_DST_COLOR, GL_ZERO);
   draw_contact();
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_COLOR);
-  glActiveTexture(GL_TEXTURE3);
+  glActiveTexture(GL_TEXTURE0 + gl::kFlameRampUnit);
   glBindTexture(GL_TEXTURE_2D, ramp_.name());
-  glActiveTexture(GL_TEXTURE2);
+  glActiveTexture(GL_TEXTURE0 + gl::kFlameNoiseUnit);
   glBindTexture(GL_TEXTURE_2D, noise_.name());
   draw_glow();
   draw_embers();
@@ -262,7 +264,7 @@ void FlameRenderer::draw_body() {
   glUniform2f(risen_place_, part_of(0.26 * rise_per_s * moment_.time_s),
               part_of(0.36 * 1.2 * rise_per_s * moment_.time_s));
   glUniform1f(fire_brightness_place_, kBodyBrightness * moment_.flame_brightness);
-  glActiveTexture(GL_TEXTURE1);
+  glActiveTexture(GL_TEXTURE0 + gl::kFlameRowsUnit);
   glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_3D, heat_tile_.name());

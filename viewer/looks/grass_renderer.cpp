@@ -7,12 +7,7 @@
 #include "viewer/meshes/sward.hpp"
 
 namespace yuragi::viewer::looks {
-namespace {
-
-constexpr GLint kStreamedBladeUnit = 4;
-constexpr GLint kBlockUnit = 5;
-
-}  // namespace
+namespace {}  // namespace
 
 GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands, const meshes::GrassDetail& detail)
     : detail_(detail),
@@ -23,8 +18,8 @@ GrassRenderer::GrassRenderer(const pose::StrandSkeleton& strands, const meshes::
       triangles_(tiles_.levels().size()) {
   GroundMaps::set_samplers(program_);
   gl::set_sampler(program_, "streamed_bends", 0);
-  gl::set_sampler(program_, "blades", kStreamedBladeUnit);
-  gl::set_sampler(program_, "blocks", kBlockUnit);
+  gl::set_sampler(program_, "blades", gl::kBladesUnit);
+  gl::set_sampler(program_, "blocks", gl::kTilesUnit);
   glUniform1f(glGetUniformLocation(program_.name(), "reach_m"), detail.reach_m);
   glBindBuffer(GL_TEXTURE_BUFFER, blade_buffer_.name());
   glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(tiles_.blades().size_bytes()), tiles_.blades().data(),
@@ -61,8 +56,8 @@ void GrassRenderer::draw(const meshes::View& view) {
     glBindTexture(GL_TEXTURE_BUFFER, texture.name());
     glTexBuffer(GL_TEXTURE_BUFFER, format, buffer.name());
   };
-  bind(kStreamedBladeUnit, GL_RGBA32F, blade_texture_, blade_buffer_);
-  bind(kBlockUnit, GL_R32UI, block_texture_, block_buffer_);
+  bind(gl::kBladesUnit, GL_RGBA32F, blade_texture_, blade_buffer_);
+  bind(gl::kTilesUnit, GL_R32UI, block_texture_, block_buffer_);
   bind(0, GL_RG32F, bend_texture_, bend_buffer_);
   for (std::size_t i = 0; i < triangles_.size(); ++i) {
     const meshes::StrandTiles::Level& level = tiles_.levels()[i];

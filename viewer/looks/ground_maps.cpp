@@ -11,9 +11,6 @@ namespace yuragi::viewer::looks {
 namespace {
 
 // Unit 0 is for what a renderer has of its own.
-constexpr GLint kNoiseUnit = 1;
-constexpr GLint kBendsUnit = 2;
-constexpr GLint kGrowthUnit = 3;
 
 void bind_texture(GLint unit, const gl::GlTexture& texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
@@ -51,9 +48,9 @@ GroundMaps::GroundMaps() : noise_(gl::make_noise_texture()) {
 }
 
 void GroundMaps::set_samplers(const gl::GlProgram& program) {
-  gl::set_sampler(program, "noise_tile", kNoiseUnit);
-  gl::set_sampler(program, "bends", kBendsUnit);
-  gl::set_sampler(program, "growth", kGrowthUnit);
+  gl::set_sampler(program, "noise_tile", gl::kNoiseUnit);
+  gl::set_sampler(program, "bends", gl::kBendsUnit);
+  gl::set_sampler(program, "growth", gl::kGrowthUnit);
 }
 
 void GroundMaps::set_standing(const std::vector<meshes::Standing>& things, float most_growth) {
@@ -98,9 +95,9 @@ void GroundMaps::bind(const meshes::Stand& stand, float tall, std::size_t door) 
   ground_.stand = {stand.length_m, stand.curl_rad, static_cast<float>(door), stand.tilt_rad};
   gl::stream_to(GL_UNIFORM_BUFFER, block_, std::span<const meshes::Ground>(&ground_, 1));
   glBindBufferBase(GL_UNIFORM_BUFFER, gl::kGroundBinding, block_.name());
-  bind_texture(kNoiseUnit, noise_);
-  bind_texture(kBendsUnit, bends_);
-  bind_texture(kGrowthUnit, growth_);
+  bind_texture(gl::kNoiseUnit, noise_);
+  bind_texture(gl::kBendsUnit, bends_);
+  bind_texture(gl::kGrowthUnit, growth_);
   glActiveTexture(GL_TEXTURE0);
 }
 

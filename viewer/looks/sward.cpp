@@ -17,9 +17,6 @@ constexpr float kHighest = 2.2F;           // of the mean length
 constexpr float kWidthPerSpacing = 0.26F;  // as of streamed blades (blades.cpp)
 constexpr float kLawnWidth_m = 0.008F;
 
-constexpr GLint kBladeUnit = 4;
-constexpr GLint kTileUnit = 5;
-
 meshes::Thinning thinning_of(Sward::Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& detail) {
   return {.blades_per_m2 = kind == Sward::Kind::kTall ? stand.blades_per_m2 : kLawnBlades_per_m2,
           .drawn_at_1m_per_m2 = detail.drawn_at_1m_per_m2};
@@ -67,8 +64,8 @@ Sward::Sward(Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& d
       tiles_(tiles_of(kind, blades_per_tile_, stand, detail)),
       program_(gl::link_program("sward", gl::shaders::kSwardVert, gl::shaders::kShadeFrag)) {
   GroundMaps::set_samplers(program_);
-  gl::set_sampler(program_, "blades", kBladeUnit);
-  gl::set_sampler(program_, "tiles", kTileUnit);
+  gl::set_sampler(program_, "blades", gl::kBladesUnit);
+  gl::set_sampler(program_, "tiles", gl::kTilesUnit);
   const auto place = [this](const char* name) { return glGetUniformLocation(program_.name(), name); };
   glUniform1i(place("blades_per_tile"), static_cast<GLint>(blades_per_tile_));
   glUniform1f(place("tile_m"), meshes::SwardTiles::kTile_m);
@@ -102,10 +99,10 @@ void Sward::draw(const meshes::View& view, const meshes::GrowthMap& growth) {
   glUseProgram(program_.name());
   glUniform1f(glGetUniformLocation(program_.name(), "thinning"), thinning_.factor());
   glBindVertexArray(array_.name());
-  glActiveTexture(GL_TEXTURE0 + kBladeUnit);
+  glActiveTexture(GL_TEXTURE0 + gl::kBladesUnit);
   glBindTexture(GL_TEXTURE_BUFFER, blade_texture_.name());
   glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, blade_buffer_.name());
-  glActiveTexture(GL_TEXTURE0 + kTileUnit);
+  glActiveTexture(GL_TEXTURE0 + gl::kTilesUnit);
   glBindTexture(GL_TEXTURE_BUFFER, tile_texture_.name());
   glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, tile_buffer_.name());
   glActiveTexture(GL_TEXTURE0);

@@ -15,8 +15,6 @@ namespace yuragi::viewer::looks {
 namespace {
 
 // Behind the units of the shadows and of the mirror.
-constexpr GLint kSlopesUnit = 9;
-constexpr GLint kRipplesUnit = 10;
 constexpr GLsizei kReedRings = 6;
 constexpr float kUnderBank_m = 0.15F;  // so far the sheet goes on where the bank hides it
 
@@ -81,9 +79,9 @@ void WaterRenderer::make_sheet() {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  gl::set_sampler(water_, "slopes", kSlopesUnit);
-  gl::set_sampler(water_, "ripples", kRipplesUnit);
-  gl::set_sampler(water_, "mirror", static_cast<GLint>(gl::kMirrorUnit));
+  gl::set_sampler(water_, "slopes", gl::kSlopesUnit);
+  gl::set_sampler(water_, "ripples", gl::kRipplesUnit);
+  gl::set_sampler(water_, "mirror", gl::kMirrorUnit);
   // A point of the grid is in the middle of its texel.
   const glm::vec2 cells(static_cast<float>(surface_->columns - 1), static_cast<float>(surface_->rows - 1));
   const glm::vec2 texel_m = 2.0F * shore_.half_m() / cells;
@@ -138,7 +136,7 @@ void WaterRenderer::move_to(const pose::Pose& pose) {
   const std::size_t count = surface_->columns * surface_->rows;
   waves_.move_to(std::as_const(points_).data().data() + count);  // all x, then all y
   gl::stream_to(GL_ARRAY_BUFFER, height_buffer_, std::span<const float>(waves_.heights_m()));
-  glActiveTexture(GL_TEXTURE0 + kSlopesUnit);
+  glActiveTexture(GL_TEXTURE0 + gl::kSlopesUnit);
   glBindTexture(GL_TEXTURE_2D, slopes_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB16F, static_cast<GLsizei>(surface_->columns),
@@ -162,9 +160,9 @@ void WaterRenderer::draw(const meshes::View&) {
   glDrawElements(GL_TRIANGLES, bank_count_, GL_UNSIGNED_INT, nullptr);
 
   glUseProgram(water_.name());
-  glActiveTexture(GL_TEXTURE0 + kSlopesUnit);
+  glActiveTexture(GL_TEXTURE0 + gl::kSlopesUnit);
   glBindTexture(GL_TEXTURE_2D, slopes_.name());
-  glActiveTexture(GL_TEXTURE0 + kRipplesUnit);
+  glActiveTexture(GL_TEXTURE0 + gl::kRipplesUnit);
   glBindTexture(GL_TEXTURE_2D, ripples_.name());
   glActiveTexture(GL_TEXTURE0);
   glBindVertexArray(sheet_array_.name());

@@ -76,7 +76,9 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
   gl_Position = to_clip * vec4(place, 1.0);
 
   float sunlight = mix(kSunInShadow, 1.0, sunlight_near(place));
-  float far = smoothstep(kFarFrom_m, kFar_m, distance_m);
+  // Of a lawn one sees no single blades from so far.
+  float is_short = 1.0 - smoothstep(0.12, 0.30, length_m);
+  float far = max(smoothstep(kFarFrom_m, kFar_m, distance_m), is_short * smoothstep(0.5, 5.0, distance_m));
   vec3 light = vec3(0.0);
   if (far < 1.0) {
     // A blade is folded along its middle: the normals of its two edges differ a little.
@@ -89,7 +91,7 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
   if (far > 0.0) {
     // Toward the last ones it is the ground's, so that no edge is seen where blades end.
     float tufts = ((t - 0.55) * 0.6 + 0.35 * (fract(chance * 61.0) - 0.5)) * (1.0 - smoothstep(0.25 * reach_m, 0.8 * reach_m, distance_m));
-    vec3 canopy = canopy_light(bend, to_eye, patch_at, tufts, tall, sunlight);
+    vec3 canopy = canopy_light(bend, to_eye, patch_at, tufts, tall * (1.0 - is_short), sunlight);
     light = mix(light, canopy, far);
   }
   light += tint * fire_light(place, vec3(0.0, 0.7, 0.0) + 0.5 * to_eye) * (0.2 + 0.8 * t);
