@@ -10,16 +10,20 @@ constexpr double kClockFollowing_s = 5.0;  // the time constant with which the d
 constexpr double kFastestFollowing = 0.1;  // of the time that passes
 constexpr double kClockWasSet_s = 5.0;     // farther off than any frame's delay
 
+std::optional<look::Camera> copy_of(const look::Camera* camera) {
+  return camera != nullptr ? std::optional(*camera) : std::nullopt;
+}
+
 }  // namespace
 
 void CameraKeeper::set_cameras(const std::vector<look::Camera>& cameras, std::size_t on) {
   const bool is_first = !has_cameras_;
   has_cameras_ = true;
   if (cameras == cameras_ && on == on_) return;
-  const std::optional<look::Camera> before = wanted();
+  const std::optional<look::Camera> before = copy_of(wanted());
   cameras_ = cameras;
   on_ = on;
-  const std::optional<look::Camera> after = wanted();
+  const std::optional<look::Camera> after = copy_of(wanted());
   if (is_first) {
     now_.camera = after;
     return;
@@ -43,8 +47,9 @@ void CameraKeeper::take_by_hand() {
 
 void CameraKeeper::next() {
   if (cameras_.empty()) return;
-  const std::optional<look::Camera> present = wanted();
-  const auto found = std::ranges::find(cameras_, present ? present->name : std::string(), &look::Camera::name);
+  const look::Camera* const present = wanted();
+  const auto found =
+      std::ranges::find(cameras_, present != nullptr ? present->name : std::string(), &look::Camera::name);
   const bool is_last = found == cameras_.end() || std::next(found) == cameras_.end();
   asked_ = is_last ? cameras_.front().name : std::next(found)->name;
   is_by_hand_ = false;
@@ -55,7 +60,7 @@ bool CameraKeeper::reset() {
   asked_ = asked_at_first_;
   is_by_hand_ = is_by_hand_at_first_;
   next_fade_s_ = kFade_s;
-  return wanted().has_value();
+  return wanted() != nullptr;
 }
 
 void CameraKeeper::advance(double dt_s) {
@@ -71,11 +76,11 @@ void CameraKeeper::advance(double dt_s) {
     clock_ahead_s_ -= step_s;
   }
   if (is_fading()) return;
-  const std::optional<look::Camera> camera = wanted();
-  const bool is_other = camera != now_.camera;
+  const look::Camera* const camera = wanted();
+  const bool is_other = camera != nullptr ? now_.camera != *camera : now_.camera.has_value();
   if (!is_other && !was_clock_set) return;
   before_ = now_;
-  now_ = {camera, now_.utc_s + (was_clock_set ? clock_ahead_s_ : 0.0)};
+  now_ = {copy_of(camera), now_.utc_s + (was_clock_set ? clock_ahead_s_ : 0.0)};
   if (was_clock_set) clock_ahead_s_ = 0.0;
   const bool is_seen = before_.camera || now_.camera;
   fade_s_ = !is_seen ? 0.0 : is_other ? next_fade_s_ : kFade_s;
@@ -94,10 +99,10 @@ const look::Camera* CameraKeeper::find(const std::string& name) const {
   return found == cameras_.end() ? nullptr : &*found;
 }
 
-std::optional<look::Camera> CameraKeeper::wanted() const {
-  if (is_by_hand_ || cameras_.empty()) return std::nullopt;
-  if (const look::Camera* camera = asked_ ? find(*asked_) : nullptr) return *camera;
-  return cameras_[std::min(on_, cameras_.size() - 1)];
+const look::Camera* CameraKeeper::wanted() const {
+  if (is_by_hand_ || cameras_.empty()) return nullptr;
+  if (const look::Camera* camera = asked_ ? find(*asked_) : nullptr) return camera;
+  return &cameras_[std::min(on_, cameras_.size() - 1)];
 }
 
 }  // namespace yuragi::viewer

@@ -56,7 +56,8 @@ class CameraKeeper {
 
  private:
   const look::Camera* find(const std::string& name) const;
-  std::optional<look::Camera> wanted() const;
+  /// None: by hand.
+  const look::Camera* wanted() const;
 
   std::vector<look::Camera> cameras_;
   std::size_t on_ = 0;

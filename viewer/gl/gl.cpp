@@ -148,6 +148,17 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
   return program;
 }
 
+GlTexture make_tile(GLint kept_as, GLenum format, GLsizei side, std::span<const std::uint8_t> texels) {
+  GlTexture texture;
+  glBindTexture(GL_TEXTURE_2D, texture.name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, kept_as, side, side, 0, format, GL_UNSIGNED_BYTE, texels.data());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return texture;
+}
+
 void set_sampler(const GlProgram& program, const char* name, GLint unit) {
   glUseProgram(program.name());
   glUniform1i(glGetUniformLocation(program.name(), name), unit);

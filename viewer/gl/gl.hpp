@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <utility>
@@ -106,6 +107,9 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
 /// Sets a sampler of `program` to a texture unit. Unknown names are ignored, since the compiler drops uniforms that are
 /// not used.
 void set_sampler(const GlProgram& program, const char* name, GLint unit);
+
+/// A texture of `side` x `side` texels that repeats, with smaller ones for the distance.
+GlTexture make_tile(GLint kept_as, GLenum format, GLsizei side, std::span<const std::uint8_t> texels);
 
 /// All that uploads count since the program began, in bytes. For measurements.
 std::size_t uploaded_bytes();

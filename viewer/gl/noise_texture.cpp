@@ -55,14 +55,7 @@ GlTexture make_noise_texture() {
   std::transform(tile.begin(), tile.end(), texels.begin(),
                  [&](float value) { return static_cast<std::uint8_t>(255.0F * (value - from) / range); });
 
-  GlTexture texture;
-  glBindTexture(GL_TEXTURE_2D, texture.name());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, kSize, kSize, 0, GL_RED, GL_UNSIGNED_BYTE, texels.data());
-  glGenerateMipmap(GL_TEXTURE_2D);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  return texture;
+  return make_tile(GL_R8, GL_RED, kSize, texels);
 }
 
 }  // namespace yuragi::viewer::gl

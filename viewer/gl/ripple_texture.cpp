@@ -45,15 +45,7 @@ GlTexture make_ripple_texture() {
     return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(0.5 + slope, 0.0, 1.0)));
   });
 
-  GlTexture texture;
-  glBindTexture(GL_TEXTURE_2D, texture.name());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  constexpr auto side = static_cast<GLsizei>(kRippleTexels);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG8, side, side, 0, GL_RG, GL_UNSIGNED_BYTE, texels.data());
-  glGenerateMipmap(GL_TEXTURE_2D);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  return texture;
+  return make_tile(GL_RG8, GL_RG, static_cast<GLsizei>(kRippleTexels), texels);
 }
 
 }  // namespace yuragi::viewer::gl

@@ -199,6 +199,12 @@ std::optional<light::Fire> FlameRenderer::fire() const {
                      .light = kFireLight * (moment_.flame_brightness * area_m2 * shown_heat_ / kUsualHeat)};
 }
 
+meshes::Bounds FlameRenderer::bounds_with_holder(const meshes::Bounds& bounds) const {
+  meshes::Bounds with_legs = bounds;
+  with_legs.low_m.y = std::min(with_legs.low_m.y, 0.0F);
+  return with_legs;
+}
+
 void FlameRenderer::draw(const meshes::View&) {
   bowl_solids_.draw();
 }

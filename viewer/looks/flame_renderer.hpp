@@ -26,6 +26,7 @@ class FlameRenderer : public SceneRenderer {
   void draw(const meshes::View& view) override;
   void draw_light() override;
   std::optional<light::Fire> fire() const override;
+  meshes::Bounds bounds_with_holder(const meshes::Bounds& bounds) const override;
   bool casts_shadow() const override { return true; }
 
  private:

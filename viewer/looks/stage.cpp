@@ -41,7 +41,6 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
       view->bounds = meshes::bounds_of(view->scene.skeleton);
       view->renderer = make_scene_renderer(view->scene, quality_);
       view->bounds = view->renderer->bounds_with_holder(view->bounds);
-      if (view->renderer->fire()) view->bounds.low_m.y = std::min(view->bounds.low_m.y, 0.0F);  // with its bowl's legs
       if (const auto* strands = std::get_if<pose::StrandSkeleton>(&view->scene.skeleton)) {
         view->grid = meshes::bend_grid_of(*strands);
         if (view->renderer->is_field() && !view->renderer->is_ground()) view->stand = meshes::stand_of(*strands);

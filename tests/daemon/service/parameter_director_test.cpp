@@ -1,13 +1,10 @@
 #include "daemon/service/parameter_director.hpp"
 
-#include <condition_variable>
-#include <deque>
-#include <mutex>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "daemon/service/parameter_groups.hpp"
+#include "tests/daemon/service/work_queue.hpp"
 
 namespace yuragi::daemon::service {
 namespace {
@@ -20,16 +17,10 @@ constexpr const char* kFile =
     "[[scene]]\nkind = \"flag\"\nname = \"banner\"\ngain = 1.5\n"
     "[[scene]]\nkind = \"grass\"\nblades_across = 8\nblades_deep = 8\n";
 
-/// What is to be done on the I/O thread, which is the test's.
 class ParameterTest : public ::testing::Test {
  protected:
   ReloadParts parts() {
-    ReloadParts parts{.post =
-                          [this](std::function<void()> work) {
-                            const std::lock_guard lock(mutex_);
-                            work_.push_back(std::move(work));
-                            news_.notify_all();
-                          },
+    ReloadParts parts{.post = [this](std::function<void()> work) { queue_.post(std::move(work)); },
                       .file = "/etc/wall.toml",
                       .read = [this] { return settings::parse_config(text_, "wall.toml"); },
                       .make_scenes = [this](const settings::Config& next, const auto&) -> ReloadParts::Adopt {
@@ -43,16 +34,7 @@ class ParameterTest : public ::testing::Test {
     return parts;
   }
 
-  void do_one() {
-    std::unique_lock lock(mutex_);
-    ASSERT_TRUE(news_.wait_for(lock, std::chrono::seconds(60), [this] { return !work_.empty(); }));
-    const auto work = std::move(work_.front());
-    work_.pop_front();
-    lock.unlock();
-    work();
-  }
-
-  /// Sends the command; the reply comes into replies_, of a change when do_one() was called.
+  /// Sends the command; the reply comes into replies_, of a change when queue_.do_one() was called.
   void send(const std::string& scene, std::vector<wire::ParameterEdit> edits, bool is_local = true) {
     director_.handle({.scene = scene, .edits = std::move(edits), .number = ++number_}, is_local,
                      [this](const wire::ControlReply& reply) { replies_.push_back(reply); });
@@ -75,9 +57,7 @@ class ParameterTest : public ::testing::Test {
     return {};
   }
 
-  std::mutex mutex_;
-  std::condition_variable news_;
-  std::deque<std::function<void()>> work_;
+  WorkQueue queue_;
   std::string text_ = kFile;
   bool is_settling_ = false;
   int adopted_ = 0;
@@ -130,7 +110,7 @@ TEST_F(ParameterTest, EveryParameterIsListedAsItsTableDescribesIt) {
 TEST_F(ParameterTest, WhatIsSetLastsUntilTheFileIsReadAgain) {
   send("", {{"haze", "0.4"}, {"time", "06:30"}});
   EXPECT_THAT(replies_, IsEmpty()) << "not before it is done";
-  do_one();
+  queue_.do_one();
   ASSERT_EQ(replies_.size(), 1U);
   EXPECT_TRUE(replies_[0].done);
   EXPECT_EQ(replies_[0].message,
@@ -145,14 +125,14 @@ TEST_F(ParameterTest, WhatIsSetLastsUntilTheFileIsReadAgain) {
   EXPECT_EQ(listed("", "haze").configured, "0.2");
 
   send("", {{"time", std::nullopt}});
-  do_one();
+  queue_.do_one();
   EXPECT_EQ(edited_.back().look.solar_time_h, std::nullopt);
   EXPECT_EQ(listed("", "time").value, std::nullopt);
   EXPECT_EQ(listed("", "haze").value, "0.4") << "the other one stays";
 
   reload_.request();
   EXPECT_TRUE(reload_.is_under_way());
-  do_one();
+  queue_.do_one();
   EXPECT_EQ(applied_.back().look.haze, 0.2);
   EXPECT_EQ(listed("", "haze").value, "0.2");
 }
@@ -188,13 +168,13 @@ TEST_F(ParameterTest, AMistakeChangesNothingAndIsToldAsOfTheFile) {
 
 TEST_F(ParameterTest, ScenesThatCannotBeMadeChangeNothing) {
   send("banner", {{"x", "999"}});
-  do_one();
+  queue_.do_one();
   ASSERT_EQ(replies_.size(), 1U);
   EXPECT_FALSE(replies_[0].done);
   EXPECT_EQ(replies_[0].message, "nothing was changed: [[scene]]: too large");
   EXPECT_EQ(listed("banner", "x").value, "0");
   send("banner", {{"x", "9"}});
-  do_one();
+  queue_.do_one();
   EXPECT_TRUE(replies_[1].done);
   EXPECT_EQ(adopted_, 1);
 }
@@ -209,7 +189,7 @@ TEST_F(ParameterTest, WhoMaySetIsWhoMayControl) {
   EXPECT_THAT(refusal_of("", "haze", "0.4"), HasSubstr("[stream] control = \"nobody\""));
   director_.allow(settings::ControlPermission::kAnywhere);
   send("", {{"haze", "0.4"}}, false);
-  do_one();
+  queue_.do_one();
   EXPECT_TRUE(replies_.back().done);
 }
 
@@ -223,7 +203,7 @@ TEST_F(ParameterTest, AScenesShownIsSwitchedAsByAnyOtherClient) {
   EXPECT_TRUE(cues_.back().shown);
   EXPECT_NE(director_.revision(), revision);
   send("banner", {{"shown", "false"}, {"gain", "2"}});
-  do_one();
+  queue_.do_one();
   EXPECT_FALSE(cues_.back().shown);
   EXPECT_EQ(edited_.back().scenes.at(0).wind_gain, 2.0);
   EXPECT_TRUE(edited_.back().scenes[0].is_shown) << "the file's";
@@ -237,13 +217,13 @@ TEST_F(ParameterTest, ValuesThatCameWhileScenesFadeAreSetTogetherAndTheLookDoesN
   send("grass", {{"x", "4"}});
   EXPECT_THAT(replies_, IsEmpty());
   send("", {{"haze", "0.9"}});
-  do_one();
+  queue_.do_one();
   ASSERT_EQ(replies_.size(), 1U);
   EXPECT_EQ(replies_[0].parameters->number, 5U);
   EXPECT_EQ(edited_.back().scenes.at(0).wind_gain, 1.5);
   is_settling_ = false;
   reload_.go_on();
-  do_one();
+  queue_.do_one();
   ASSERT_EQ(replies_.size(), 5U);
   EXPECT_EQ(edited_.size(), 2U) << "one change of the scenes";
   EXPECT_EQ(edited_.back().scenes[0].wind_gain, 2.5) << "the last one counts";
@@ -258,7 +238,7 @@ TEST_F(ParameterTest, AFileThatIsReadAfterAValueWasSetUndoesItAndOneBeforeDoesNo
   send("grass", {{"x", "4"}});
   is_settling_ = false;
   reload_.go_on();
-  for (int i = 0; i < 3; ++i) do_one();
+  for (int i = 0; i < 3; ++i) queue_.do_one();
   EXPECT_EQ(listed("banner", "gain").value, "1.5");
   EXPECT_EQ(listed("grass", "x").value, "4");
 }

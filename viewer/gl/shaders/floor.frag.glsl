@@ -1,3 +1,4 @@
+#include "grain.part.glsl"
 #include "wood.part.glsl"
 // Boards of weathered cedar, with gaps between them and joints that are not in a row.
 uniform vec3 middle_m;
@@ -28,13 +29,13 @@ void main() {
 
   float board = floor(at_m.x / kBoard_m);
   float in_board_m = at_m.x - (board + 0.5) * kBoard_m;
-  float own = fibre_chance(ivec2(int(board), 77));
+  float own = lattice(ivec2(int(board), 77));
   float length_at_m = at_m.y + kBoardLength_m * own;
   float piece = floor(length_at_m / kBoardLength_m + 0.5);
   float from_joint_m = length_at_m - piece * kBoardLength_m;
-  float piece_own = fibre_chance(ivec2(int(board) * 7 + int(floor(length_at_m / kBoardLength_m)), 31));
+  float piece_own = lattice(ivec2(int(board) * 7 + int(floor(length_at_m / kBoardLength_m)), 31));
 
-  vec3 paint = kCedar * (0.80 + 0.40 * piece_own) * mix(vec3(1.0), vec3(0.90, 0.97, 1.08), fibre_chance(ivec2(int(board), 5)));
+  vec3 paint = kCedar * (0.80 + 0.40 * piece_own) * mix(vec3(1.0), vec3(0.90, 0.97, 1.08), lattice(ivec2(int(board), 5)));
   paint = wood(paint, vec2(at_m.y + 3.1 * own, at_m.x + 1.7 * own));
   float from_edge_m = 0.5 * kBoard_m - abs(in_board_m);
   float dark = is_top ? max(gap(from_edge_m, 0.003), gap(from_joint_m, 0.0015)) : 0.45 * smoothstep(0.0, 1.0, -way.y / max(middle_m.y + 0.02, 0.03));

@@ -1,3 +1,4 @@
+#include "grain.part.glsl"
 #include "wood.part.glsl"
 // Wood, stone and metal, lit by sun and sky, with a soft highlight.
 in vec3 place_m;
