@@ -25,7 +25,7 @@ std::string delta_of(std::string_view timestamp, std::string_view source, std::s
 
 class SignalKDevice final : public TextDevice {
  public:
-  explicit SignalKDevice(bool is_asked) : is_subscribed_(!is_asked) {}
+  explicit SignalKDevice(bool is_asked) : is_asked_(is_asked), is_subscribed_(!is_asked) {}
 
   std::span<const FaultKind> known_faults() const override {
     static constexpr std::array kKnown = {FaultKind::kWrongId};
@@ -37,6 +37,7 @@ class SignalKDevice final : public TextDevice {
                        "\r\n",
                        "2026-06-21T00:00:00.000Z", kSelf);
   }
+  bool waits_for_clients() const override { return is_asked_; }
   void hear(std::string_view line) override {
     const bool subscribes = line.find(R"("subscribe":)") != std::string_view::npos &&
                             line.find(R"("environment.wind.*")") != std::string_view::npos;
@@ -65,7 +66,8 @@ class SignalKDevice final : public TextDevice {
   bool is_request(std::string_view /*line*/) const override { return false; }
 
  private:
-  bool is_subscribed_;
+  bool is_asked_;
+  bool is_subscribed_;  ///< by anybody; the wire knows who has not asked yet
   bool recalls_ = false;
   unsigned number_ = 0;
 };

@@ -33,6 +33,7 @@ TextSimulator::TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr
   if (rate_hz_ <= 0.0) known_faults_.push_back(FaultKind::kLate);
   add(wire_->known_faults());
   wire_->greet_with(device_->greeting());
+  if (device_->waits_for_clients()) wire_->wait_for_clients();
 }
 
 void TextSimulator::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {

@@ -31,6 +31,9 @@ class TextDevice {
   /// What it says to each new client, with its line end.
   virtual std::string greeting() const { return {}; }
 
+  /// Does a client get nothing but the greeting until it has said something?
+  virtual bool waits_for_clients() const { return false; }
+
   /// A client has said this line, without its end.
   virtual void hear(std::string_view /*line*/) {}
 

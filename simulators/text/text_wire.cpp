@@ -71,35 +71,38 @@ class TcpWire final : public TextWire {
   std::vector<int> descriptors() const override {
     std::vector<int> all;
     if (listener_.is_open()) all.push_back(const_cast<TcpListener&>(listener_).descriptor());
-    for (const tcp::socket& client : clients_) all.push_back(const_cast<tcp::socket&>(client).native_handle());
+    for (const Client& client : clients_) all.push_back(const_cast<tcp::socket&>(client.socket).native_handle());
     return all;
   }
 
   std::string read(std::span<const int> ready) override {
     std::string received;
-    for (tcp::socket& client : clients_) {
-      if (!has(ready, client.native_handle())) continue;
+    for (Client& client : clients_) {
+      if (!has(ready, client.socket.native_handle())) continue;
       std::array<char, 512> block{};
       boost::system::error_code error;
-      const std::size_t size = client.read_some(boost::asio::buffer(block), error);
+      const std::size_t size = client.socket.read_some(boost::asio::buffer(block), error);
       received.append(block.data(), size);
-      if (error && error != boost::asio::error::would_block) client.close(error);
+      client.has_spoken |= size > 0;
+      if (error && error != boost::asio::error::would_block) client.socket.close(error);
     }
     accept_all();
-    std::erase_if(clients_, [](const tcp::socket& client) { return !client.is_open(); });
+    forget_closed();
     return received;
   }
 
   void write(std::string_view bytes) override {
-    for (tcp::socket& client : clients_) {
+    for (Client& client : clients_) {
+      if (waits_for_clients_ && !client.has_spoken) continue;
       boost::system::error_code error;
-      boost::asio::write(client, boost::asio::buffer(bytes), error);
-      if (error && error != boost::asio::error::would_block) client.close(error);
+      boost::asio::write(client.socket, boost::asio::buffer(bytes), error);
+      if (error && error != boost::asio::error::would_block) client.socket.close(error);
     }
-    std::erase_if(clients_, [](const tcp::socket& client) { return !client.is_open(); });
+    forget_closed();
   }
 
   void greet_with(const std::string& bytes) override { greeting_ = bytes; }
+  void wait_for_clients() override { waits_for_clients_ = true; }
 
   void take_away() override {
     clients_.clear();
@@ -109,17 +112,26 @@ class TcpWire final : public TextWire {
   std::string place() const override { return "listening on " + text_of(listener_.endpoint()); }
 
  private:
+  struct Client {
+    tcp::socket socket;
+    bool has_spoken = false;
+  };
+
   void accept_all() {
     while (auto client = listener_.accept()) {
       boost::system::error_code error;
       boost::asio::write(*client, boost::asio::buffer(greeting_), error);
-      if (!error) clients_.push_back(std::move(*client));
+      if (!error) clients_.push_back({.socket = std::move(*client)});
     }
+  }
+  void forget_closed() {
+    std::erase_if(clients_, [](const Client& client) { return !client.socket.is_open(); });
   }
 
   TcpListener listener_;
-  std::vector<tcp::socket> clients_;
+  std::vector<Client> clients_;
   std::string greeting_;
+  bool waits_for_clients_ = false;
 };
 
 class UdpWire final : public TextWire {

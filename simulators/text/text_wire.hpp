@@ -24,6 +24,8 @@ class TextWire {
   virtual std::string read(std::span<const int> ready) = 0;
   /// What each client gets first. A wire that knows no clients does not send it.
   virtual void greet_with(const std::string& /*bytes*/) {}
+  /// From now on a client gets nothing but its greeting until it has said something. A wire that hears nobody sends on.
+  virtual void wait_for_clients() {}
   /// Sends the bytes to all clients.
   virtual void write(std::string_view bytes) = 0;
 

@@ -58,6 +58,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
   }
   /// What it has said, each message with a line's end.
   std::string take_said() { return std::exchange(said_, {}); }
+  bool has_spoken() const { return has_spoken_; }
   bool has_ended() const { return has_ended_; }
   void end() {
     error_code ignored;
@@ -96,6 +97,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
   void listen() {
     stream_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error) return self->end();
+      self->has_spoken_ = true;
       self->said_ += beast::buffers_to_string(self->buffer_.data()) + '\n';
       self->buffer_.clear();
       self->listen();
@@ -120,6 +122,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
   http::request<http::empty_body> request_;
   std::deque<Frame> waiting_;
   std::string said_;
+  bool has_spoken_ = false;
   bool is_accepted_ = false;
   bool is_sending_ = false;
   bool has_ended_ = false;
@@ -159,8 +162,11 @@ class WebSocketWire final : public TextWire {
     return received;
   }
   void greet_with(const std::string& bytes) override { greeting_ = bytes; }
+  void wait_for_clients() override { waits_for_clients_ = true; }
   void write(std::string_view bytes) override {
-    for (const auto& peer : peers_) peer->say(bytes);
+    for (const auto& peer : peers_) {
+      if (peer->has_spoken() || !waits_for_clients_) peer->say(bytes);
+    }
     turn();
   }
   void refuse(bool is_wanted) override {
@@ -194,6 +200,7 @@ class WebSocketWire final : public TextWire {
   boost::asio::io_context context_{1};
   std::list<std::shared_ptr<WebSocketPeer>> peers_;
   std::string greeting_;
+  bool waits_for_clients_ = false;
   bool refuses_ = false;
 };
 

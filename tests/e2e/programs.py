@@ -10,14 +10,27 @@ import threading
 HANG_S = 60.0  # so long waits only who waits for something that hangs
 
 
-# Ports that the system does not give to whoever asks for any (32768 and above), which other tests do all the time; tests that
-# run at the same time begin at different ones.
+# Ports that the system does not give to whoever asks for any (32768 and above), which other tests do all the time.
 FIRST_PORT, PORTS, BETWEEN_PROCESSES = 12_000, 20_000, 37
 next_port = itertools.count(os.getpid() * BETWEEN_PROCESSES)
+reserved = []
+
+
+def reserve(port):
+    """Takes a port from the other tests of this machine until this process ends, by the name of a socket that nobody else can
+    have meanwhile (tests/support/free_port.hpp: likewise). False where another one has it."""
+    name = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    try:
+        name.bind(f"\0yuragi-test-port-{port}")
+    except OSError:
+        name.close()
+        return False
+    reserved.append(name)
+    return True
 
 
 def free_ports(kinds):
-    """A port of 127.0.0.1 that nobody has for each of these socket types, all different."""
+    """A port of 127.0.0.1 for each of these socket types that nobody has and no other test takes, all different."""
     ports = []
     for kind in kinds:
         while True:
@@ -26,9 +39,10 @@ def free_ports(kinds):
                 try:
                     one.bind(("127.0.0.1", port))
                 except OSError:
-                    continue  # somebody has it
-            ports.append(port)
-            break
+                    continue  # a program that is no test has it
+            if reserve(port):
+                ports.append(port)
+                break
     return ports
 
 

@@ -48,6 +48,7 @@ class ObservedWire final : public simulators::text::TextWire {
   std::vector<int> descriptors() const override { return wire_->descriptors(); }
   std::string read(std::span<const int> ready) override { return wire_->read(ready); }
   void greet_with(const std::string& bytes) override { wire_->greet_with(bytes); }
+  void wait_for_clients() override { wire_->wait_for_clients(); }
   void write(std::string_view bytes) override {
     has_written_ = true;
     wire_->write(bytes);
