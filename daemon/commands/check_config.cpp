@@ -14,9 +14,9 @@
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/secret_exposure.hpp"
 #include "daemon/settings/sensor_blend.hpp"
+#include "daemon/state/json_value.hpp"
 #include "daemon/tools/sensors/description_json.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
-#include "daemon/tools/sensors/json_value.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -50,7 +50,7 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
                        {"driver", sensor.driver->name},
                        {"place", settings::place_text(sensor.blend)},
                        {"gust_length_m", settings::gust_length_m(config.wind, sensor)},
-                       {"height_m", tools::sensors::json_or_null(sensor.heights.sensor_m)}});
+                       {"height_m", state::json_or_null(sensor.heights.sensor_m)}});
     if (!full) continue;
     sensors.back()["values"] = json_of(sensor.values);
     sensors.back()["calibration"] = json_of(sensor.by_name.calibration);
@@ -64,13 +64,14 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
   }
   nlohmann::ordered_json cameras = nlohmann::ordered_json::array();
   for (const settings::CameraConfig& camera : config.cameras) {
-    cameras.push_back({{"name", camera.name}, {"from", tools::sensors::json_or_null(from_text(camera))}});
+    cameras.push_back({{"name", camera.name}, {"from", state::json_or_null(from_text(camera))}});
     if (full) cameras.back()["values"] = json_of(camera.values);
   }
   nlohmann::ordered_json json = {{"sensors", sensors}, {"scenes", scenes}, {"cameras", cameras}};
   if (!full) return json;
   json["seed"] = config.seed;
   json["stream"] = json_of(config.by_name.stream);
+  json["http"] = json_of(config.by_name.http);
   json["recording"] = json_of(config.by_name.recording);
   json["animation"] = json_of(config.by_name.animation);
   json["wind"] = json_of(config.by_name.wind);

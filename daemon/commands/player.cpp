@@ -11,8 +11,8 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
 #include "daemon/commands/send_control.hpp"
+#include "daemon/state/sensor_json.hpp"
 #include "daemon/tools/sensors/player_text.hpp"
-#include "daemon/tools/sensors/sensor_json.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -32,7 +32,7 @@ wire::ControlReply send_command(const PlayerCommandOptions& options, const wire:
 }
 
 void print_states(const PlayerCommandOptions& options, const std::vector<wire::PlayerState>& players) {
-  if (options.as_json) return print_json(tools::sensors::players_json(players));
+  if (options.as_json) return print_json(state::players_json(players));
   for (const wire::PlayerState& player : players) fmt::print("{}", tools::sensors::player_text(player));
 }
 

@@ -10,7 +10,7 @@
 #include "daemon/commands/parameter_commands.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/commands/send_control.hpp"
-#include "daemon/tools/sensors/sensor_json.hpp"
+#include "daemon/state/sensor_json.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -27,7 +27,7 @@ wire::ControlReply send(const SceneOptions& options) {
 
 void list_scenes(const SceneOptions& options) {
   const wire::ControlReply reply = send(options);
-  if (options.as_json) return print_json(tools::sensors::scenes_json(reply.scenes));
+  if (options.as_json) return print_json(state::scenes_json(reply.scenes));
   for (const wire::SceneState& scene : reply.scenes)
     fmt::print("{:<24} {:<10} {}\n", scene.name, scene.kind, scene.shown ? "shown" : "hidden");
 }

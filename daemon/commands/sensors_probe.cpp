@@ -14,7 +14,7 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
 #include "daemon/commands/sensors.hpp"
-#include "daemon/tools/sensors/json_value.hpp"
+#include "daemon/state/json_value.hpp"
 #include "drivers/bus/serial_ports.hpp"
 #include "drivers/modbus/modbus_probe.hpp"
 
@@ -214,10 +214,10 @@ void show_hit_as_json(const drivers::modbus::ModbusHit& hit) {
       agrees = fit.verdict == drivers::modbus::ForceVerdict::kAgrees;
     fits.push_back({{"profile", fit.profile},
                     {"device", fit.device},
-                    {"speed_m_s", tools::sensors::json_or_null(fit.speed_m_s)},
-                    {"direction_deg", tools::sensors::json_or_null(fit.direction_deg)},
-                    {"gust_m_s", tools::sensors::json_or_null(fit.gust_m_s)},
-                    {"beaufort", tools::sensors::json_or_null(fit.beaufort)},
+                    {"speed_m_s", state::json_or_null(fit.speed_m_s)},
+                    {"direction_deg", state::json_or_null(fit.direction_deg)},
+                    {"gust_m_s", state::json_or_null(fit.gust_m_s)},
+                    {"beaufort", state::json_or_null(fit.beaufort)},
                     {"agrees_with_beaufort", agrees},
                     {"is_live", is_live(fit)},
                     {"has_factory_settings", fit.is_at_home}});

@@ -18,9 +18,9 @@
 #include "daemon/sensing/system_clock.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
+#include "daemon/state/sensor_json.hpp"
 #include "daemon/stream/stream_client.hpp"
 #include "daemon/tools/decode/raw_text.hpp"
-#include "daemon/tools/sensors/sensor_json.hpp"
 #include "daemon/tools/sensors/sensor_table.hpp"
 
 namespace yuragi::daemon::commands {
@@ -72,7 +72,7 @@ class TableScreen final : public Screen {
 
   bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
     if (as_json_) {
-      print_json_line(tools::sensors::sensors_json(sensors));
+      print_json_line(state::sensors_json(sensors));
       return !once_;
     }
     constexpr const char* kHomeAndClear = "\x1b[H\x1b[J";
@@ -118,7 +118,7 @@ class RawScreen final : public Screen {
 
   bool show_message(const wire::RawTrace& trace) override {
     if (options_.as_json) {
-      print_json_line(tools::sensors::raw_trace_json(trace));
+      print_json_line(state::raw_trace_json(trace));
       return !options_.once;
     }
     const std::string text = options_.hex ? hex_lines_.line_of(trace) : tools::decode::raw_text(trace);

@@ -11,7 +11,7 @@
 #include "daemon/commands/json_output.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/settings/standard_output.hpp"
-#include "daemon/tools/sensors/attention.hpp"
+#include "daemon/state/attention.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -41,7 +41,7 @@ void show_daemon_status(const StatusOptions& options) {
   } else if (!options.is_quiet) {
     settings::write_at_once(tools::sensors::status_text(*status));
   }
-  if (!tools::sensors::needs_attention(status->sensors).empty()) throw ExitError(kExitAttention, "");
+  if (!state::needs_attention(status->sensors).empty()) throw ExitError(kExitAttention, "");
 }
 
 void add_status(CLI::App& app) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/host_name.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
@@ -32,6 +33,7 @@
 #include "daemon/settings/config_file.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/stream/tcp_stream.hpp"
+#include "daemon/web/web_server.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/base/latest.hpp"
 #include "engine/base/version.hpp"
@@ -100,6 +102,7 @@ class Service::Io {
       scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);
       frame_ready_.assign(dup(loop_->frame_ready_fd()));
     }
+    if (!config.http.listen.empty()) web_ = std::make_unique<web::WebServer>(web_settings(config));
     if (options.record) {
       recorder_ = make_recorder(config, *options.record);
       hub_.listen_to_quantities([this](std::size_t sensor, const wind::StationQuantities& quantities) {
@@ -113,6 +116,7 @@ class Service::Io {
     for (const int signal : {SIGINT, SIGTERM}) signals_.add(signal);
     ignore_what_need_not_end_it();
     spdlog::info("listening on {}", stream_.local_endpoint());
+    if (web_) spdlog::info("answering at http://{}", web_->local_endpoint());
     if (recorder_) spdlog::info("recording to {}", options_.record->string());
     if (animation_) spdlog::info("{} nodes at {} Hz", animation_->node_count(), rate_hz_);
 
@@ -166,6 +170,18 @@ class Service::Io {
       return daemon::settings::control_refusal(control_, is_local, "raw messages cannot be watched");
     };
     settings.admission = admission_of(config.stream);
+    return settings;
+  }
+
+  web::WebSettings web_settings(const settings::Config& config) {
+    web::WebSettings settings{.listen = config.http.listen,
+                              .hosts = config.http.hosts,
+                              .software = with_version("yuragi"),
+                              .tick_rate_hz = rate_hz_};
+    settings.hosts.push_back(asio::ip::host_name());
+    settings.ask = [this](const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply) {
+      asio::post(io_, [this, control, is_local, reply = std::move(reply)] { reply(handle(control, is_local)); });
+    };
     return settings;
   }
 
@@ -369,12 +385,13 @@ class Service::Io {
     if (recorder_) status.recorder = to_wire(recorder_->status());
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;
-    if (stream_.has_remote_clients()) {
+    if (stream_.has_remote_clients() || (web_ && web_->has_remote_clients())) {
       wire::Sensors told = status;
       folders_.remove_from(told);
       elsewhere = std::make_shared<const wire::Bytes>(wire::encode(told));
     }
     stream_.publish_sensors(here, elsewhere);
+    if (web_) web_->publish_sensors(here, elsewhere);
     return status;
   }
 
@@ -392,6 +409,7 @@ class Service::Io {
     manager_.say_stopping(why);
     if (loop_) loop_->stop();
     stream_.close();
+    if (web_) web_->close();
     signals_.cancel();
     hangups_.signals.cancel();
     end_timer_.cancel();
@@ -434,6 +452,7 @@ class Service::Io {
   std::unique_ptr<animation::SceneExchange> scenes_;
   std::unique_ptr<animation::SceneChange> next_scenes_;  ///< of a reload, not yet the animation's
   std::unique_ptr<recording::Recorder> recorder_;
+  std::unique_ptr<web::WebServer> web_;  ///< nothing: not asked for
   ServiceManager manager_{options_.with_scenes};
   bool is_up_ = false;  ///< it has begun, with its first frame where it has scenes
 

@@ -68,6 +68,8 @@ class ConfigReader {
     config.seed = static_cast<std::uint64_t>(general.integer("seed"));
     config.by_name.stream = read_table(root, "", "stream", stream_parameters());
     config.stream = typed(root, "", "stream", stream_config_of(config.by_name.stream));
+    config.by_name.http = read_table(root, "", "http", http_parameters());
+    config.http = typed(root, "", "http", http_config_of(config.by_name.http));
     config.by_name.recording = read_table(root, "", "recording", recording_parameters());
     config.recording = recording_config_of(config.by_name.recording);
     config.by_name.animation = read_table(root, "", "animation", animation_parameters());
@@ -152,9 +154,10 @@ class ConfigReader {
       bool known = is_array || key == "seed";
       for (const ConfigTable& table : config_tables()) known = known || table.name == key.str();
       if (!known) {
-        mistake(key.source(), std::string(key.str()),
-                "is not known here; allowed: seed, [stream], [recording], [animation], [wind], [shaping], [look], "
-                "[log], [[sensor]], [[scene]], [[camera]]");
+        mistake(
+            key.source(), std::string(key.str()),
+            "is not known here; allowed: seed, [stream], [http], [recording], [animation], [wind], [shaping], [look], "
+            "[log], [[sensor]], [[scene]], [[camera]]");
       } else if (is_array && !(node.is_array_of_tables() || (node.is_array() && node.as_array()->empty()))) {
         mistake(key.source(), std::string(key.str()),
                 "is one table; write [[" + std::string(key.str()) + "]] above it");
@@ -525,6 +528,7 @@ std::string to_toml(const Config& config) {
   toml::table root;
   root.insert("seed", static_cast<std::int64_t>(config.seed));
   root.insert("stream", to_table(config.by_name.stream));
+  root.insert("http", to_table(config.by_name.http));
   root.insert("recording", to_table(config.by_name.recording));
   root.insert("animation", to_table(config.by_name.animation));
   root.insert("wind", to_table(config.by_name.wind));

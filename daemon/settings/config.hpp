@@ -13,6 +13,7 @@
 #include "daemon/settings/animation_config.hpp"
 #include "daemon/settings/camera_config.hpp"
 #include "daemon/settings/config_tables.hpp"
+#include "daemon/settings/http_config.hpp"
 #include "daemon/settings/local_clock.hpp"
 #include "daemon/settings/log_config.hpp"
 #include "daemon/settings/recording_config.hpp"
@@ -36,6 +37,7 @@ inline constexpr std::size_t kMostScenes = 64;
 struct Config {
   std::uint64_t seed = 1;
   StreamConfig stream;
+  HttpConfig http;
   RecordingConfig recording;
   AnimationConfig animation;
   WindConfig wind;
@@ -49,7 +51,7 @@ struct Config {
 
   /// The values of the tables by key, from which the members above were made. For to_toml() and plan_reload() only.
   struct ByName {
-    ParameterValues stream, recording, animation, wind, shaping, look, log;
+    ParameterValues stream, http, recording, animation, wind, shaping, look, log;
   } by_name;
 };
 

@@ -51,6 +51,19 @@ const std::array kStreamParameters = {
               .choices = kControlPermissionNames},
 };
 
+const std::array kHttpParameters = {
+    Parameter{.name = "listen",
+              .unit = "",
+              .default_value = std::string(),
+              .help = "address and port that browsers, scripts and Prometheus ask: 127.0.0.1:7480, or 0.0.0.0:7480 for "
+                      "other machines, too; empty: none. Who may change something, [stream] control says"},
+    Parameter{.name = "hosts",
+              .unit = "",
+              .default_value = std::string(),
+              .help = "names, with blanks between them, by which others call this machine, besides its own name, "
+                      "localhost and its addresses; a request for any other is refused"},
+};
+
 const std::array kRecordingParameters = {
     Parameter{
         .name = "file",
@@ -323,6 +336,7 @@ const std::array kCommonSceneParameters = {
 const std::array kConfigTables = {
     ConfigTable{"", "at the top of the file", kGeneralParameters},
     ConfigTable{"stream", "where viewers connect", kStreamParameters},
+    ConfigTable{"http", "state and control by HTTP", kHttpParameters},
     ConfigTable{"recording", "what is recorded, and how much of it is kept", kRecordingParameters},
     ConfigTable{"animation", "the pace", kAnimationParameters},
     ConfigTable{"wind", "the wind without a live sensor, and the transition from one wind to another", kWindParameters},
@@ -344,6 +358,10 @@ std::span<const Parameter> general_parameters() {
 
 std::span<const Parameter> stream_parameters() {
   return kStreamParameters;
+}
+
+std::span<const Parameter> http_parameters() {
+  return kHttpParameters;
 }
 
 std::span<const Parameter> recording_parameters() {

@@ -19,6 +19,7 @@ std::span<const ConfigTable> config_tables();
 
 std::span<const Parameter> general_parameters();  ///< at the top of the file
 std::span<const Parameter> stream_parameters();
+std::span<const Parameter> http_parameters();
 std::span<const Parameter> recording_parameters();
 std::span<const Parameter> animation_parameters();
 std::span<const Parameter> wind_parameters();

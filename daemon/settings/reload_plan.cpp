@@ -30,6 +30,9 @@ constexpr std::array kKeyRules = {
     KeyRule{"stream", "max_clients_per_address", kApplied},
     KeyRule{"stream", "control", kApplied},
 
+    KeyRule{"http", "listen", kTakesRestart},
+    KeyRule{"http", "hosts", kTakesRestart},
+
     KeyRule{"recording", "file", kTakesRestart},
     KeyRule{"recording", "rotate", kApplied},
     KeyRule{"recording", "max_file_size", kApplied},
@@ -277,6 +280,8 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
   };
   merged_table("stream", next.by_name.stream, wanted.by_name.stream);
   next.stream = *stream_config_of(next.by_name.stream);
+  merged_table("http", next.by_name.http, wanted.by_name.http);
+  next.http = *http_config_of(next.by_name.http);
   merged_table("recording", next.by_name.recording, wanted.by_name.recording);
   next.recording = recording_config_of(next.by_name.recording);
   merged_table("animation", next.by_name.animation, wanted.by_name.animation);

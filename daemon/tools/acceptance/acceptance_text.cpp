@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/state/json_value.hpp"
 #include "daemon/tools/acceptance/acceptance.hpp"
 #include "daemon/tools/report/report_text.hpp"
-#include "daemon/tools/sensors/json_value.hpp"
 
 namespace yuragi::daemon::tools::acceptance {
 namespace {
 
 using nlohmann::ordered_json;
-using sensors::json_or_null;
+using state::json_or_null;
 
 std::string number(const std::optional<double>& value, double factor = 1.0) {
   return value ? fmt::format("{:.2f}", factor * *value) : "-";

@@ -4,15 +4,15 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/settings/duration_text.hpp"
-#include "daemon/tools/sensors/attention.hpp"
+#include "daemon/state/attention.hpp"
+#include "daemon/state/sensor_json.hpp"
 #include "daemon/tools/sensors/player_text.hpp"
-#include "daemon/tools/sensors/sensor_json.hpp"
 #include "daemon/tools/sensors/sensor_table.hpp"
 
 namespace yuragi::daemon::tools::sensors {
 
 std::string status_text(const DaemonStatus& status) {
-  const std::vector<std::string> attention = needs_attention(status.sensors);
+  const std::vector<std::string> attention = state::needs_attention(status.sensors);
   std::string text = fmt::format("{} at {}", status.software, status.address);
   if (status.running_s) text += fmt::format(", running for {}", settings::duration_text(*status.running_s));
   text += attention.empty() ? ": all is well\n" : ": needs attention\n";
@@ -27,7 +27,7 @@ std::string status_text(const DaemonStatus& status) {
 }
 
 nlohmann::ordered_json status_json(const DaemonStatus& status) {
-  const std::vector<std::string> attention = needs_attention(status.sensors);
+  const std::vector<std::string> attention = state::needs_attention(status.sensors);
   nlohmann::ordered_json json = {{"verdict", attention.empty() ? "well" : "attention"},
                                  {"attention", attention},
                                  {"address", status.address},
@@ -35,9 +35,9 @@ nlohmann::ordered_json status_json(const DaemonStatus& status) {
                                  {"tick_rate_hz", status.tick_rate_hz},
                                  {"running_s", nullptr}};
   if (status.running_s) json["running_s"] = *status.running_s;
-  json.update(sensors_json(status.sensors));
-  json["scenes"] = scenes_json(status.scenes);
-  json["players"] = players_json(status.players);
+  json.update(state::sensors_json(status.sensors));
+  json["scenes"] = state::scenes_json(status.scenes);
+  json["players"] = state::players_json(status.players);
   return json;
 }
 

@@ -1,4 +1,4 @@
-#include "daemon/tools/sensors/sensor_json.hpp"
+#include "daemon/state/sensor_json.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/tools/sensors/json_value.hpp"
+#include "daemon/state/json_value.hpp"
 
-namespace yuragi::daemon::tools::sensors {
+namespace yuragi::daemon::state {
 namespace {
 
 using nlohmann::ordered_json;
@@ -153,4 +153,4 @@ ordered_json players_json(const std::vector<wire::PlayerState>& players) {
   return all;
 }
 
-}  // namespace yuragi::daemon::tools::sensors
+}  // namespace yuragi::daemon::state

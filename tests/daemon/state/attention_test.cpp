@@ -1,9 +1,9 @@
-#include "daemon/tools/sensors/attention.hpp"
+#include "daemon/state/attention.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace yuragi::daemon::tools::sensors {
+namespace yuragi::daemon::state {
 namespace {
 
 using ::testing::AllOf;
@@ -100,4 +100,4 @@ TEST(Attention, NamesEachThingByItself) {
 }
 
 }  // namespace
-}  // namespace yuragi::daemon::tools::sensors
+}  // namespace yuragi::daemon::state

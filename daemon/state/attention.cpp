@@ -1,10 +1,10 @@
-#include "daemon/tools/sensors/attention.hpp"
+#include "daemon/state/attention.hpp"
 
 #include <fmt/format.h>
 
 #include "engine/base/count_text.hpp"
 
-namespace yuragi::daemon::tools::sensors {
+namespace yuragi::daemon::state {
 namespace {
 
 void add_recorder_attention(std::vector<std::string>& all, const wire::RecorderStatus& recorder) {
@@ -41,4 +41,4 @@ std::vector<std::string> needs_attention(const wire::Sensors& sensors) {
   return all;
 }
 
-}  // namespace yuragi::daemon::tools::sensors
+}  // namespace yuragi::daemon::state

@@ -4,7 +4,7 @@
 
 #include "engine/wire/wire.hpp"
 
-namespace yuragi::daemon::tools::sensors {
+namespace yuragi::daemon::state {
 
 // The stream's messages as JSON. Keys have their unit at the end, numbers are numbers, and what is not known is null.
 
@@ -17,4 +17,4 @@ nlohmann::ordered_json raw_trace_json(const wire::RawTrace& trace);
 nlohmann::ordered_json scenes_json(const std::vector<wire::SceneState>& scenes);
 nlohmann::ordered_json players_json(const std::vector<wire::PlayerState>& players);
 
-}  // namespace yuragi::daemon::tools::sensors
+}  // namespace yuragi::daemon::state

@@ -1,65 +1,16 @@
-#include "daemon/tools/sensors/sensor_json.hpp"
+#include "daemon/tools/sensors/description_json.hpp"
+
+#include <algorithm>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/tools/sensors/daemon_status.hpp"
-#include "daemon/tools/sensors/description_json.hpp"
 
 namespace yuragi::daemon::tools::sensors {
 namespace {
-
-TEST(SensorJson, HasNumbersAsNumbersAndNullWhereNothingIsKnown) {
-  wire::SensorStatus sensor;
-  sensor.name = "roof \"north\"";
-  sensor.state = wind::judging::SensorState::kStale;
-  sensor.speed_m_s = 8.5;
-  sensor.refused = {{"timeout", 3}};
-  wire::Sensors sensors;
-  sensors.sensors = {sensor};
-  sensors.wind.wind = {.u_m_s = -4.0, .v_m_s = 0.0};
-  sensors.recorder = wire::RecorderStatus{.state = wire::RecorderState::kHanging, .written = 12};
-
-  const auto json = nlohmann::ordered_json::parse(sensors_json(sensors).dump());
-  const auto& first = json["sensors"].at(0);
-  EXPECT_EQ(first["name"], "roof \"north\"");
-  EXPECT_EQ(first["state"], "stale");
-  EXPECT_EQ(first["speed_m_s"], 8.5);
-  EXPECT_TRUE(first["direction_deg"].is_null());
-  EXPECT_TRUE(first["age_s"].is_null()) << "it has no reading";
-  EXPECT_TRUE(first["interval_s"].is_null());
-  EXPECT_EQ(first["refused"]["timeout"], 3);
-  EXPECT_EQ(json["wind"]["speed_m_s"], 4.0);
-  EXPECT_EQ(json["wind"]["direction_deg"], 90.0);
-  EXPECT_EQ(json["wind"]["source"], "default");
-  EXPECT_EQ(json["recorder"]["state"], "hanging");
-  EXPECT_TRUE(json["recorder"]["free_bytes"].is_null());
-  EXPECT_TRUE(json["io_lateness"].is_null());
-  EXPECT_TRUE(sensors_json(wire::Sensors{})["recorder"].is_null());
-  EXPECT_TRUE(sensors_json(wire::Sensors{})["wind"]["direction_deg"].is_null()) << "still air has none";
-}
-
-TEST(SensorJson, SurvivesAStateOfANewerDaemon) {
-  wire::Sensors sensors;
-  sensors.sensors.resize(1);
-  sensors.sensors[0].state = static_cast<wind::judging::SensorState>(200);
-  sensors.recorder = wire::RecorderStatus{.state = static_cast<wire::RecorderState>(9)};
-  EXPECT_TRUE(sensors_json(sensors)["recorder"]["state"].is_null());
-  EXPECT_EQ(sensors_json(sensors)["sensors"][0]["state"], "?");
-}
-
-TEST(SensorJson, WritesTheBytesOfAMessageAsDigits) {
-  const wire::RawTrace trace{.sensor = "roof", .utc_ns = 5, .bytes = {0x01, 0xff}, .length = 2};
-  EXPECT_EQ(raw_trace_json(trace)["hex"], "01ff");
-  EXPECT_EQ(raw_trace_json(trace)["length_bytes"], 2);
-}
-
-TEST(SensorJson, SaysNothingOfARecordingThatCannotBeRead) {
-  const auto json = players_json({{.sensor = "a", .file = "a.windlog", .is_open = false, .refusal = ""}});
-  EXPECT_TRUE(json[0]["position_s"].is_null());
-  EXPECT_EQ(json[0]["is_open"], false);
-}
 
 TEST(DaemonStatusText, BeginsWithTheVerdictAndWhatNeedsAttention) {
   DaemonStatus status{.address = "127.0.0.1:7410", .software = "yuragi 1.0", .running_s = 200.0};

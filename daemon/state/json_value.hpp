@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace yuragi::daemon::tools::sensors {
+namespace yuragi::daemon::state {
 
 /// A value as JSON, null where there is none.
 template <class Value>
@@ -12,4 +12,4 @@ nlohmann::ordered_json json_or_null(const std::optional<Value>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-}  // namespace yuragi::daemon::tools::sensors
+}  // namespace yuragi::daemon::state

@@ -5,7 +5,7 @@
 
 #include "engine/wire/wire.hpp"
 
-namespace yuragi::daemon::tools::sensors {
+namespace yuragi::daemon::state {
 
 /// Below this a disk counts as nearly full: the default of [recording] min_free.
 inline constexpr double kLittleFreeSpace_bytes = 200e6;
@@ -19,4 +19,4 @@ inline constexpr double kLateIo_s = 0.1;
 /// Empty: all is well. Pure.
 std::vector<std::string> needs_attention(const wire::Sensors& sensors);
 
-}  // namespace yuragi::daemon::tools::sensors
+}  // namespace yuragi::daemon::state

@@ -1,0 +1,26 @@
+#include "daemon/settings/http_config.hpp"
+
+#include <sstream>
+
+#include "engine/base/address.hpp"
+
+namespace yuragi::daemon::settings {
+
+Result<HttpConfig, ParameterError> http_config_of(const ParameterValues& values) {
+  HttpConfig config{.listen = values.text("listen"), .hosts = {}};
+  if (!config.listen.empty()) {
+    if (const auto address = parse_address(config.listen); !address)
+      return ParameterError{"listen", address.error().message};
+  }
+  std::istringstream names(values.text("hosts"));
+  for (std::string name; names >> name;) {
+    if (name.find_first_of("/:,") != std::string::npos)
+      return ParameterError{"hosts", "\"" + name +
+                                         "\" is no name; allowed: names with blanks between them, such as "
+                                         "\"wall.example.org wall\""};
+    config.hosts.push_back(name);
+  }
+  return config;
+}
+
+}  // namespace yuragi::daemon::settings

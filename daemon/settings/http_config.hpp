@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/base/parameter.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi::daemon::settings {
+
+/// [http]: where browsers, scripts and Prometheus ask.
+struct HttpConfig {
+  std::string listen;              ///< HOST:PORT, see parse_address(); empty: nowhere
+  std::vector<std::string> hosts;  ///< further names by which this machine is called
+};
+
+/// From the values of http_parameters(). An error names the key.
+Result<HttpConfig, ParameterError> http_config_of(const ParameterValues& values);
+
+}  // namespace yuragi::daemon::settings

@@ -1,0 +1,239 @@
+#include "daemon/web/http_server.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <fmt/format.h>
+
+#include "daemon/stream/tcp_listening.hpp"
+#include "engine/base/address.hpp"
+
+namespace yuragi::daemon::web {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr auto kAcceptAgainAfter = std::chrono::milliseconds(100);
+
+std::string text_of(beast::string_view text) {
+  return {text.data(), text.size()};
+}
+
+HttpResponse plain(unsigned status, std::string text) {
+  return {.status = status, .content_type = "text/plain; charset=utf-8", .body = std::move(text) + "\n"};
+}
+
+/// What a request is refused with that cannot be read; nothing where the connection has only ended.
+std::optional<HttpResponse> refusal_of(const error_code& error) {
+  if (error == http::error::body_limit) return plain(413, "the body is too long");
+  if (error == http::error::header_limit || error == http::error::buffer_overflow)
+    return plain(431, "the header is too long");
+  if (error == http::error::end_of_stream) return std::nullopt;
+  if (error.category() == error_code(http::error::bad_method).category()) return plain(400, "this is no HTTP");
+  return std::nullopt;
+}
+
+/// One client: request after request. Kept alive by what it waits for.
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  Connection(tcp::socket socket, stream::Peer client, const HttpLimits& limits, const HttpServer::Handler& handler)
+      : stream_(std::move(socket)),
+        client_(std::move(client)),
+        limits_(limits),
+        handler_(handler),
+        buffer_(limits.header_bytes + limits.body_bytes) {}
+
+  void read() {
+    parser_.emplace();
+    parser_->header_limit(limits_.header_bytes);
+    parser_->body_limit(limits_.body_bytes);
+    stream_.expires_after(limits_.time);
+    http::async_read(stream_, buffer_, *parser_,
+                     [self = shared_from_this()](const error_code& error, std::size_t) { self->take(error); });
+  }
+  void end() {
+    error_code ignored;
+    stream_.socket().close(ignored);
+    has_ended_ = true;
+  }
+  bool has_ended() const { return has_ended_; }
+  const stream::Peer& client() const { return client_; }
+
+ private:
+  void take(const error_code& error) {
+    if (has_ended_) return;
+    if (error) {
+      is_last_ = true;
+      auto refusal = refusal_of(error);
+      return refusal ? write(std::move(*refusal)) : end();
+    }
+    const auto& message = parser_->get();
+    is_last_ = !message.keep_alive();
+    is_head_ = message.method() == http::verb::head;
+    const auto field = [&message](http::field name) { return text_of(message[name]); };
+    const std::string target = text_of(message.target());
+    const std::size_t mark = std::min(target.find('?'), target.size());
+    const HttpRequest request{.method = text_of(message.method_string()),
+                              .path = target.substr(0, mark),
+                              .query = mark < target.size() ? target.substr(mark + 1) : std::string(),
+                              .host = field(http::field::host),
+                              .origin = field(http::field::origin),
+                              .content_type = field(http::field::content_type),
+                              .body = message.body(),
+                              .client = client_};
+    handler_(request, [self = shared_from_this()](HttpResponse response) { self->write(std::move(response)); });
+  }
+
+  void write(HttpResponse response) {
+    if (has_ended_) return;
+    message_ = {};
+    message_.version(11);
+    message_.result(response.status);
+    message_.set(http::field::content_type, response.content_type);
+    message_.set(http::field::cache_control, "no-store");
+    message_.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
+    message_.set("Referrer-Policy", "no-referrer");
+    message_.set("X-Content-Type-Options", "nosniff");
+    for (const auto& [name, value] : response.fields) message_.set(name, value);
+    message_.body() = std::move(response.body);
+    message_.keep_alive(!is_last_);
+    message_.prepare_payload();
+    if (is_head_) message_.body().clear();  // its length stays in the header
+    stream_.expires_after(limits_.time);
+    http::async_write(stream_, message_, [self = shared_from_this()](const error_code& error, std::size_t) {
+      if (error || self->has_ended_) return self->end();
+      self->is_last_ ? self->hang_up() : self->read();
+    });
+  }
+
+  /// Closes once the client has: closing before it does would take the answer from it.
+  void hang_up() {
+    error_code ignored;
+    stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    buffer_.clear();
+    stream_.async_read_some(buffer_.prepare(buffer_.max_size()),
+                            [self = shared_from_this()](const error_code&, std::size_t) { self->end(); });
+  }
+
+  beast::tcp_stream stream_;
+  stream::Peer client_;
+  const HttpLimits& limits_;
+  const HttpServer::Handler& handler_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::string_body>> parser_;
+  http::response<http::string_body> message_;
+  bool is_head_ = false;
+  bool is_last_ = false;  ///< the connection ends behind this answer
+  bool has_ended_ = false;
+};
+
+}  // namespace
+
+class HttpServer::Server : public std::enable_shared_from_this<Server> {
+ public:
+  Server(asio::io_context& io, std::string_view listen, const HttpLimits& limits, Handler handler)
+      : acceptor_(stream::open_acceptor(io, listen)), again_(io), limits_(limits), handler_(std::move(handler)) {
+    const tcp::endpoint endpoint = acceptor_.local_endpoint();
+    endpoint_ = to_string(Address{endpoint.address().to_string(), endpoint.port()});
+  }
+
+  const std::string& endpoint() const { return endpoint_; }
+  std::size_t client_count() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(connections_, [](const auto& connection) { return !connection->has_ended(); }));
+  }
+
+  void accept() {
+    acceptor_.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
+      if (self->is_closed_) return;
+      if (error) return self->accept_later();
+      self->welcome(std::move(socket));
+      self->accept();
+    });
+  }
+  void close() {
+    is_closed_ = true;
+    error_code ignored;
+    acceptor_.close(ignored);
+    again_.cancel();
+    for (const auto& connection : connections_) connection->end();
+    connections_.clear();
+  }
+
+ private:
+  /// Usually out of file descriptors: those who are there stay.
+  void accept_later() {
+    again_.expires_after(kAcceptAgainAfter);
+    again_.async_wait([self = shared_from_this()](const error_code& error) {
+      if (!error && !self->is_closed_) self->accept();
+    });
+  }
+  void welcome(tcp::socket socket) {
+    std::erase_if(connections_, [](const auto& connection) { return connection->has_ended(); });
+    error_code error;
+    const tcp::endpoint endpoint = socket.remote_endpoint(error);
+    if (error) return;  // it has gone already
+    stream::keep_alive(socket);
+    const asio::ip::address address = stream::unmapped(endpoint.address());
+    stream::Peer client{.address = address.to_string(), .is_local = address.is_loopback()};
+    std::vector<stream::Peer> present;
+    for (const auto& connection : connections_) present.push_back(connection->client());
+    if (const auto why = stream::admission_refusal(limits_.clients, present, client)) {
+      return turn_away(std::move(socket), *why);
+    }
+    connections_.push_back(std::make_shared<Connection>(std::move(socket), std::move(client), limits_, handler_));
+    connections_.back()->read();
+  }
+
+  /// In one write that fits into an empty socket buffer.
+  static void turn_away(tcp::socket socket, const std::string& why) {
+    const std::string answer = fmt::format(
+        "HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/plain; charset=utf-8\r\nRetry-After: 10\r\n"
+        "Connection: close\r\nContent-Length: {}\r\n\r\n{}\n",
+        why.size() + 1, why);
+    error_code ignored;
+    socket.non_blocking(true, ignored);
+    socket.write_some(asio::buffer(answer), ignored);
+    socket.shutdown(tcp::socket::shutdown_send, ignored);
+  }
+
+  tcp::acceptor acceptor_;
+  asio::steady_timer again_;
+  HttpLimits limits_;
+  Handler handler_;
+  std::string endpoint_;
+  std::vector<std::shared_ptr<Connection>> connections_;
+  bool is_closed_ = false;
+};
+
+HttpServer::HttpServer(asio::io_context& io, std::string_view listen, const HttpLimits& limits, Handler handler)
+    : server_(std::make_shared<Server>(io, listen, limits, std::move(handler))) {
+  server_->accept();
+}
+HttpServer::~HttpServer() {
+  close();
+}
+std::string HttpServer::local_endpoint() const {
+  return server_->endpoint();
+}
+std::size_t HttpServer::client_count() const {
+  return server_->client_count();
+}
+void HttpServer::close() {
+  server_->close();
+}
+
+}  // namespace yuragi::daemon::web

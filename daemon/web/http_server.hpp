@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "daemon/stream/client_admission.hpp"
+#include "engine/base/time.hpp"
+
+namespace boost::asio {
+class io_context;
+}
+
+namespace yuragi::daemon::web {
+
+/// A whole request. Header fields that it does not have are empty.
+struct HttpRequest {
+  std::string method = {};  ///< "GET"
+  std::string path = {};    ///< as it was sent, without the query
+  std::string query = {};   ///< what stands behind the question mark
+  std::string host = {};
+  std::string origin = {};
+  std::string content_type = {};
+  std::string body = {};
+  stream::Peer client = {};
+};
+
+struct HttpResponse {
+  unsigned status = 200;
+  std::string content_type = "application/json";
+  std::string body = {};
+  std::vector<std::pair<std::string, std::string>> fields = {};  ///< further fields of the header
+};
+
+/// To be called once, on the thread of the server's context, at once or later.
+using HttpReply = std::function<void(HttpResponse)>;
+
+struct HttpLimits {
+  stream::AdmissionLimits clients = {};
+  std::uint32_t header_bytes = 16 * 1024;
+  std::uint64_t body_bytes = 64UL * 1024;
+  /// From the end of an answer to the end of the next request, and for writing an answer.
+  Nanoseconds time = std::chrono::seconds(20);
+};
+
+/// A server of HTTP/1.1 (R. Fielding and others, RFC 9110 and 9112, 2022) with connections that stay open. What is not
+/// HTTP, too long or too slow is refused or closed here; the handler gets whole requests alone.
+///
+/// All work is done on the thread that runs `io`, which must outlive this object. Thread-safe: no.
+class HttpServer {
+ public:
+  using Handler = std::function<void(const HttpRequest& request, HttpReply reply)>;
+
+  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) where that is not
+  /// possible.
+  HttpServer(boost::asio::io_context& io, std::string_view listen, const HttpLimits& limits, Handler handler);
+  ~HttpServer();
+  HttpServer(const HttpServer&) = delete;
+  HttpServer& operator=(const HttpServer&) = delete;
+
+  /// Where it listens: "127.0.0.1:7480".
+  std::string local_endpoint() const;
+  std::size_t client_count() const;
+
+  /// Closes all connections and accepts no more. A second call does nothing.
+  void close();
+
+ private:
+  class Server;  // keeps Beast, which is slow to compile, in one file
+  std::shared_ptr<Server> server_;
+};
+
+}  // namespace yuragi::daemon::web

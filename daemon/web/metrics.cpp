@@ -1,0 +1,142 @@
+#include "daemon/web/metrics.hpp"
+
+#include <utility>
+#include <vector>
+
+#include <prometheus/metric_family.h>
+#include <prometheus/text_serializer.h>
+
+#include "engine/wind/judging/sensor_state.hpp"
+
+namespace yuragi::daemon::web {
+namespace {
+
+using prometheus::ClientMetric;
+using prometheus::MetricFamily;
+using prometheus::MetricType;
+using Labels = std::vector<ClientMetric::Label>;
+
+/// One name and its values.
+class Family {
+ public:
+  Family(std::string name, std::string help, MetricType type) {
+    family_.name = std::move(name);
+    family_.help = std::move(help);
+    family_.type = type;
+  }
+  Family& add(double value, Labels labels = {}) {
+    ClientMetric metric;
+    metric.label = std::move(labels);
+    (family_.type == MetricType::Counter ? metric.counter.value : metric.gauge.value) = value;
+    family_.metric.push_back(std::move(metric));
+    return *this;
+  }
+  Family& add(std::uint64_t value, Labels labels = {}) { return add(static_cast<double>(value), std::move(labels)); }
+
+  MetricFamily take() { return std::move(family_); }
+
+ private:
+  MetricFamily family_;
+};
+
+Family gauge(std::string name, std::string help) {
+  return {std::move(name), std::move(help), MetricType::Gauge};
+}
+Family counter(std::string name, std::string help) {
+  return {std::move(name), std::move(help), MetricType::Counter};
+}
+
+void add_wind(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
+  all.push_back(
+      gauge("yuragi_wind_speed_meters_per_second", "Wind of all sensors together, as it is blown to the scenes")
+          .add(speed_of(sensors.wind.wind))
+          .take());
+  all.push_back(gauge("yuragi_wind_direction_degrees", "Where that wind comes from, clockwise from north")
+                    .add(wind::direction_from_deg(sensors.wind.wind))
+                    .take());
+  all.push_back(gauge("yuragi_wind_live_ratio", "Share of the wind that is measured now: 0 none, 1 all")
+                    .add(sensors.wind.live_weight)
+                    .take());
+}
+
+void add_sensors(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
+  Family speed = gauge("yuragi_sensor_speed_meters_per_second", "Last reading of each sensor, calibrated");
+  Family direction = gauge("yuragi_sensor_direction_degrees", "Its direction, clockwise from north");
+  Family age = gauge("yuragi_sensor_age_seconds", "Time since the last reading");
+  Family believed = gauge("yuragi_sensor_believed", "1 where its readings are used for the wind");
+  Family state = gauge("yuragi_sensor_state", "1 for the state that the sensor is in");
+  Family readings = counter("yuragi_sensor_readings_total", "Readings since the daemon began");
+  Family messages = counter("yuragi_sensor_messages_total", "Messages of its device, of use or not");
+  Family refused = counter("yuragi_sensor_refused_total", "Messages and readings that were refused, by reason");
+  Family reconnects = counter("yuragi_sensor_reconnects_total", "How often its device was found again");
+  for (const wire::SensorStatus& sensor : sensors.sensors) {
+    const Labels labels = {{"sensor", sensor.name}, {"driver", sensor.driver}};
+    const auto with = [&labels](const char* name, std::string_view value) {
+      Labels more = labels;
+      more.push_back({name, std::string(value)});
+      return more;
+    };
+    if (sensor.speed_m_s) speed.add(*sensor.speed_m_s, labels);
+    if (sensor.direction_deg) direction.add(*sensor.direction_deg, labels);
+    if (sensor.readings > 0) age.add(sensor.age_s, labels);
+    believed.add(is_believed(sensor.state) ? 1.0 : 0.0, labels);
+    for (const std::string_view each : wind::judging::kSensorStateNames)
+      state.add(each == name_of(sensor.state) ? 1.0 : 0.0, with("state", each));
+    readings.add(sensor.readings, labels);
+    messages.add(sensor.frames, labels);
+    for (const auto& [reason, count] : sensor.refused) refused.add(count, with("reason", reason));
+    reconnects.add(sensor.reconnects, labels);
+  }
+  for (Family* family : {&speed, &direction, &age, &believed, &state, &readings, &messages, &refused, &reconnects})
+    all.push_back(family->take());
+}
+
+void add_lateness(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
+  Family lateness = gauge("yuragi_lateness_seconds", "How late steps were since the daemon began, by thread");
+  const auto add = [&lateness](const char* thread, const std::optional<wire::Lateness>& of) {
+    if (!of) return;
+    lateness.add(of->p50_s, {{"thread", thread}, {"quantile", "0.5"}});
+    lateness.add(of->p99_s, {{"thread", thread}, {"quantile", "0.99"}});
+    lateness.add(of->max_s, {{"thread", thread}, {"quantile", "1"}});
+  };
+  add("animation", sensors.tick_lateness);
+  add("io", sensors.io_lateness);
+  all.push_back(lateness.take());
+  all.push_back(
+      counter("yuragi_ticks_skipped_total", "Ticks that were too late to be run").add(sensors.late_ticks).take());
+}
+
+void add_clients(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
+  all.push_back(gauge("yuragi_stream_clients", "Clients of the stream now").add(std::uint64_t{sensors.clients}).take());
+  all.push_back(counter("yuragi_stream_clients_turned_away_total", "Clients that were refused or let go, by reason")
+                    .add(sensors.refused_clients, {{"reason", "refused"}})
+                    .add(sensors.stuck_clients, {{"reason", "stuck"}})
+                    .add(sensors.idle_clients, {{"reason", "idle"}})
+                    .take());
+}
+
+void add_recorder(std::vector<MetricFamily>& all, const wire::RecorderStatus& recorder) {
+  all.push_back(gauge("yuragi_recorder_writing", "1 where the recording can be written")
+                    .add(recorder.state == wire::RecorderState::kWriting ? 1.0 : 0.0)
+                    .take());
+  all.push_back(counter("yuragi_recorder_written_total", "Readings on the disk").add(recorder.written).take());
+  all.push_back(counter("yuragi_recorder_lost_total", "Readings that were dropped").add(recorder.lost).take());
+  all.push_back(gauge("yuragi_recorder_waiting", "Readings that are not written yet").add(recorder.waiting).take());
+  if (recorder.free_bytes)
+    all.push_back(gauge("yuragi_recorder_free_bytes", "Free space on its disk").add(*recorder.free_bytes).take());
+}
+
+}  // namespace
+
+std::string metrics_text(const wire::Sensors& sensors, const std::string& software) {
+  std::vector<MetricFamily> all;
+  all.push_back(gauge("yuragi_build_info", "The program").add(1.0, {{"software", software}}).take());
+  add_wind(all, sensors);
+  add_sensors(all, sensors);
+  add_lateness(all, sensors);
+  add_clients(all, sensors);
+  if (sensors.recorder) add_recorder(all, *sensors.recorder);
+  return prometheus::TextSerializer().prometheus::Serializer::Serialize(all);
+}
+
+}  // namespace yuragi::daemon::web

@@ -1,0 +1,13 @@
+#include "daemon/web/problem.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace yuragi::daemon::web {
+
+HttpResponse problem(unsigned status, std::string title, std::string detail) {
+  const nlohmann::ordered_json json = {
+      {"type", "about:blank"}, {"title", std::move(title)}, {"status", status}, {"detail", std::move(detail)}};
+  return {.status = status, .content_type = "application/problem+json", .body = json.dump() + "\n"};
+}
+
+}  // namespace yuragi::daemon::web

@@ -1,0 +1,113 @@
+#include "daemon/web/request_body.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace yuragi::daemon::web {
+namespace {
+
+constexpr int kDeepest = 4;  ///< of a body; deeper ones are no request of ours
+
+/// Takes the keys of an object one by one. The first mistake is kept.
+class Body {
+ public:
+  explicit Body(std::string_view text) {
+    const auto is_shallow = [](int depth, nlohmann::json::parse_event_t /*event*/, nlohmann::json& /*parsed*/) {
+      return depth <= kDeepest;
+    };
+    object_ = nlohmann::json::parse(text, is_shallow, false);
+    if (!object_.is_object()) mistake_ = "the body is to be a JSON object";
+  }
+
+  std::string text(const char* key, std::string otherwise) {
+    const nlohmann::json* value = take(key);
+    if (value == nullptr) return otherwise;
+    if (value->is_string() && value->get_ref<const std::string&>().size() <= wire::kMaxTextBytes) return *value;
+    refuse(key, fmt::format("a text of at most {} bytes", wire::kMaxTextBytes));
+    return otherwise;
+  }
+  bool flag(const char* key, bool otherwise) {
+    const nlohmann::json* value = take(key);
+    if (value == nullptr || value->is_boolean()) return value == nullptr ? otherwise : value->get<bool>();
+    refuse(key, "true or false");
+    return otherwise;
+  }
+  double number(const char* key, double otherwise, double least, double most) {
+    const nlohmann::json* value = take(key);
+    if (value == nullptr) return otherwise;
+    if (value->is_number() && value->get<double>() >= least && value->get<double>() <= most)
+      return value->get<double>();
+    refuse(key, fmt::format("a number from {} to {}", least, most));
+    return otherwise;
+  }
+  void require(bool holds, const char* what) {
+    if (!holds && !mistake_) mistake_ = what;
+  }
+
+  /// Nothing: all was understood.
+  std::optional<Failure> mistake() {
+    if (!mistake_ && !object_.empty()) mistake_ = fmt::format("{}: is not known here", object_.begin().key());
+    if (!mistake_) return std::nullopt;
+    return Failure{*mistake_, FailureKind::kUsage};
+  }
+
+ private:
+  const nlohmann::json* take(const char* key) {
+    if (!object_.is_object() || !object_.contains(key)) return nullptr;
+    taken_ = std::move(object_[key]);
+    object_.erase(key);
+    return &taken_;
+  }
+  void refuse(const char* key, const std::string& allowed) {
+    if (!mistake_) mistake_ = fmt::format("{}: is to be {}", key, allowed);
+  }
+
+  nlohmann::json object_;
+  nlohmann::json taken_;
+  std::optional<std::string> mistake_;
+};
+
+struct ActionName {
+  std::string_view name;
+  wire::PlayerAction action;
+};
+constexpr std::array kActions = {
+    ActionName{"pause", wire::PlayerAction::kPause}, ActionName{"resume", wire::PlayerAction::kResume},
+    ActionName{"step", wire::PlayerAction::kStep}, ActionName{"seek", wire::PlayerAction::kSeek},
+    ActionName{"rate", wire::PlayerAction::kRate}};
+
+}  // namespace
+
+Result<wire::Control, Failure> scene_control_of(std::string_view json) {
+  Body body(json);
+  wire::Control control;
+  control.scene = body.text("scene", "");
+  control.shown = body.flag("shown", control.shown);
+  control.hide_others = body.flag("hide_others", control.hide_others);
+  control.over_s = body.number("over_s", control.over_s, 0.0, wire::kMaxFade_s);
+  body.require(!control.scene.empty(), "scene: is missing: the name of the scene to show or hide");
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return control;
+}
+
+Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json) {
+  Body body(json);
+  wire::PlayerCommand command;
+  const std::string action = body.text("action", "");
+  command.sensor = body.text("sensor", "");
+  command.count = static_cast<std::uint32_t>(body.number("count", 1.0, 1.0, wire::kMaxSteps));
+  command.place = body.text("place", "");
+  command.rate = body.number("rate", 1.0, wire::kMinPlayRate, wire::kMaxPlayRate);
+  const auto* const named = std::ranges::find(kActions, action, &ActionName::name);
+  body.require(named != kActions.end(), "action: is to be pause, resume, step, seek or rate");
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  command.action = named->action;
+  return command;
+}
+
+}  // namespace yuragi::daemon::web

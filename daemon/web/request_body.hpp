@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+#include "engine/base/result.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::daemon::web {
+
+// The bodies of requests, which are JSON, as requests of the stream. Hostile until here: a key that is not known, a
+// value of another type or beyond its limit is refused with its name. Pure.
+
+/// {"scene": name, "shown": true, "hide_others": false, "over_s": 2}
+Result<wire::Control, Failure> scene_control_of(std::string_view json);
+
+/// {"action": "pause", "resume", "step", "seek" or "rate", "sensor": name, "count": 1, "place": "+30", "rate": 1}
+Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json);
+
+}  // namespace yuragi::daemon::web

@@ -1,0 +1,141 @@
+// What can be asked for by HTTP, with its answer.
+#include "daemon/web/routes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/state/attention.hpp"
+#include "daemon/state/sensor_json.hpp"
+#include "daemon/web/metrics.hpp"
+#include "daemon/web/openapi.hpp"
+#include "daemon/web/problem.hpp"
+#include "daemon/web/request_body.hpp"
+
+namespace yuragi::daemon::web {
+namespace {
+
+using nlohmann::ordered_json;
+
+HttpResponse json_response(const ordered_json& content) {
+  // What a device says may be no UTF-8.
+  return {.body = content.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n"};
+}
+
+/// Why nothing that the daemon said is true any more.
+std::optional<std::string> silence_of(const Facts& facts) {
+  if (facts.sensors == nullptr) return "the daemon has only just begun";
+  if (facts.age_s <= facts.patience_s) return std::nullopt;
+  return fmt::format("the daemon has said nothing for {:.0f} s: it hangs, or its machine has far too much to do",
+                     facts.age_s);
+}
+
+HttpResponse no_news(const std::string& why) {
+  HttpResponse response = problem(503, "No news of the daemon", why);
+  response.fields.push_back({"Retry-After", "1"});
+  return response;
+}
+
+Answer health(const HttpRequest& /*request*/, const Facts& facts) {
+  const auto text = [](unsigned status, const std::string& body) {
+    return HttpResponse{.status = status, .content_type = "text/plain; charset=utf-8", .body = body};
+  };
+  if (const auto why = silence_of(facts)) return text(503, *why + "\n");
+  std::string reasons;
+  for (const std::string& reason : state::needs_attention(*facts.sensors)) reasons += reason + "\n";
+  return reasons.empty() ? text(200, "all is well\n") : text(503, reasons);
+}
+
+Answer metrics(const HttpRequest& /*request*/, const Facts& facts) {
+  if (const auto why = silence_of(facts)) return no_news(*why);
+  return HttpResponse{.content_type = "text/plain; version=0.0.4; charset=utf-8",
+                      .body = metrics_text(*facts.sensors, facts.software)};
+}
+
+Answer status(const HttpRequest& /*request*/, const Facts& facts) {
+  if (const auto why = silence_of(facts)) return no_news(*why);
+  const std::vector<std::string> attention = state::needs_attention(*facts.sensors);
+  ordered_json content = {{"verdict", attention.empty() ? "well" : "attention"},
+                          {"attention", attention},
+                          {"age_s", facts.age_s},
+                          {"address", facts.address},
+                          {"software", facts.software},
+                          {"tick_rate_hz", facts.tick_rate_hz}};
+  content.update(state::sensors_json(*facts.sensors));
+  return json_response(content);
+}
+
+Answer openapi(const HttpRequest& /*request*/, const Facts& /*facts*/) {
+  return HttpResponse{.body = std::string(openapi_json())};
+}
+
+/// A reply that refuses becomes a problem: of a request that names what is not there, or that is not allowed.
+HttpResponse answer_with(const wire::ControlReply& reply, const char* key, const ordered_json& list) {
+  if (!reply.done) return problem(409, "Not done", reply.message);
+  return json_response({{"message", reply.message}, {key, list}});
+}
+
+Question scenes_question(wire::Control control) {
+  return {.control = std::move(control), .answer = [](const wire::ControlReply& reply) {
+            return answer_with(reply, "scenes", state::scenes_json(reply.scenes));
+          }};
+}
+
+Answer scenes(const HttpRequest& /*request*/, const Facts& /*facts*/) {
+  return scenes_question({});
+}
+Answer change_scene(const HttpRequest& request, const Facts& /*facts*/) {
+  const auto control = scene_control_of(request.body);
+  if (!control) return problem(400, "Not understood", control.error().message);
+  return scenes_question(*control);
+}
+/// A daemon that plays nothing refuses the question; its list is empty.
+Answer players(const HttpRequest& /*request*/, const Facts& /*facts*/) {
+  return Question{.control = {.scene = {}, .player = wire::PlayerCommand{}},
+                  .answer = [](const wire::ControlReply& reply) {
+                    return json_response({{"message", reply.message}, {"players", state::players_json(reply.players)}});
+                  }};
+}
+Answer change_player(const HttpRequest& request, const Facts& /*facts*/) {
+  const auto command = player_command_of(request.body);
+  if (!command) return problem(400, "Not understood", command.error().message);
+  return Question{.control = {.scene = {}, .player = *command}, .answer = [](const wire::ControlReply& reply) {
+                    return answer_with(reply, "players", state::players_json(reply.players));
+                  }};
+}
+
+constexpr std::array kRoutes = {
+    Route{"GET", "/healthz", health},
+    Route{"GET", "/metrics", metrics},
+    Route{"GET", "/api/v1/openapi.json", openapi},
+    Route{"GET", "/api/v1/status", status},
+    Route{"GET", "/api/v1/scenes", scenes},
+    Route{"POST", "/api/v1/scenes", change_scene},
+    Route{"GET", "/api/v1/player", players},
+    Route{"POST", "/api/v1/player", change_player},
+};
+
+}  // namespace
+
+std::span<const Route> routes() {
+  return kRoutes;
+}
+
+Answer answer_to(const HttpRequest& request, const Facts& facts) {
+  const std::string_view method = request.method == "HEAD" ? std::string_view("GET") : request.method;
+  std::string allowed;
+  for (const Route& route : kRoutes) {
+    if (route.path != request.path) continue;
+    if (route.method == method) return route.answer(request, facts);
+    allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
+  }
+  if (allowed.empty()) return problem(404, "Not here", request.path + " is not known; /api/v1/openapi.json lists all");
+  HttpResponse refusal = problem(405, "Not so", request.path + " takes " + allowed);
+  refusal.fields.push_back({"Allow", allowed});
+  return refusal;
+}
+
+}  // namespace yuragi::daemon::web

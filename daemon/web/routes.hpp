@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "daemon/web/http_server.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::daemon::web {
+
+/// What an answer is made of.
+struct Facts {
+  std::string software = {};
+  std::string address = {};  ///< where the server listens
+  double tick_rate_hz = 0.0;
+  const wire::Sensors* sensors = nullptr;  ///< the daemon's last news; null: there was none yet
+  double age_s = 0.0;                      ///< of them
+  double patience_s = 5.0;                 ///< news that are older are no news
+};
+
+/// A request that the daemon has to carry out, and the answer that its reply becomes.
+struct Question {
+  wire::Control control;
+  std::function<HttpResponse(const wire::ControlReply& reply)> answer;
+};
+
+using Answer = std::variant<HttpResponse, Question>;
+
+/// One thing that can be asked for.
+struct Route {
+  std::string_view method, path;
+  Answer (*answer)(const HttpRequest& request, const Facts& facts);
+};
+
+/// All of them; openapi.json, which is served at /api/v1/openapi.json, describes each.
+std::span<const Route> routes();
+
+/// Answers a request that is_known_host() and, where it changes something, is_same_origin() has let through. Pure.
+Answer answer_to(const HttpRequest& request, const Facts& facts);
+
+}  // namespace yuragi::daemon::web

@@ -1,0 +1,166 @@
+#include "daemon/web/web_server.hpp"
+
+#include <atomic>
+#include <thread>
+#include <utility>
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <fmt/format.h>
+
+#include "daemon/web/http_server.hpp"
+#include "daemon/web/known_host.hpp"
+#include "daemon/web/problem.hpp"
+#include "daemon/web/routes.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::daemon::web {
+namespace {
+
+namespace asio = boost::asio;
+using std::chrono::steady_clock;
+
+/// The newest of what was published, decoded.
+struct News {
+  wire::Sensors sensors;
+  steady_clock::time_point at;
+};
+
+std::optional<News> news_of(const stream::SharedBytes& bytes) {
+  if (!bytes) return std::nullopt;
+  auto message = wire::decode(std::span(*bytes).subspan(wire::kSizePrefixBytes));
+  if (!message || !std::holds_alternative<wire::Sensors>(*message)) return std::nullopt;
+  return News{std::get<wire::Sensors>(std::move(*message)), steady_clock::now()};
+}
+
+/// A question that the daemon is carrying out: answered by its reply, or, where that does not come, when it is given
+/// up.
+struct Pending {
+  Pending(asio::io_context& io, HttpReply to_client) : given_up(io), reply(std::move(to_client)) {}
+
+  void answer(HttpResponse response) {
+    given_up.cancel();
+    if (reply) std::exchange(reply, nullptr)(std::move(response));
+  }
+
+  asio::steady_timer given_up;
+  HttpReply reply;
+};
+
+}  // namespace
+
+class WebServer::Thread {
+ public:
+  explicit Thread(WebSettings settings)
+      : settings_(std::move(settings)),
+        server_(std::make_unique<HttpServer>(
+            *io_, settings_.listen, HttpLimits{.clients = settings_.clients},
+            [this](const HttpRequest& request, HttpReply reply) { answer(request, std::move(reply)); })),
+        endpoint_(server_->local_endpoint()),
+        thread_([this] { io_->run(); }) {}
+  ~Thread() { close(); }
+  Thread(const Thread&) = delete;
+  Thread& operator=(const Thread&) = delete;
+
+  const std::string& endpoint() const { return endpoint_; }
+  std::size_t client_count() const { return clients_; }
+
+  void publish(stream::SharedBytes here, stream::SharedBytes elsewhere) {
+    asio::post(*io_, [this, here = std::move(here), elsewhere = std::move(elsewhere)] {
+      if (auto news = news_of(here)) here_ = std::move(news);
+      if (auto news = news_of(elsewhere)) elsewhere_ = std::move(news);
+      clients_ = server_ ? server_->client_count() : 0;
+    });
+  }
+
+  void close() {
+    if (!thread_.joinable()) return;
+    asio::post(*io_, [this] {
+      server_.reset();
+      work_.reset();
+      io_->stop();
+    });
+    thread_.join();
+  }
+
+ private:
+  void answer(const HttpRequest& request, HttpReply reply) {
+    if (!is_known_host(request.host, settings_.hosts)) {
+      return reply(problem(421, "Not this machine's name",
+                           "\"" + request.host +
+                               "\" is no name of this machine: call it by its address, or add that "
+                               "name to [http] hosts"));
+    }
+    const bool only_reads = request.method == "GET" || request.method == "HEAD";
+    if (!only_reads && !is_same_origin(request.origin, request.host))
+      return reply(problem(403, "Another page's request", "only pages of this daemon may change something"));
+    // A form of somebody else's page cannot send this type without being asked first.
+    if (!only_reads && !request.content_type.starts_with("application/json"))
+      return reply(problem(415, "Not JSON", "the body is to be JSON: Content-Type: application/json"));
+
+    const auto& news = request.client.is_local ? here_ : elsewhere_;
+    const Facts facts{.software = settings_.software,
+                      .address = endpoint_,
+                      .tick_rate_hz = settings_.tick_rate_hz,
+                      .sensors = news ? &news->sensors : nullptr,
+                      .age_s = news ? seconds(steady_clock::now() - news->at) : 0.0,
+                      .patience_s = seconds(settings_.patience)};
+    Answer answer = answer_to(request, facts);
+    if (auto* const response = std::get_if<HttpResponse>(&answer)) return reply(std::move(*response));
+    ask(std::get<Question>(std::move(answer)), request.client.is_local, std::move(reply));
+  }
+
+  void ask(Question question, bool is_local, HttpReply reply) {
+    if (!settings_.ask) return reply(problem(503, "Not here", "this daemon takes no requests"));
+    const auto pending = std::make_shared<Pending>(*io_, std::move(reply));
+    pending->given_up.expires_after(settings_.patience);
+    pending->given_up.async_wait([pending](const boost::system::error_code& error) {
+      if (!error)
+        pending->answer(problem(503, "No reply", "the daemon does not reply: it hangs, or has far too much to do"));
+    });
+    // The reply comes on another thread, perhaps when the question has been given up or this object is gone.
+    settings_.ask(question.control, is_local,
+                  [io = std::weak_ptr(io_), asked = std::weak_ptr(pending),
+                   make = std::move(question.answer)](wire::ControlReply given) {
+                    const auto alive = io.lock();
+                    if (!alive) return;
+                    asio::post(*alive, [asked, make, given = std::move(given)] {
+                      if (const auto still = asked.lock()) still->answer(make(given));
+                    });
+                  });
+  }
+
+  WebSettings settings_;
+  std::shared_ptr<asio::io_context> io_ = std::make_shared<asio::io_context>(1);
+  asio::executor_work_guard<asio::io_context::executor_type> work_{io_->get_executor()};
+  std::optional<News> here_, elsewhere_;
+  std::unique_ptr<HttpServer> server_;
+  const std::string endpoint_;
+  std::atomic<std::size_t> clients_ = 0;
+  std::thread thread_;  // the last: it uses all of the above
+};
+
+WebServer::WebServer(WebSettings settings) : thread_(std::make_unique<Thread>(std::move(settings))) {}
+WebServer::~WebServer() = default;
+
+std::string WebServer::local_endpoint() const {
+  return thread_->endpoint();
+}
+void WebServer::publish(stream::SharedBytes /*frame*/) {}
+void WebServer::publish_scenes(stream::SharedBytes /*scenes*/) {}
+void WebServer::publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) {
+  thread_->publish(std::move(here), std::move(elsewhere));
+}
+std::size_t WebServer::client_count() const {
+  return thread_->client_count();
+}
+bool WebServer::has_remote_clients() const {
+  return true;
+}
+void WebServer::close() {
+  thread_->close();
+}
+
+}  // namespace yuragi::daemon::web

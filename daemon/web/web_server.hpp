@@ -1,0 +1,59 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/stream/client_admission.hpp"
+#include "daemon/stream/transport.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi::daemon::web {
+
+struct WebSettings {
+  std::string listen = {};  ///< "HOST:PORT"; port 0 takes any free one
+  std::vector<std::string> hosts =
+      {};  ///< names by which clients may call this machine, besides its own (known_host())
+  stream::AdmissionLimits clients = {};
+  std::string software = {};  ///< "yuragi 0.2.0"
+  double tick_rate_hz = 0.0;
+  /// Carries out a client's request and calls `reply` once, on any thread. Called on the web server's own; must not
+  /// wait. Empty: every request is refused.
+  std::function<void(const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply)> ask =
+      {};
+  /// After so long without news of the daemon the page says that it hangs, and a question is given up.
+  Nanoseconds patience = std::chrono::seconds(5);
+};
+
+/// The state of the daemon by HTTP, for people, scripts and Prometheus: /healthz, /metrics, /api/v1 (routes.cpp).
+///
+/// A thread of its own answers, from what was published last; the caller of publish() hands over a pointer and goes on.
+/// Thread-safe: everything but construction, close() and destruction.
+class WebServer final : public stream::Transport {
+ public:
+  /// Listens and begins to answer. Throws FailureError (kUnavailable) where that is not possible.
+  explicit WebServer(WebSettings settings);
+  ~WebServer() override;
+
+  /// Where it listens: "127.0.0.1:7480".
+  std::string local_endpoint() const;
+
+  std::string name() const override { return "http " + local_endpoint(); }
+  void publish(stream::SharedBytes frame) override;
+  void publish_scenes(stream::SharedBytes scenes) override;
+  void publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) override;
+  std::size_t client_count() const override;
+  /// Those who ask from elsewhere are told less, and may ask at any time.
+  bool has_remote_clients() const override;
+  void close() override;
+
+ private:
+  class Thread;
+  std::unique_ptr<Thread> thread_;
+};
+
+}  // namespace yuragi::daemon::web

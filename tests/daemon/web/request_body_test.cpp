@@ -1,0 +1,67 @@
+#include "daemon/web/request_body.hpp"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace yuragi::daemon::web {
+namespace {
+
+using testing::HasSubstr;
+
+std::string mistake_in_scene(std::string_view json) {
+  const auto control = scene_control_of(json);
+  return control ? "none" : control.error().message;
+}
+std::string mistake_in_player(std::string_view json) {
+  const auto command = player_command_of(json);
+  return command ? "none" : command.error().message;
+}
+
+TEST(SceneBody, AllKeysAndDefaults) {
+  const auto all = scene_control_of(R"({"scene":"meadow","shown":false,"hide_others":true,"over_s":0.5})");
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->scene, "meadow");
+  EXPECT_FALSE(all->shown);
+  EXPECT_TRUE(all->hide_others);
+  EXPECT_EQ(all->over_s, 0.5);
+
+  const auto least = scene_control_of(R"({"scene":"meadow"})");
+  ASSERT_TRUE(least);
+  EXPECT_TRUE(least->shown);
+  EXPECT_FALSE(least->hide_others);
+  EXPECT_EQ(least->over_s, wire::Control{}.over_s);
+}
+TEST(SceneBody, MistakesNameTheirKey) {
+  EXPECT_THAT(mistake_in_scene(""), HasSubstr("JSON object"));
+  EXPECT_THAT(mistake_in_scene("[1]"), HasSubstr("JSON object"));
+  EXPECT_THAT(mistake_in_scene(R"({"scene":"a")"), HasSubstr("JSON object"));
+  EXPECT_THAT(mistake_in_scene("{}"), HasSubstr("scene: is missing"));
+  EXPECT_THAT(mistake_in_scene(R"({"scene":1})"), HasSubstr("scene: is to be a text"));
+  EXPECT_THAT(mistake_in_scene(R"({"scene":"a","shown":"no"})"), HasSubstr("shown: is to be true or false"));
+  EXPECT_THAT(mistake_in_scene(R"({"scene":"a","over_s":-1})"), HasSubstr("over_s: is to be a number from 0 to 3600"));
+  EXPECT_THAT(mistake_in_scene(R"({"scene":"a","over_s":1e400})"), HasSubstr("JSON object"));
+  EXPECT_THAT(mistake_in_scene(R"({"scene":"a","shon":true})"), HasSubstr("shon: is not known here"));
+  EXPECT_THAT(mistake_in_scene(R"({"scene":")" + std::string(2000, 'a') + "\"}"), HasSubstr("at most 1024 bytes"));
+}
+TEST(SceneBody, DeepNestingCostsNothing) {
+  EXPECT_NE(mistake_in_scene(R"({"scene":)" + std::string(30'000, '[') + std::string(30'000, ']') + "}"), "none");
+}
+
+TEST(PlayerBody, EveryAction) {
+  EXPECT_EQ(player_command_of(R"({"action":"pause"})")->action, wire::PlayerAction::kPause);
+  EXPECT_EQ(player_command_of(R"({"action":"resume","sensor":"roof"})")->sensor, "roof");
+  EXPECT_EQ(player_command_of(R"({"action":"step","count":3})")->count, 3U);
+  EXPECT_EQ(player_command_of(R"({"action":"seek","place":"+30"})")->place, "+30");
+  EXPECT_EQ(player_command_of(R"({"action":"rate","rate":4})")->rate, 4.0);
+}
+TEST(PlayerBody, MistakesNameTheirKey) {
+  EXPECT_THAT(mistake_in_player("{}"), HasSubstr("action: is to be pause"));
+  EXPECT_THAT(mistake_in_player(R"({"action":"fly"})"), HasSubstr("action: is to be pause"));
+  EXPECT_THAT(mistake_in_player(R"({"action":"step","count":0})"), HasSubstr("count: is to be a number from 1"));
+  EXPECT_THAT(mistake_in_player(R"({"action":"rate","rate":1e9})"), HasSubstr("rate: is to be a number"));
+}
+
+}  // namespace
+}  // namespace yuragi::daemon::web

@@ -1,0 +1,141 @@
+#include "daemon/web/routes.hpp"
+
+#include <set>
+#include <string>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/web/openapi.hpp"
+
+namespace yuragi::daemon::web {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+wire::Sensors one_sensor(wind::judging::SensorState state) {
+  wire::Sensors sensors;
+  wire::SensorStatus& sensor = sensors.sensors.emplace_back();
+  sensor.name = "roof \"east\"\n";
+  sensor.driver = "modbus";
+  sensor.state = state;
+  sensor.state_reason = "its plug is out";
+  sensor.readings = 12;
+  sensor.speed_m_s = 3.25;
+  sensor.refused = {{"checksum", 2}};
+  sensors.late_ticks = 7;
+  return sensors;
+}
+
+class RoutesTest : public testing::Test {
+ protected:
+  HttpResponse get(const std::string& path) { return said(answer_to({.method = "GET", .path = path}, facts_)); }
+  static HttpResponse said(const Answer& answer) {
+    EXPECT_TRUE(std::holds_alternative<HttpResponse>(answer)) << "a question to the daemon";
+    return std::holds_alternative<HttpResponse>(answer) ? std::get<HttpResponse>(answer) : HttpResponse{};
+  }
+
+  wire::Sensors sensors_ = one_sensor(wind::judging::SensorState::kLive);
+  Facts facts_{.software = "yuragi 0.0.0", .sensors = &sensors_, .age_s = 0.3};
+};
+
+TEST_F(RoutesTest, Health_WellOrWhatNeedsAttention) {
+  EXPECT_EQ(get("/healthz").status, 200U);
+  sensors_ = one_sensor(wind::judging::SensorState::kDisconnected);
+  EXPECT_EQ(get("/healthz").status, 503U);
+  EXPECT_THAT(get("/healthz").body, HasSubstr("its plug is out"));
+}
+TEST_F(RoutesTest, OldNewsAreNone) {
+  facts_.age_s = 9.0;
+  EXPECT_EQ(get("/healthz").status, 503U);
+  EXPECT_THAT(get("/healthz").body, HasSubstr("said nothing for 9 s"));
+  for (const char* path : {"/metrics", "/api/v1/status"}) {
+    EXPECT_EQ(get(path).status, 503U);
+    EXPECT_EQ(get(path).content_type, "application/problem+json");
+  }
+  facts_.sensors = nullptr;
+  EXPECT_THAT(get("/healthz").body, HasSubstr("just begun"));
+}
+TEST_F(RoutesTest, Metrics_NamesUnitsAndEscapedLabels) {
+  const std::string text = get("/metrics").body;
+  EXPECT_THAT(text,
+              HasSubstr(R"(yuragi_sensor_speed_meters_per_second{sensor="roof \"east\"\n",driver="modbus"} 3.25)"));
+  EXPECT_THAT(text, HasSubstr(R"(driver="modbus",reason="checksum"} 2)"));
+  EXPECT_THAT(text, HasSubstr(R"(driver="modbus",state="live"} 1)"));
+  EXPECT_THAT(text, HasSubstr(R"(driver="modbus",state="stale"} 0)"));
+  EXPECT_THAT(text, HasSubstr("# TYPE yuragi_ticks_skipped_total counter\nyuragi_ticks_skipped_total 7\n"));
+}
+TEST_F(RoutesTest, Status_IsJsonWhateverANameHolds) {
+  sensors_.sensors[0].detail = "\xff\xfe";
+  const json status = json::parse(get("/api/v1/status").body);
+  EXPECT_EQ(status["verdict"], "well");
+  EXPECT_EQ(status["sensors"][0]["name"], "roof \"east\"\n");
+}
+TEST_F(RoutesTest, WhatIsNotThere_OrNotTaken) {
+  EXPECT_EQ(get("/").status, 404U);
+  EXPECT_EQ(get("/healthz/").status, 404U);
+  const HttpResponse refusal = said(answer_to({.method = "POST", .path = "/healthz"}, facts_));
+  EXPECT_EQ(refusal.status, 405U);
+  EXPECT_EQ(refusal.fields, (std::vector<std::pair<std::string, std::string>>{{"Allow", "GET"}}));
+  EXPECT_EQ(said(answer_to({.method = "HEAD", .path = "/healthz"}, facts_)).status, 200U);
+}
+TEST_F(RoutesTest, AScene_IsAskedOfTheDaemon) {
+  const Answer answer =
+      answer_to({.method = "POST", .path = "/api/v1/scenes", .body = R"({"scene":"meadow","shown":false})"}, facts_);
+  ASSERT_TRUE(std::holds_alternative<Question>(answer));
+  const auto& question = std::get<Question>(answer);
+  EXPECT_EQ(question.control.scene, "meadow");
+  const HttpResponse done =
+      question.answer({.done = true, .message = "hidden", .scenes = {{"meadow", "grass", false}}});
+  EXPECT_EQ(done.status, 200U);
+  EXPECT_EQ(json::parse(done.body)["scenes"][0]["is_shown"], false);
+  const HttpResponse refused = question.answer({.done = false, .message = "no scene 'meadow'", .scenes = {}});
+  EXPECT_EQ(refused.status, 409U);
+  EXPECT_EQ(json::parse(refused.body)["detail"], "no scene 'meadow'");
+}
+TEST_F(RoutesTest, PlayersOfADaemonThatPlaysNothing_AreNone) {
+  const Answer answer = answer_to({.method = "GET", .path = "/api/v1/player"}, facts_);
+  ASSERT_TRUE(std::holds_alternative<Question>(answer));
+  const HttpResponse none = std::get<Question>(answer).answer({.done = false, .message = "none plays", .scenes = {}});
+  EXPECT_EQ(none.status, 200U);
+  EXPECT_EQ(json::parse(none.body)["players"], json::array());
+}
+
+TEST(OpenApi, DescribesEachRoute_AndNothingElse) {
+  std::set<std::pair<std::string, std::string>> served, described;
+  for (const Route& route : routes()) {
+    std::string method(route.method);
+    std::ranges::transform(method, method.begin(), [](char c) { return static_cast<char>(c - 'A' + 'a'); });
+    served.emplace(method, route.path);
+  }
+  const json api = json::parse(openapi_json());
+  for (const auto& [path, methods] : api["paths"].items()) {
+    for (const auto& method : methods.items()) described.emplace(method.key(), path);
+  }
+  EXPECT_EQ(served, described);
+}
+
+/// Each key that the description names is taken by the server, and no other (request_body.hpp).
+TEST(OpenApi, BodiesAreThoseThatAreTaken) {
+  const json api = json::parse(openapi_json());
+  const auto keys = [&api](const char* path) {
+    const json& schema = api["paths"][path]["post"]["requestBody"]["content"]["application/json"]["schema"];
+    EXPECT_EQ(schema["additionalProperties"], false);
+    json body = json::object();
+    for (const auto& [key, property] : schema["properties"].items())
+      body[key] = property.contains("default") ? property["default"]
+                  : property.contains("enum")  ? property["enum"][0]
+                                               : json("meadow");
+    return body.dump();
+  };
+  for (const char* path : {"/api/v1/scenes", "/api/v1/player"}) {
+    const Answer answer = answer_to({.method = "POST", .path = path, .body = keys(path)}, {});
+    EXPECT_TRUE(std::holds_alternative<Question>(answer)) << std::get<HttpResponse>(answer).body;
+  }
+}
+
+}  // namespace
+}  // namespace yuragi::daemon::web

@@ -1,0 +1,227 @@
+// Real connections to the loopback. The server answers on its own thread; a read waits for what comes, or for the end.
+#include "daemon/web/web_server.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/read_until.hpp>
+#include <boost/asio/write.hpp>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "daemon/web/http_server.hpp"
+#include "engine/base/address.hpp"
+
+namespace yuragi::daemon::web {
+namespace {
+
+using boost::asio::ip::tcp;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+using namespace std::chrono_literals;
+
+/// A client that knows just enough HTTP for these tests.
+class Client {
+ public:
+  explicit Client(const std::string& endpoint) : socket_(io_) {
+    const Address address = parse_address(endpoint).value();
+    socket_.connect(tcp::endpoint(boost::asio::ip::make_address(address.host), address.port));
+  }
+
+  void send(const std::string& bytes) { boost::asio::write(socket_, boost::asio::buffer(bytes)); }
+  /// The next answer: its header and its body.
+  std::string answer() {
+    boost::system::error_code error;
+    const std::size_t header = boost::asio::read_until(socket_, boost::asio::dynamic_buffer(said_), "\r\n\r\n", error);
+    if (error) return std::exchange(said_, {});
+    const std::size_t field = said_.find("Content-Length: ");
+    const std::size_t body = field < header ? std::stoul(said_.substr(field + 16)) : 0;
+    if (said_.size() < header + body)
+      boost::asio::read(socket_, boost::asio::dynamic_buffer(said_),
+                        boost::asio::transfer_exactly(header + body - said_.size()), error);
+    std::string whole = said_.substr(0, header + body);
+    said_.erase(0, header + body);
+    return whole;
+  }
+  std::string get(const std::string& path, const std::string& fields = "") {
+    send("GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\n" + fields + "\r\n");
+    return answer();
+  }
+  std::string post(const std::string& path, const std::string& body, const std::string& fields) {
+    send("POST " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: " + std::to_string(body.size()) + "\r\n" +
+         fields + "\r\n" + body);
+    return answer();
+  }
+  /// Has the server closed the connection? Waits until it has.
+  bool is_closed() {
+    char one = 0;
+    boost::system::error_code error;
+    socket_.read_some(boost::asio::buffer(&one, 1), error);
+    return error.failed();
+  }
+
+ private:
+  boost::asio::io_context io_;
+  tcp::socket socket_;
+  std::string said_;
+};
+
+constexpr const char* kJson = "Content-Type: application/json\r\n";
+
+stream::SharedBytes status_of(const char* sensor) {
+  wire::Sensors sensors;
+  sensors.sensors.emplace_back().name = sensor;
+  sensors.sensors.back().state = wind::judging::SensorState::kLive;
+  return std::make_shared<const wire::Bytes>(wire::encode(sensors));
+}
+
+class WebServerTest : public testing::Test {
+ protected:
+  WebServerTest() : server_(settings()) { server_.publish_sensors(status_of("roof"), status_of("roof")); }
+
+  WebSettings settings() {
+    return {.listen = "127.0.0.1:0",
+            .hosts = {"roof"},
+            .software = "yuragi 0.0.0",
+            .ask =
+                [this](const wire::Control& control, bool is_local, const auto& reply) {
+                  asked_ += control.scene + (is_local ? " from here;" : " from elsewhere;");
+                  if (replies_) reply({.done = true, .message = "done", .scenes = {}});
+                },
+            .patience = replies_ ? Nanoseconds(60s) : Nanoseconds(20ms)};
+  }
+
+  bool replies_ = true;
+  std::string asked_;  // on the server's thread, before its answer
+  WebServer server_;
+};
+
+TEST_F(WebServerTest, AnswersRequestAfterRequestOnOneConnection) {
+  Client client(server_.local_endpoint());
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_THAT(client.get("/healthz"), StartsWith("HTTP/1.1 200 OK"));
+    EXPECT_THAT(client.get("/metrics"), HasSubstr("sensor=\"roof\""));
+  }
+  EXPECT_THAT(client.get("/healthz", "Connection: close\r\n"), HasSubstr("all is well"));
+  EXPECT_TRUE(client.is_closed());
+}
+TEST_F(WebServerTest, TheNewestNewsWin) {
+  server_.publish_sensors(status_of("mast"), nullptr);
+  EXPECT_THAT(Client(server_.local_endpoint()).get("/api/v1/status"), HasSubstr("\"mast\""));
+}
+TEST_F(WebServerTest, NobodyElsesPageSeesOrChangesAnything) {
+  Client client(server_.local_endpoint());
+  const std::string answer = client.get("/api/v1/status");
+  EXPECT_THAT(answer, HasSubstr("Content-Security-Policy: default-src 'none'"));
+  EXPECT_THAT(answer, Not(HasSubstr("Access-Control-Allow")));
+  client.send("GET /api/v1/status HTTP/1.1\r\nHost: evil.example\r\n\r\n");
+  EXPECT_THAT(client.answer(), StartsWith("HTTP/1.1 421"));
+  client.send("GET /api/v1/status HTTP/1.0\r\n\r\n");
+  EXPECT_THAT(client.answer(), StartsWith("HTTP/1.1 421")) << "no host at all";
+
+  Client other(server_.local_endpoint());
+  const std::string body = R"({"scene":"meadow"})";
+  EXPECT_THAT(other.post("/api/v1/scenes", body, std::string(kJson) + "Origin: http://evil.example\r\n"),
+              StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(other.post("/api/v1/scenes", body, "Content-Type: text/plain\r\n"), StartsWith("HTTP/1.1 415"));
+  EXPECT_EQ(asked_, "");
+  EXPECT_THAT(other.post("/api/v1/scenes", body, std::string(kJson) + "Origin: http://127.0.0.1\r\n"),
+              StartsWith("HTTP/1.1 200"));
+  EXPECT_EQ(asked_, "meadow from here;");
+}
+TEST_F(WebServerTest, GarbageAndWhatIsTooLong) {
+  const auto said_to = [this](const std::string& bytes) {
+    Client client(server_.local_endpoint());
+    client.send(bytes);
+    return client.answer();
+  };
+  EXPECT_THAT(said_to("\x16\x03\x01\x02\x01 TLS?\r\n\r\n"), StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(said_to("GET /healthz HTTP/1.1\r\nX: " + std::string(20'000, 'a')), StartsWith("HTTP/1.1 431"));
+  EXPECT_THAT(said_to("POST /api/v1/scenes HTTP/1.1\r\nHost: roof\r\nContent-Length: 9999999\r\n\r\n"),
+              StartsWith("HTTP/1.1 413"));
+  EXPECT_THAT(Client(server_.local_endpoint()).get("/healthz"), StartsWith("HTTP/1.1 200")) << "others notice nothing";
+}
+TEST_F(WebServerTest, EndsWithItsConnections) {
+  Client client(server_.local_endpoint());
+  EXPECT_THAT(client.get("/healthz"), StartsWith("HTTP/1.1 200"));
+  server_.close();
+  EXPECT_TRUE(client.is_closed());
+  server_.close();  // again: nothing
+}
+
+class SilentDaemonTest : public WebServerTest {
+ protected:
+  SilentDaemonTest() {
+    replies_ = false;
+    silent_ = std::make_unique<WebServer>(settings());
+  }
+  std::unique_ptr<WebServer> silent_;
+};
+TEST_F(SilentDaemonTest, AQuestionIsGivenUp) {
+  EXPECT_THAT(Client(silent_->local_endpoint()).get("/api/v1/scenes"), StartsWith("HTTP/1.1 503"));
+}
+
+/// A server that is turned on a thread of the test's, with limits of the test's choice.
+class HttpServerTest : public testing::Test {
+ protected:
+  void begin(const HttpLimits& limits) {
+    server_ =
+        std::make_unique<HttpServer>(io_, "127.0.0.1:0", limits, [](const HttpRequest& request, const auto& reply) {
+          reply({.content_type = "text/plain", .body = request.method + " " + request.path + "?" + request.query});
+        });
+    endpoint_ = server_->local_endpoint();
+    thread_ = std::thread([this] { io_.run(); });
+  }
+  ~HttpServerTest() override {
+    io_.stop();
+    if (thread_.joinable()) thread_.join();
+    server_.reset();
+  }
+
+  boost::asio::io_context io_;
+  std::unique_ptr<HttpServer> server_;
+  std::string endpoint_;
+  std::thread thread_;
+};
+
+TEST_F(HttpServerTest, PathAndQuery) {
+  begin({});
+  EXPECT_THAT(Client(endpoint_).get("/a?b=c?d"), HasSubstr("GET /a?b=c?d"));
+}
+TEST_F(HttpServerTest, WhoIsTooSlowHasToGo) {
+  begin({.time = 50ms});
+  Client client(endpoint_);
+  client.send("GET / HTTP/1.1\r\n");
+  EXPECT_TRUE(client.is_closed());
+}
+TEST_F(HttpServerTest, PlacesAreBounded_AndComeBack) {
+  begin({.clients = {.max_clients = 2}});
+  auto one = std::make_unique<Client>(endpoint_);
+  auto two = std::make_unique<Client>(endpoint_);
+  EXPECT_THAT(one->get("/"), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(two->get("/"), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(Client(endpoint_).answer(), StartsWith("HTTP/1.1 503"));
+  one.reset();
+  std::string answer;
+  for (const auto hangs = std::chrono::steady_clock::now() + 60s;
+       !answer.starts_with("HTTP/1.1 200") && std::chrono::steady_clock::now() < hangs;) {
+    Client next(endpoint_);
+    try {
+      answer = next.get("/");
+    } catch (const boost::system::system_error&) {
+      // refused while it was still speaking
+    }
+  }
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 200"));
+}
+
+}  // namespace
+}  // namespace yuragi::daemon::web
