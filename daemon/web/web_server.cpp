@@ -60,7 +60,13 @@ class WebServer::Thread {
             [this](const HttpRequest& request, HttpReply reply) { answer(request, std::move(reply)); })),
         endpoint_(server_->local_endpoint()),
         thread_([this] { io_->run(); }) {}
-  ~Thread() { close(); }
+  ~Thread() {
+    try {
+      close();
+    } catch (...) {
+      // A destructor cannot report errors; the thread, which has been joined or never begun, holds nothing else.
+    }
+  }
   Thread(const Thread&) = delete;
   Thread& operator=(const Thread&) = delete;
 
