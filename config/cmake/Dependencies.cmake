@@ -21,6 +21,7 @@ pkg_check_modules(PNG REQUIRED IMPORTED_TARGET libpng)
 pkg_check_modules(JPEG REQUIRED IMPORTED_TARGET libjpeg)
 pkg_check_modules(UMOCKDEV IMPORTED_TARGET umockdev-1.0) # yuragi-sim's --umockdev, where it is there
 find_package(nlohmann_json REQUIRED)
+find_package(TinyGLTF REQUIRED)
 find_program(FLATC_PROGRAM flatc REQUIRED)
 find_program(PYTHON3_PROGRAM NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED) # that of Debian
 

@@ -1,4 +1,4 @@
-// `yuragi export`: converts a recording to CSV, or copies it.
+// `yuragi export`: converts a recording to CSV or to a take for 3D programs, or copies it.
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -10,6 +10,7 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/export_take.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_export.hpp"
@@ -41,13 +42,17 @@ constexpr const char* kExportFooter =
     "time_utc, sensor, vertical_speed_m_s (upward), air_temperature_c, pressure_hpa, relative_humidity_percent,\n"
     "rain_total_mm (the station's counter) and rain_rate_mm_h; empty where it did not say that.\n"
     "A .windlog as output is a consistent copy, even of a recording that is being written.\n"
+    "A .glb as output is a take: a scene, moved by the recorded wind, as glTF 2.0 for Blender and other 3D programs; "
+    "each\n"
+    "joint of its skeleton is a joint of a skinned mesh, thinned out to 12,000 (--every).\n"
     "\n"
     "Examples:\n"
     "  yuragi export mast.windlog -o mast.csv\n"
     "  yuragi export mast.windlog -o - --from 2018-07-20T14:05:00Z --to 2018-07-20T14:06:00Z | head\n"
     "  yuragi export mast.windlog -o week.csv --since 7d --resample 10min\n"
     "  yuragi export mast.windlog -o weather.csv --quantities --since 24h\n"
-    "  yuragi export live.windlog -o backup.windlog";
+    "  yuragi export live.windlog -o backup.windlog\n"
+    "  yuragi export storm.windlog -o flag.glb --config wall.toml --scene flag --from 90 --duration 20 --fps 25";
 
 struct ExportOptions {
   std::string input;
@@ -59,6 +64,7 @@ struct ExportOptions {
   std::optional<double> resample_s;
   bool quantities = false;
   bool force = false;
+  TakeOptions take;
 };
 
 /// The log time of --from or --to; nothing if it is after the end.
@@ -139,7 +145,20 @@ void export_as_csv(drivers::windlog::WindlogReader& reader, const ExportOptions&
              count_text(report->written, "reading"));
 }
 
+/// Says which option is for another kind of output.
+void refuse_others(const ExportOptions& options) {
+  if (!options.to.empty() || !options.since.empty() || !options.until.empty() || options.resample_s ||
+      options.quantities)
+    throw ExitError(kExitUsage,
+                    "--to, --since, --until, --resample and --quantities are for CSV output; a take goes from "
+                    "--from on, for --duration");
+}
+
 void run_export(const ExportOptions& options) {
+  if (std::filesystem::path(options.output).extension() == ".glb") {
+    refuse_others(options);
+    return export_take(options.take, options.input, options.from, options.output, options.force);
+  }
   auto reader = drivers::windlog::WindlogReader::open(options.input);
   if (!reader) {
     const bool is_there = drivers::windlog::recording_exists(options.input);
@@ -173,10 +192,12 @@ void run_export(const ExportOptions& options) {
 
 void add_export(CLI::App& app) {
   const auto options = std::make_shared<ExportOptions>();
-  CLI::App* command = app.add_subcommand("export", "Convert a recording to CSV, or copy it");
+  CLI::App* command =
+      app.add_subcommand("export", "Convert a recording to CSV or to a take for 3D programs, or copy it");
   command->footer(kExportFooter);
   command->add_option("file", options->input, "the recording (.windlog)")->required();
-  command->add_option("-o,--output", options->output, "FILE.csv, COPY.windlog, or - for CSV on standard output")
+  command
+      ->add_option("-o,--output", options->output, "FILE.csv, COPY.windlog, TAKE.glb, or - for CSV on standard output")
       ->required();
   auto* const from =
       command->add_option("--from", options->from, "where to begin: seconds, or a time such as 2018-07-20T14:05:00Z");
@@ -198,6 +219,7 @@ void add_export(CLI::App& app) {
                  "write what stations said besides the wind: temperature, pressure, humidity, rain")
       ->excludes(resample);
   command->add_flag("--force", options->force, "overwrite the output");
+  options->take.add_to(*command);
   command->callback([options] { run_export(*options); });
 }
 

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
-"""`yuragi export`: --resample against the same means in plain Python; --quantities from a station's lines to the CSV.
+"""`yuragi export`: --resample against the same means in plain Python; --quantities from a station's lines to the CSV; a take.
 
 usage: export_command_test.py YURAGI
 """
 import csv
 import datetime
 import io
+import json
 import math
 import pathlib
 import random
+import struct
 import subprocess
 import sys
 import tempfile
@@ -124,6 +126,41 @@ class Resample(unittest.TestCase):
         table.write_text("\n".join(lines) + "\n", encoding="ascii")
         yuragi("import", table, "-o", file)
         table.unlink()
+
+
+class Take(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        (self.folder / "wall.toml").write_text('[[scene]]\nkind = "flag"\nrows = 20\ncolumns = 10\n[[scene]]\nkind = "fur"\n')
+        rows = "".join(f"{second},roof,{4 + second % 3}\n" for second in range(5))
+        (self.folder / "wind.csv").write_text("time_s,sensor,speed_m_s\n" + rows)
+        yuragi("import", self.folder / "wind.csv", "-o", self.folder / "wind.windlog")
+
+    def take(self, *options):
+        return subprocess.run([YURAGI, "export", self.folder / "wind.windlog", "-o", self.folder / "take.glb", "--config",
+                               self.folder / "wall.toml", *options], capture_output=True, text=True, check=False)
+
+    def test_a_take_has_a_curve_for_each_joint_that_moves(self):
+        done = self.take("--scene", "flag", "--fps", "10", "--duration", "2", "--every", "1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("20 pictures of flag, 2.0 s, 201 joints", done.stderr)
+        file = (self.folder / "take.glb").read_bytes()
+        magic, version, size, json_size, kind = struct.unpack_from("<4sIII4s", file)
+        self.assertEqual((magic, version, size, kind), (b"glTF", 2, len(file), b"JSON"))
+        model = json.loads(file[20:20 + json_size])
+        self.assertEqual(len(model["skins"][0]["joints"]), 201)
+        self.assertEqual(len(model["animations"][0]["channels"]), 200 - 10, "the hoist stays on its pole")
+        self.assertEqual({accessor["count"] for accessor in (model["accessors"][sampler["output"]]
+                                                             for sampler in model["animations"][0]["samplers"])}, {20})
+
+    def test_what_is_wrong_is_said_and_leaves_no_file(self):
+        for options, code, pattern in ((("--scene", "sea"), 64, "there is no 'sea'; there are: flag, fur"), ((), 64, "flag, fur"),
+                                       (("--scene", "flag", "--to", "3"), 64, "--to"),
+                                       (("--scene", "flag", "--from", "900"), 65, "")):
+            done = self.take(*options)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(pattern, done.stderr)
+            self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["wall.toml", "wind.csv", "wind.windlog"])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "daemon/tools/take/take_mesh.hpp"
+#include "engine/base/result.hpp"
+#include "engine/pose/kinematics.hpp"
+#include "engine/pose/skeleton.hpp"
+
+namespace yuragi::daemon::tools::take {
+
+/// No more joints fit the 16 bits by which glTF numbers those of a vertex.
+inline constexpr std::size_t kMostJoints = 65535;
+
+/// One scene's motion as a file for 3D programs: glTF 2.0 in its binary form (Khronos Group, ISO/IEC 12113:2022), a
+/// skinned mesh in which each joint is a node with its place over time. Metres, y up, as here; x east, z south. What
+/// does not move has no curve. Neither normals nor colours: those who open it give it their own material.
+class TakeRecorder {
+ public:
+  /// `skeleton` must outlive this, and have at most kMostJoints with that `every` (every_within()).
+  TakeRecorder(const pose::Skeleton& skeleton, std::string name, std::size_t every, double fps);
+
+  /// The next picture. False where the pose does not fit the skeleton.
+  bool add(const pose::Pose& pose);
+
+  std::size_t frames() const noexcept { return frames_; }
+  std::size_t joints() const noexcept { return mesh_.joints.size(); }
+
+  /// Fails where there is no picture, or the stream does not take it all.
+  Result<void, Failure> write_glb(std::ostream& out) const;
+
+ private:
+  std::string name_;
+  double fps_;
+  TakeMesh mesh_;
+  pose::Kinematics kinematics_;
+  std::vector<float> places_m_;  ///< x, y, z of each joint, picture after picture
+  std::size_t frames_ = 0;
+};
+
+}  // namespace yuragi::daemon::tools::take
