@@ -58,6 +58,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, Pipe pipe) {
   fd_ = is_input ? ends[1] : ends[0];
 
   std::vector<char*> words;
+  words.reserve(command.size() + 1);
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
   const SpawnPlan plan(child_end, pipe);
@@ -92,7 +93,10 @@ ChildProcess::End ChildProcess::wait() {
 }
 
 std::string ChildProcess::text_of(const End& end) {
-  if (end.signal != 0) return fmt::format("was killed by a signal ({}, {})", end.signal, ::strsignal(end.signal));
+  if (end.signal != 0) {
+    const char* const name = ::sigdescr_np(end.signal);
+    return fmt::format("was killed by a signal ({}, {})", end.signal, name != nullptr ? name : "unknown");
+  }
   return fmt::format("has failed (exit code {})", end.exit_code);
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <vector>
@@ -63,9 +62,9 @@ class RawPictures final : public FilmOutput {
   void write(std::span<const std::uint8_t> rgb) override {
     if (const int error = write_all(STDOUT_FILENO, rgb, is_stopping_); error != 0) {
       if (error == ECANCELED) throw_interrupted();
-      throw ViewerExit(EX_CANTCREAT, error == EPIPE
-                                         ? "whoever read the pictures from standard output has ended"
-                                         : fmt::format("cannot write to standard output: {}", std::strerror(error)));
+      throw ViewerExit(EX_CANTCREAT, error == EPIPE ? "whoever read the pictures from standard output has ended"
+                                                    : fmt::format("cannot write to standard output: {}",
+                                                                  std::generic_category().message(error)));
     }
   }
   void finish() override {}
@@ -147,7 +146,8 @@ class Video final : public FilmOutput {
     const int error = write_all(ffmpeg_->fd(), rgb, is_stopping_);
     if (error == ECANCELED) throw_interrupted();
     if (error == EPIPE) throw_failed(ffmpeg_->wait());
-    if (error != 0) throw ViewerExit(EX_CANTCREAT, fmt::format("cannot write to ffmpeg: {}", std::strerror(error)));
+    if (error != 0)
+      throw ViewerExit(EX_CANTCREAT, fmt::format("cannot write to ffmpeg: {}", std::generic_category().message(error)));
   }
 
   void finish() override {
