@@ -4,6 +4,7 @@
 
 #include "engine/base/version.hpp"
 #include "engine/base/word_suggestion.hpp"
+#include "viewer/film.hpp"
 #include "viewer/viewer.hpp"
 #include "viewer/viewer_exit.hpp"
 
@@ -30,7 +31,11 @@ int run(int argc, char** argv) {
 
   std::signal(SIGINT, [](int) { is_stopping = true; });
   std::signal(SIGTERM, [](int) { is_stopping = true; });
-  viewer::Viewer(options, is_stopping).run();
+  if (!options.render.empty()) {
+    viewer::render_recording(options, is_stopping);
+  } else {
+    viewer::Viewer(options, is_stopping).run();
+  }
   return 0;
 }
 

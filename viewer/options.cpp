@@ -6,6 +6,7 @@
 
 #include "engine/base/duration.hpp"
 #include "engine/look/look.hpp"
+#include "viewer/film_output.hpp"
 #include "viewer/picture_file.hpp"
 
 namespace yuragi::viewer {
@@ -55,6 +56,57 @@ std::optional<CameraView> read_camera_view(std::string_view text) {
   if (at != end) return std::nullopt;
   return CameraView{numbers[0], numbers[1], numbers[2]};
 }
+
+namespace {
+
+void add_film_options(CLI::App& app, ViewerOptions& options) {
+  const std::string film = "Make a film of a recording, without a display and without a daemon";
+  auto* const render =
+      app.add_option("--render", options.render, "Play FILE.windlog tick by tick, and draw each picture")
+          ->type_name("FILE.windlog")
+          ->group(film);
+  for (const char* other :
+       {"--connect", "--screenshot", "--fullscreen", "--monitor", "--overlay", "--panel", "--dark-when-closed"}) {
+    render->excludes(other);
+  }
+  auto* const out = app.add_option("--out", options.out,
+                                   "FILE.mp4 (by ffmpeg), a folder for 000001.png and so on, or - for the bytes of one "
+                                   "picture after the other (RGB, 3 bytes a pixel) on standard output")
+                        ->needs(render)
+                        ->check(check_film_name)
+                        ->group(film);
+  render->needs(out);
+  app.add_option("--fps", options.fps, "Pictures a second of the recording's time")
+      ->needs(render)
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 1000.0))
+      ->group(film);
+  app.add_option("--from", options.from, "Where to begin: seconds from its beginning, or a UTC time (ISO 8601)")
+      ->needs(render)
+      ->type_name("T")
+      ->group(film);
+  app.add_option("--duration", options.duration_s, "How long: 20 (seconds), 5min; default: to the recording's end")
+      ->needs(render)
+      ->type_name("TIME")
+      ->transform(CLI::Validator(duration_to_seconds, ""))
+      ->check(CLI::Range(0.001, 1e6))
+      ->group(film);
+  auto* const config = app.add_option("--config", options.config,
+                                      "The configuration with the scenes; default: a meadow, as `yuragi replay` has it")
+                           ->needs(render)
+                           ->type_name("FILE")
+                           ->group(film);
+  app.add_flag("--as-recorded", options.is_as_recorded, "With the configuration and all sensors of the recording")
+      ->needs(render)
+      ->excludes(config)
+      ->group(film);
+  app.add_flag("--draw-nothing", options.draws_nothing,
+               "All but the drawing: black pictures, on a machine without OpenGL or to test the rest")
+      ->needs(render)
+      ->group(film);
+}
+
+}  // namespace
 
 void add_options(CLI::App& app, ViewerOptions& options) {
   app.add_option("--connect", options.connect, "The daemon whose stream to show, HOST:PORT")->capture_default_str();
@@ -112,6 +164,8 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       ->check(CLI::Range(0.0, 1e6))
       ->group(picture);
 
+  add_film_options(app, options);
+
   app.footer(
       "In the window: drag to turn (left button) or move (right), scroll to zoom; R first view, C next of the "
       "daemon's\n"
@@ -125,10 +179,18 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       "  yuragi-viewer --connect wall.local:7410 --fullscreen --no-overlay\n"
       "  yuragi-viewer --screenshot now.png              a picture; needs no screen\n"
       "  yuragi-viewer --camera night                    by one of the daemon's cameras, whatever the hour\n"
+      "  yuragi-viewer --render storm.windlog --out storm.mp4 --size 1920x1080 --fps 60 --duration 20\n"
+      "  yuragi-viewer --render storm.windlog --config garden.toml --scene flag --look quality=low --out pictures\n"
       "\n"
-      "Exit code 0: done; 64: wrong command line; 69: no daemon answers, or nothing to draw on; 73: the picture "
-      "cannot be\n"
-      "written.");
+      "A film takes every tick of the recording, however long a picture takes, and draws all of each with "
+      "--look quality=high\n"
+      "unless another is asked for. The same recording, configuration and graphics driver give the same pictures, bit "
+      "for bit.\n"
+      "\n"
+      "Exit code 0: done; 64: wrong command line; 69: no daemon answers, nothing to draw on, or no ffmpeg; 73: the "
+      "picture\n"
+      "or film cannot be written; 130: a film was interrupted. Of a recording that cannot be played, those of `yuragi "
+      "replay`.");
 }
 
 }  // namespace yuragi::viewer

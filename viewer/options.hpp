@@ -29,6 +29,15 @@ struct ViewerOptions {
   int frames = 30;
   std::optional<double> at_s;
   double wait_s = 10.0;
+
+  std::string render;  ///< a recording, of which a film is made; empty: none
+  std::string config;  ///< for it; empty: what `yuragi replay` takes without one
+  bool is_as_recorded = false;
+  std::string from;                  ///< as `yuragi replay --start`
+  std::optional<double> duration_s;  ///< of the film; unset: to the recording's end
+  double fps = 30.0;                 ///< pictures a second
+  std::string out;                   ///< make_film_output()
+  bool draws_nothing = false;
 };
 
 /// Where the camera is, of the text "HEADING,PITCH,DISTANCE".

@@ -5,14 +5,13 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
-#include <stdexcept>
 
 #include "engine/base/address.hpp"
 #include "viewer/camera_keeper.hpp"
 #include "viewer/camera_place.hpp"
 #include "viewer/gl/cross_fade.hpp"
 #include "viewer/gl/dimmer.hpp"
-#include "viewer/gl/headless_context.hpp"
+#include "viewer/gl_renderer.hpp"
 #include "viewer/light/sky_keeper.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/overlay.hpp"
@@ -45,21 +44,6 @@ stream::StreamOptions address_of(const ViewerOptions& options) {
   if (!address) throw ViewerExit(EX_USAGE, "--connect: " + address.error().message);
   if (address->port == 0) throw ViewerExit(EX_USAGE, "--connect: port 0 cannot be connected to");
   return {.host = address->host, .port = address->port};
-}
-
-/// The context for pictures that no window shows.
-std::unique_ptr<gl::HeadlessContext> make_headless_context() {
-  try {
-#ifdef YURAGI_GL_DEBUG
-    return std::make_unique<gl::HeadlessContext>(gl::HeadlessOptions{.has_messages = true});
-#else
-    return std::make_unique<gl::HeadlessContext>();
-#endif
-  } catch (const std::runtime_error& error) {
-    throw ViewerExit(EX_UNAVAILABLE, std::string(error.what()) +
-                                         ".\nMesa's drivers, which can draw by the processor, are in the packages "
-                                         "libegl-mesa0 and libgl1-mesa-dri.");
-  }
 }
 
 }  // namespace

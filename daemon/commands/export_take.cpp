@@ -127,7 +127,7 @@ void export_take(const TakeOptions& options, const std::filesystem::path& record
   };
   tools::offline::replay_in_lockstep(
       config, recording, {.playback = {.start = start}}, options.duration_s.value_or(0.0), progress,
-      [&maker](double log_time_s, const animation::Animation& animation) { maker.take(log_time_s, animation); })
+      [&maker](const tools::offline::ReplayTick& tick) { maker.take(tick.log_time_s, tick.animation); })
       .value();
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   const tools::take::TakeRecorder& take = maker.recorder();

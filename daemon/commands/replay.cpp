@@ -12,7 +12,9 @@
 #include "daemon/commands/run_options.hpp"
 #include "daemon/sensing/recorded_installation.hpp"
 #include "daemon/service/service.hpp"
+#include "daemon/settings/standard_output.hpp"
 #include "daemon/tools/offline/lockstep_replay.hpp"
+#include "daemon/tools/offline/replay_stream.hpp"
 #include "drivers/windlog/windlog_playback.hpp"
 #include "drivers/windlog/windlog_reader.hpp"
 
@@ -29,6 +31,7 @@ struct ReplayOptions {
   std::string utc_offset;
   bool is_paused = false;
   bool as_recorded = false;
+  bool is_to_stdout = false;
 };
 
 constexpr double kMinRate = 0.01;
@@ -82,6 +85,41 @@ sensing::RecordedInstallation installation_of(const ReplayOptions& options, doub
   return installation;
 }
 
+tools::offline::LockstepResult replay_in_lockstep(const ReplayOptions& options, const settings::Config& config,
+                                                  const std::function<void(double)>& progress,
+                                                  const tools::offline::UseTick& use) {
+  return tools::offline::replay_in_lockstep(config, options.file,
+                                            {.playback = options.playback, .seam_s = options.seam_s},
+                                            options.run.duration_s.value_or(0.0), progress, use)
+      .value();
+}
+
+tools::offline::LockstepResult replay_in_lockstep(const ReplayOptions& options,
+                                                  const sensing::RecordedInstallation& installation,
+                                                  const std::function<void(double)>& progress,
+                                                  const tools::offline::UseTick& use) {
+  return tools::offline::replay_in_lockstep(installation, options.run.duration_s.value_or(0.0), progress, use).value();
+}
+
+/// Whoever reads is waited for; once nobody does, SIGPIPE ends this program.
+void write_to_stdout(const ReplayOptions& options) {
+  if (isatty(STDOUT_FILENO) != 0) {
+    throw ExitError(kExitUsage, "--to-stdout writes messages for a program: send them through a pipe or into a file");
+  }
+  const auto stream_to_stdout = [&options](const settings::Config& config, const auto& source) {
+    tools::offline::ReplayStream stream(config, [](std::span<const std::uint8_t> bytes) {
+      settings::write_at_once({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    });
+    replay_in_lockstep(options, source, {}, [&stream](const tools::offline::ReplayTick& tick) { stream.write(tick); });
+  };
+  if (options.as_recorded) {
+    const sensing::RecordedInstallation installation = installation_of(options, 1.0);
+    return stream_to_stdout(installation.config, installation);
+  }
+  const settings::Config config = options.run.config();
+  stream_to_stdout(config, config);
+}
+
 void replay_at_full_speed(const ReplayOptions& options) {
   if (options.playback.loop && !options.run.duration_s) {
     throw ExitError(kExitUsage,
@@ -90,17 +128,14 @@ void replay_at_full_speed(const ReplayOptions& options) {
   if (options.at_time_of_day || options.is_paused) {
     throw ExitError(kExitUsage, "--rate max has no clock: it takes neither --same-time-of-day nor --paused");
   }
+  if (options.is_to_stdout) return write_to_stdout(options);
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   const auto progress = [is_watched](double log_time_s) {
     if (is_watched) fmt::print(stderr, "\rreplayed {:.0f} s", log_time_s);
   };
-  const double duration_s = options.run.duration_s.value_or(0.0);
   const tools::offline::LockstepResult result =
-      (options.as_recorded ? tools::offline::replay_in_lockstep(installation_of(options, 1.0), duration_s, progress)
-                           : tools::offline::replay_in_lockstep(
-                                 options.run.config(), options.file,
-                                 {.playback = options.playback, .seam_s = options.seam_s}, duration_s, progress))
-          .value();
+      options.as_recorded ? replay_in_lockstep(options, installation_of(options, 1.0), progress, {})
+                          : replay_in_lockstep(options, options.run.config(), progress, {});
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   fmt::print(
       "readings   {} in {:.1f} s of log time\n"
@@ -116,6 +151,9 @@ void replay(const ReplayOptions& options) {
   const DaemonLog log(options.run.verbose);
   if (const auto reader = drivers::windlog::WindlogReader::open(options.file)) {
     for (const std::string& damage : reader->damage()) spdlog::warn("{}", damage);
+  }
+  if (options.is_to_stdout && options.rate != "max") {
+    throw ExitError(kExitUsage, "--to-stdout waits for its reader, not for a clock: it takes --rate max");
   }
   if (options.as_recorded && options.rate != "max") {
     const sensing::RecordedInstallation installation = installation_of(options, parse_rate(options.rate));
@@ -139,7 +177,7 @@ void replay(const ReplayOptions& options) {
 void add_replay(CLI::App& app) {
   CLI::App* command = app.add_subcommand("replay", "run the daemon with a recording in place of the sensors");
   command->footer(
-      "Ends with the recording, unless it loops. At --rate max nothing is streamed: the recording runs through wind "
+      "Ends with the recording, unless it loops. At --rate max no client is served: the recording runs through wind "
       "and\n"
       "scenes tick by tick, and a summary with a hash over all poses is printed; the same seed and recording give the\n"
       "same hash.\n"
@@ -183,6 +221,9 @@ void add_replay(CLI::App& app) {
       ->type_name("HOURS");
   command->add_flag("--as-recorded", options->as_recorded,
                     "with the configuration and all sensors of the recording, by its clock");
+  command->add_flag("--to-stdout", options->is_to_stdout,
+                    "with --rate max: write every tick to standard output, as a daemon streams it, and wait for the "
+                    "reader (yuragi-viewer --render reads it)");
   command->add_flag("--paused", options->is_paused, "start paused, at the first reading (see `yuragi player`)");
   command->add_option("--sensor", options->playback.sensor, "which sensor; default: the one with the first reading")
       ->type_name("NAME");

@@ -43,6 +43,8 @@ glm::vec3 direction_to(const glm::vec3& from, const glm::vec3& to) {
 class LeafCells {
  public:
   static constexpr int kSide = 28;
+  /// More than there are through any tree; a hostile one may be so large, or so far off, that a step gets nowhere.
+  static constexpr int kMostSteps = 1000;
   static constexpr std::size_t kCells = std::size_t{kSide} * kSide * kSide;
 
   explicit LeafCells(const Bounds& box)
@@ -58,9 +60,10 @@ class LeafCells {
     const float step_m = 0.7F * std::min({cell_m_.x, cell_m_.y, cell_m_.z});
     float leaves = 0.0F;  // across the light, area over area
     place_m += 0.5F * step_m * direction;
-    for (int cell = cell_of(place_m); cell >= 0; cell = cell_of(place_m)) {
+    for (int step = 0; step < kMostSteps; ++step, place_m += step_m * direction) {
+      const int cell = cell_of(place_m);
+      if (cell < 0) break;
       leaves += 0.5F * step_m * density_[static_cast<std::size_t>(cell)];
-      place_m += step_m * direction;
     }
     return std::exp(-leaves);
   }

@@ -33,11 +33,13 @@ class Ticks {
     result_.reading_max_m_s = std::max(result_.reading_max_m_s, reading.speed_m_s);
   }
 
-  void step(const wind::ground::DrivingWind& wind) {
+  void step(const wind::ground::DrivingWind& wind, UtcTime recorded, double left_s) {
     const double time_s = now_s();
     animation_.step(wind, 1.0 / rate_hz_);
     result_.pose_hash = hash_poses(result_.pose_hash, animation_.poses());
-    if (use_) use_(time_s, animation_);
+    if (use_) {
+      use_({.log_time_s = time_s, .recorded = recorded, .left_s = left_s, .wind = wind.state, .animation = animation_});
+    }
     if (wind.state.source == wind::WindSource::kLive) {
       const double speed_m_s = speed_of(wind.state.wind);
       ++followed_ticks_;
@@ -64,6 +66,22 @@ class Ticks {
   const UseTick& use_;
   LockstepResult result_;
   std::uint64_t followed_ticks_ = 0;
+};
+
+/// What the recording's clock shows, between the moments at which it is read, which are those of its readings.
+class RecordedClock {
+ public:
+  UtcTime at(Nanoseconds log_time, UtcTime read) {
+    if (read != read_) {
+      read_ = read;
+      read_at_ = log_time;
+    }
+    return read_ + (log_time - read_at_);
+  }
+
+ private:
+  UtcTime read_{};
+  Nanoseconds read_at_{0};
 };
 
 /// Log time, moved from tick to tick.
@@ -111,7 +129,8 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
     // Opening hours do not apply: log time is not local time.
     wind::ground::DrivingWind wind{estimator.advance(now.mono), estimator.ground(), estimator.stroke()};
     shaping.shape(wind, true);
-    ticks.step(wind);
+    const drivers::windlog::PlayerPosition at = player.position(now.mono);
+    ticks.step(wind, at.recorded + at.held_for, seconds(at.length - at.log_time));
   }
   return ticks.result();
 }
@@ -130,18 +149,21 @@ Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstal
   const sensing::PlayerDirector director(config.stream.control, players);
   shaping::WindShaper shaper(config, gusts);
   shaper.keep_site_file(hub.site());
+  RecordedClock recorded_clock;
 
   while (!hub.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s)) {
     const Nanoseconds log_time = from_seconds(ticks.now_s());
     clock.set(MonoTime(log_time), installation.begin + log_time);
     wind::ground::DrivingWind wind{hub.advance(), hub.ground(), hub.stroke()};
+    double left_s = 0.0;
     for (const sensing::NamedPlayer& named : players) {
-      if (auto failure = named.player->report().failure; !failure.empty()) {
-        return Failure{std::move(failure), FailureKind::kBadData};
-      }
+      const drivers::recording::PlayerReport report = named.player->report();
+      if (!report.failure.empty()) return Failure{report.failure, FailureKind::kBadData};
+      if (const auto& at = report.position) left_s = std::max(left_s, seconds(at->length - at->log_time));
     }
-    shaper.shape(wind, director.recorded_clock().value_or(installation.begin), hub.is_any_live());
-    ticks.step(wind);
+    const UtcTime recorded = director.recorded_clock().value_or(installation.begin);
+    shaper.shape(wind, recorded, hub.is_any_live());
+    ticks.step(wind, recorded_clock.at(log_time, recorded), left_s);
   }
   return ticks.result();
 }

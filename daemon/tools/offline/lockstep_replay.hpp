@@ -23,8 +23,17 @@ struct LockstepResult {
   std::uint64_t pose_hash = 0;  ///< over every pose of every tick: the same seed, log and build give the same hash
 };
 
-/// Called at the end of each tick.
-using UseTick = std::function<void(double log_time_s, const animation::Animation& animation)>;
+/// A tick of a replay, when its poses have been made.
+struct ReplayTick {
+  double log_time_s = 0.0;  ///< since the replay began
+  UtcTime recorded{};       ///< what the recording's clock showed
+  double left_s = 0.0;      ///< log time until the recording's last reading; of a loop, of this round
+  const wind::WindState& wind;
+  animation::Animation& animation;
+};
+
+/// Called at the end of each tick. What it throws ends the replay.
+using UseTick = std::function<void(const ReplayTick& tick)>;
 
 /// Replays in log time, tick by tick, with no clock and no thread, so that every run of the same seed and recording
 /// gives the same poses, bit for bit. Log time is that of the playback at rate 1, loops and their seams included.

@@ -175,7 +175,9 @@ void make_strip(const StripOptions& options) {
   std::vector<std::vector<Picture>> pictures(cameras.size());
   std::optional<LeanMap> lean;
   viewer::stream::PoseMoment moment;
-  const daemon::tools::offline::UseTick take = [&](double time_s, const daemon::animation::Animation& animation) {
+  const daemon::tools::offline::UseTick take = [&](const daemon::tools::offline::ReplayTick& tick) {
+    const double time_s = tick.log_time_s;
+    const daemon::animation::Animation& animation = tick.animation;
     if (taken == options.moments || time_s < first_s + taken * options.step_s - 0.5 * tick_s) return;
     if (taken == 0) {
       const std::vector<wire::SceneModel> scenes = animation.describe().scenes;

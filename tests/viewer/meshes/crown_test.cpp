@@ -143,6 +143,15 @@ TEST_F(CrownTest, LightComesFromOutsideOfTheCrownAndLessToItsMiddle) {
   EXPECT_GT(outward, 0.0F);
 }
 
+TEST_F(CrownTest, ACrownThatIsFarTooFarOffIsMadeAllTheSame) {
+  // As a stream may send it: there no step of light through the leaves changes a place.
+  pose::TreeSkeleton tree = tree_;
+  for (float& x_m : tree.levels[kLeafLevel].strands.root_x_m) x_m = 1e6F;
+  const std::vector<glm::vec4> open = crown_openness(tree, kLeafLevel, spray_shape(tree));
+  EXPECT_EQ(open.size(), tree.levels[kLeafLevel].strands.strand_count);
+  for (const glm::vec4& light : open) EXPECT_TRUE(light.w >= 0.0F && light.w <= 1.0F) << light.w;
+}
+
 TEST_F(CrownTest, BranchesHaveMoreRingsTheNearerTheyAreAndNoMoreThanLinks) {
   for (std::size_t level = 0; level < kLeafLevel; ++level) {
     Branches branches(tree_, level);

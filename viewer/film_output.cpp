@@ -1,0 +1,193 @@
+#include "viewer/film_output.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "viewer/child_process.hpp"
+#include "viewer/picture_file.hpp"
+#include "viewer/viewer_exit.hpp"
+#include "viewer/write_all.hpp"
+
+namespace yuragi::viewer {
+namespace {
+
+constexpr const char* kVideoExtension = ".mp4";
+
+[[noreturn]] void throw_interrupted() {
+  throw ViewerExit(kExitInterrupted, "interrupted: the film is not whole");
+}
+
+class PictureFolder final : public FilmOutput {
+ public:
+  PictureFolder(std::filesystem::path folder, const FilmFormat& format) : folder_(std::move(folder)), format_(format) {
+    std::error_code error;
+    std::filesystem::create_directories(folder_, error);
+    if (error) throw ViewerExit(EX_CANTCREAT, "cannot make the folder " + folder_.string() + ": " + error.message());
+    if (std::filesystem::exists(file(1))) {
+      throw ViewerExit(EX_CANTCREAT, folder_.string() +
+                                         " holds the pictures of another film, with which these would be mixed: "
+                                         "remove them, or give another folder");
+    }
+  }
+
+  void write(std::span<const std::uint8_t> rgb) override {
+    write_picture(file(count_ + 1), format_.width_px, format_.height_px, rgb);
+    ++count_;
+  }
+  void finish() override {}
+  std::string text() const override { return folder_.string(); }
+
+ private:
+  std::filesystem::path file(int number) const { return folder_ / fmt::format("{:06}.png", number); }
+
+  std::filesystem::path folder_;
+  FilmFormat format_;
+  int count_ = 0;
+};
+
+class RawPictures final : public FilmOutput {
+ public:
+  explicit RawPictures(const std::atomic<bool>& is_stopping) : is_stopping_(is_stopping) {
+    if (::isatty(STDOUT_FILENO) != 0) {
+      throw ViewerExit(EX_USAGE, "--out -: pictures would be written to a terminal; send them through a pipe");
+    }
+  }
+
+  void write(std::span<const std::uint8_t> rgb) override {
+    if (const int error = write_all(STDOUT_FILENO, rgb, is_stopping_); error != 0) {
+      if (error == ECANCELED) throw_interrupted();
+      throw ViewerExit(EX_CANTCREAT, error == EPIPE ? "whoever read the pictures from standard output has ended"
+                                                    : fmt::format("cannot write to standard output: {}",
+                                                                  std::generic_category().message(error)));
+    }
+  }
+  void finish() override {}
+  std::string text() const override { return "standard output"; }
+
+ private:
+  const std::atomic<bool>& is_stopping_;
+};
+
+/// Rec. 709, as players take a film of this size to be; every second color sample, which every player can show.
+std::vector<std::string> ffmpeg_command(const FilmFormat& format, const std::filesystem::path& file) {
+  return {"ffmpeg",
+          "-nostdin",
+          "-hide_banner",
+          "-loglevel",
+          "error",
+          "-y",
+          "-f",
+          "rawvideo",
+          "-pixel_format",
+          "rgb24",
+          "-video_size",
+          fmt::format("{}x{}", format.width_px, format.height_px),
+          "-framerate",
+          fmt::format("{}", format.pictures_per_s),
+          "-i",
+          "pipe:0",
+          "-vf",
+          "scale=out_color_matrix=bt709:out_range=tv",
+          "-colorspace",
+          "bt709",
+          "-color_primaries",
+          "bt709",
+          "-color_trc",
+          "bt709",
+          "-color_range",
+          "tv",
+          "-c:v",
+          "libx264",
+          "-crf",
+          "16",
+          "-pix_fmt",
+          "yuv420p",
+          "-movflags",
+          "+faststart",
+          "-f",
+          "mp4",
+          "file:" + file.string()};
+}
+
+class Video final : public FilmOutput {
+ public:
+  Video(std::filesystem::path file, const FilmFormat& format, const std::atomic<bool>& is_stopping)
+      : file_(std::move(file)),
+        beside_(file_.string() + ".part-" + std::to_string(::getpid())),
+        is_stopping_(is_stopping) {
+    if (format.width_px % 2 != 0 || format.height_px % 2 != 0) {
+      throw ViewerExit(EX_USAGE, fmt::format("--size: the width and the height of an mp4 film are even; {}x{} is not",
+                                             format.width_px, format.height_px));
+    }
+    try {
+      ffmpeg_ = std::make_unique<ChildProcess>(ffmpeg_command(format, beside_), ChildProcess::Pipe::kStandardInput);
+    } catch (const std::system_error& error) {
+      throw ViewerExit(EX_UNAVAILABLE,
+                       fmt::format("cannot start ffmpeg, which makes mp4 films: {}.\nOn Debian it is in the package "
+                                   "ffmpeg; without it --out FOLDER writes pictures.",
+                                   error.code().message()));
+    }
+  }
+  ~Video() override {
+    ffmpeg_.reset();
+    std::error_code ignored;
+    std::filesystem::remove(beside_, ignored);
+  }
+  Video(const Video&) = delete;
+  Video& operator=(const Video&) = delete;
+
+  void write(std::span<const std::uint8_t> rgb) override {
+    const int error = write_all(ffmpeg_->fd(), rgb, is_stopping_);
+    if (error == ECANCELED) throw_interrupted();
+    if (error == EPIPE) throw_failed(ffmpeg_->wait());
+    if (error != 0)
+      throw ViewerExit(EX_CANTCREAT, fmt::format("cannot write to ffmpeg: {}", std::generic_category().message(error)));
+  }
+
+  void finish() override {
+    if (const ChildProcess::End end = ffmpeg_->wait(); !end.is_good()) throw_failed(end);
+    std::error_code error;
+    std::filesystem::rename(beside_, file_, error);
+    if (error) throw ViewerExit(EX_CANTCREAT, "cannot write " + file_.string() + ": " + error.message());
+  }
+  std::string text() const override { return file_.string(); }
+
+ private:
+  [[noreturn]] void throw_failed(const ChildProcess::End& end) const {
+    throw ViewerExit(EX_CANTCREAT, "cannot write " + file_.string() + ": ffmpeg, which makes it, " +
+                                       (end.is_good() ? "has ended too early" : ChildProcess::text_of(end)));
+  }
+
+  std::filesystem::path file_;
+  std::filesystem::path beside_;  // until it is whole
+  const std::atomic<bool>& is_stopping_;
+  std::unique_ptr<ChildProcess> ffmpeg_;
+};
+
+bool is_video(const std::filesystem::path& name) {
+  return name.extension() == kVideoExtension;
+}
+
+}  // namespace
+
+std::string check_film_name(const std::string& name) {
+  const std::filesystem::path path(name);
+  const bool is_file = path.has_extension() && path.has_filename() && !std::filesystem::is_directory(path);
+  if (!name.empty() && (name == "-" || is_video(path) || !is_file)) return {};
+  return "'" + name + "' is no film that can be made: give FILE.mp4, a folder for pictures, or - for standard output";
+}
+
+std::unique_ptr<FilmOutput> make_film_output(const std::string& name, const FilmFormat& format,
+                                             const std::atomic<bool>& is_stopping) {
+  if (name == "-") return std::make_unique<RawPictures>(is_stopping);
+  if (is_video(name)) return std::make_unique<Video>(name, format, is_stopping);
+  return std::make_unique<PictureFolder>(name, format);
+}
+
+}  // namespace yuragi::viewer

@@ -1,0 +1,45 @@
+#include "viewer/gl_renderer.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "viewer/viewer_exit.hpp"
+
+namespace yuragi::viewer {
+
+std::unique_ptr<gl::HeadlessContext> make_headless_context() {
+  try {
+#ifdef YURAGI_GL_DEBUG
+    auto context = std::make_unique<gl::HeadlessContext>(gl::HeadlessOptions{.has_messages = true});
+    gl::report_gl_errors();
+    return context;
+#else
+    return std::make_unique<gl::HeadlessContext>();
+#endif
+  } catch (const std::runtime_error& error) {
+    throw ViewerExit(EX_UNAVAILABLE, std::string(error.what()) +
+                                         ".\nMesa's drivers, which can draw by the processor, are in the packages "
+                                         "libegl-mesa0 and libgl1-mesa-dri.");
+  }
+}
+
+GlRenderer::GlRenderer(int width_px, int height_px, int samples)
+    : context_(make_headless_context()), target_(width_px, height_px, samples) {}
+
+void GlRenderer::set_quality(look::Quality quality, float density) {
+  stage_.set_quality(quality);
+  stage_.set_blade_share(density);
+}
+
+void GlRenderer::draw(const Picture& picture) {
+  if (picture.fading_out) {
+    camera_.go_to(*picture.fading_out);
+    stage_.draw(picture.moment, camera_, target_);
+    cross_fade_.keep(target_);
+  }
+  camera_.go_to(picture.camera);
+  stage_.draw(picture.moment, camera_, target_);
+  if (picture.fading_out) cross_fade_.draw(target_, picture.share);
+}
+
+}  // namespace yuragi::viewer

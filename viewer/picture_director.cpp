@@ -1,0 +1,92 @@
+#include "viewer/picture_director.hpp"
+
+#include <utility>
+
+#include "viewer/camera_place.hpp"
+#include "viewer/viewer_exit.hpp"
+
+namespace yuragi::viewer {
+
+PictureDirector::PictureDirector(const ViewerOptions& options, Renderer& renderer, std::string source)
+    : options_(options),
+      renderer_(renderer),
+      source_(std::move(source)),
+      view_(read_camera_view(options.camera)),
+      aspect_(static_cast<double>(options.width_px) / options.height_px) {
+  // What the command line asks for comes before the hour.
+  if (!options.camera.empty() && !view_) {
+    cameras_.begin_with(options.camera);
+  } else if (view_ || !options.scene.empty() || options.is_turning) {
+    cameras_.begin_by_hand();
+  }
+  camera_.set_turning(options.is_turning);
+  sky_.start(look_for({}));
+  if (!options.scene.empty()) renderer_.show_only(options.scene);
+}
+
+void PictureDirector::set_scenes(std::vector<wire::SceneModel> scenes) {
+  renderer_.set_scenes(std::move(scenes));
+  if (std::exchange(has_scenes_, true)) return;
+  require_scene();
+  meshes::CameraPlace place = renderer_.home(aspect_);
+  if (view_) {
+    place.heading_deg = view_->heading_deg;
+    place.pitch_deg = view_->pitch_deg;
+    place.distance_m = view_->distance_m;
+  }
+  camera_.frame(place);
+}
+
+void PictureDirector::take_status(const wire::Sensors& status) {
+  const bool is_first = !std::exchange(has_status_, true);
+  is_first ? sky_.start(look_for(status.look)) : sky_.set_look(look_for(status.look));
+  cameras_.set_cameras(status.cameras, status.camera);
+  if (is_first) require_camera();
+}
+
+void PictureDirector::advance(double passed_s, double utc_s, const wind::WindVector& wind) {
+  cameras_.advance(passed_s);
+  cameras_.hear_clock(utc_s);
+  camera_.advance(passed_s);
+  renderer_.set_light(sky_.advance(utc_s, passed_s, {wind.u_m_s, -wind.v_m_s}));
+  const look::Look& look = sky_.look();
+  renderer_.set_quality(look.quality, static_cast<float>(look.density));
+}
+
+void PictureDirector::draw(const stream::PoseMoment& moment) {
+  Picture picture{.moment = moment, .camera = place_for(cameras_.now())};
+  if (cameras_.is_fading()) {
+    picture.fading_out = place_for(cameras_.before());
+    picture.share = static_cast<float>(cameras_.share());
+  }
+  renderer_.draw(picture);
+}
+
+look::Look PictureDirector::look_for(const look::Look& senders) const {
+  return *look::edited(senders, options_.look);
+}
+
+meshes::CameraPlace PictureDirector::place_for(const Shot& shot) const {
+  if (!shot.camera) return camera_.place();
+  return place_of(*shot.camera, renderer_.bounds_of(shot.camera->scene), aspect_, shot.utc_s);
+}
+
+void PictureDirector::require_scene() const {
+  if (options_.scene.empty()) return;
+  std::string names;
+  for (const wire::SceneModel* scene : renderer_.scenes()) {
+    if (scene->name == options_.scene) return;
+    names += names.empty() ? scene->name : ", " + scene->name;
+  }
+  throw ViewerExit(EX_USAGE, "--scene: " + source_ + " has no scene '" + options_.scene + "'; it has: " + names);
+}
+
+void PictureDirector::require_camera() const {
+  if (options_.camera.empty() || view_ || cameras_.has(options_.camera)) return;
+  std::string names;
+  for (const look::Camera& camera : cameras_.cameras()) names += names.empty() ? camera.name : ", " + camera.name;
+  throw ViewerExit(EX_USAGE, "--camera: " + source_ + " has no camera '" + options_.camera + "'; it has " +
+                                 (names.empty() ? "none: there is no [[camera]] in its configuration" : names));
+}
+
+}  // namespace yuragi::viewer
