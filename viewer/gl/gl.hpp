@@ -81,7 +81,8 @@ inline constexpr GLuint kFiresBinding = 3;
 
 /// The texture units: one for each texture that stays bound while others draw. 0 is anybody's, for a moment.
 enum TextureUnit : GLint {
-  kNoiseUnit = 1,    // of grass and what stands in it (looks/ground_maps.hpp), like the next two
+  kNoiseUnit = 1,    // of grass and what stands in it (looks/ground_maps.hpp), like the next three
+  kTurfUnit,         //
   kBendsUnit,        //
   kGrowthUnit,       //
   kBladesUnit,       // of those that are drawn, and their tiles or blocks
@@ -93,6 +94,7 @@ enum TextureUnit : GLint {
   kRipplesUnit,      //
   kCloudsFromUnit,   // two maps of clouds
   kCloudsToUnit,     //
+  kSmallSkyUnit,     // the sky of the picture, smaller
   kFlameRowsUnit,    //
   kFlameNoiseUnit,   //
   kFlameRampUnit,    //

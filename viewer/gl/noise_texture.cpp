@@ -37,9 +37,8 @@ void add_octave(std::size_t cells, float weight, std::vector<float>& tile) {
   }
 }
 
-}  // namespace
-
-GlTexture make_noise_texture() {
+/// The tile, from 0 to 1.
+std::vector<float> make_tile_values() {
   std::vector<float> tile(kSize * kSize, 0.0F);
   float weight = 1.0F;
   for (const std::size_t cells : kCellsPerOctave) {
@@ -51,11 +50,65 @@ GlTexture make_noise_texture() {
   const auto [low, high] = std::minmax_element(tile.begin(), tile.end());
   const float from = *low;
   const float range = *high - *low;
-  std::vector<std::uint8_t> texels(tile.size());
-  std::transform(tile.begin(), tile.end(), texels.begin(),
-                 [&](float value) { return static_cast<std::uint8_t>(255.0F * (value - from) / range); });
+  for (float& value : tile) value = (value - from) / range;
+  return tile;
+}
 
-  return make_tile(GL_R8, GL_RED, kSize, texels);
+std::uint8_t byte_of(float value) {
+  return static_cast<std::uint8_t>(255.0F * std::clamp(value, 0.0F, 1.0F));
+}
+
+/// A tile of texels that `texel_at(tile, x, y)` makes, an array of `kChannels` values from 0 to 1 each.
+template <std::size_t kChannels, class TexelAt>
+GlTexture made_of_noise(GLint kept_as, GLenum format, TexelAt&& texel_at) {
+  const std::vector<float> tile = make_tile_values();
+  std::vector<std::uint8_t> texels;
+  texels.reserve(kChannels * tile.size());
+  for (std::size_t y = 0; y < kSize; ++y) {
+    for (std::size_t x = 0; x < kSize; ++x) {
+      for (const float value : texel_at(tile, x, y)) texels.push_back(byte_of(value));
+    }
+  }
+  return make_tile(kept_as, format, kSize, texels);
+}
+
+float value_at(const std::vector<float>& tile, std::size_t x, std::size_t y) {
+  return tile[y % kSize * kSize + x % kSize];
+}
+
+/// The mean of a square of texels.
+float mean_at(const std::vector<float>& tile, std::size_t x, std::size_t y, std::size_t side) {
+  float sum = 0.0F;
+  for (std::size_t i = 0; i < side; ++i) {
+    for (std::size_t k = 0; k < side; ++k) sum += value_at(tile, x + i, y + k);
+  }
+  return sum / static_cast<float>(side * side);
+}
+
+}  // namespace
+
+GlTexture make_noise_texture() {
+  return made_of_noise<1>(GL_R8, GL_RED, [](const std::vector<float>& tile, std::size_t x, std::size_t y) {
+    return std::array{value_at(tile, x, y)};
+  });
+}
+
+GlTexture make_turf_texture() {
+  constexpr std::size_t kFiner = 8;
+  constexpr std::size_t kBroad = 16;
+  return made_of_noise<3>(GL_RGB8, GL_RGB, [](const std::vector<float>& tile, std::size_t x, std::size_t y) {
+    const float clumps = mean_at(tile, kFiner * x, kFiner * y, kFiner);
+    const float around = mean_at(tile, x + kSize - kBroad / 2, y + kSize - kBroad / 2, kBroad);
+    return std::array{value_at(tile, x, y), clumps, 0.5F + value_at(tile, x, y) - around};
+  });
+}
+
+GlTexture make_relief_texture() {
+  constexpr std::size_t kStep = 9;  // 0.035 of the side
+  return made_of_noise<3>(GL_RGB8, GL_RGB, [](const std::vector<float>& tile, std::size_t x, std::size_t y) {
+    const float here = value_at(tile, x, y);
+    return std::array{here, 0.5F + value_at(tile, x + kStep, y) - here, 0.5F + value_at(tile, x, y + kStep) - here};
+  });
 }
 
 }  // namespace yuragi::viewer::gl

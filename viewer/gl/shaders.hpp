@@ -47,12 +47,16 @@ extern const std::string_view kSkinVert;
 extern const std::string_view kSkinFrag;
 extern const std::string_view kSkyVert;
 extern const std::string_view kSkyFrag;
+extern const std::string_view kSmallSkyFrag;
 extern const std::string_view kSolidVert;
 extern const std::string_view kSolidFrag;
 extern const std::string_view kSparkVert;
 extern const std::string_view kSparkFrag;
 extern const std::string_view kWaterVert;
 extern const std::string_view kWaterFrag;
+extern const std::string_view kWideHeavensFrag;
+extern const std::string_view kWideSkyVert;
+extern const std::string_view kWideSkyFrag;
 
 struct Shader {
   std::string_view file;

@@ -31,7 +31,7 @@ bool is_same(const meshes::Standing& a, const meshes::Standing& b) {
 
 }  // namespace
 
-GroundMaps::GroundMaps() : noise_(gl::make_noise_texture()) {
+GroundMaps::GroundMaps() : noise_(gl::make_noise_texture()), turf_(gl::make_turf_texture()) {
   for (const gl::GlTexture* texture : {&bends_, &growth_}) {
     glBindTexture(GL_TEXTURE_2D, texture->name());
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
@@ -49,6 +49,7 @@ GroundMaps::GroundMaps() : noise_(gl::make_noise_texture()) {
 
 void GroundMaps::set_samplers(const gl::GlProgram& program) {
   gl::set_sampler(program, "noise_tile", gl::kNoiseUnit);
+  gl::set_sampler(program, "turf_tile", gl::kTurfUnit);
   gl::set_sampler(program, "bends", gl::kBendsUnit);
   gl::set_sampler(program, "growth", gl::kGrowthUnit);
 }
@@ -96,6 +97,7 @@ void GroundMaps::bind(const meshes::Stand& stand, float tall, std::size_t door) 
   gl::stream_to(GL_UNIFORM_BUFFER, block_, std::span<const meshes::Ground>(&ground_, 1));
   glBindBufferBase(GL_UNIFORM_BUFFER, gl::kGroundBinding, block_.name());
   bind_texture(gl::kNoiseUnit, noise_);
+  bind_texture(gl::kTurfUnit, turf_);
   bind_texture(gl::kBendsUnit, bends_);
   bind_texture(gl::kGrowthUnit, growth_);
   glActiveTexture(GL_TEXTURE0);

@@ -29,7 +29,7 @@ class GroundMaps {
   void bind(const meshes::Stand& stand, float tall, std::size_t door);
 
  private:
-  gl::GlTexture noise_, bends_, growth_;
+  gl::GlTexture noise_, turf_, bends_, growth_;
   gl::GlBuffer block_;
   meshes::Ground ground_;
   meshes::GrowthMap map_;

@@ -23,6 +23,11 @@ namespace {
 constexpr GLsizei kSkyColumns = 40;
 constexpr GLsizei kSkyRows = 24;
 
+// Corners of hills are at least so far apart in the picture, and on those without trees by this factor more.
+constexpr float kCorner_px = 0.75F;
+constexpr float kLowCorner_px = 2.2F;
+constexpr float kBareHill = 3.0F;
+
 constexpr float kSunInShadow = 0.16F;  // as in sward.part.glsl
 
 /// The bearings between which a circle around the world's middle is in view: where they begin, and how far they go;
@@ -63,47 +68,68 @@ std::optional<Arc> arc_in_view(const meshes::View& view, float radius_m) {
 
 Landscape::Landscape()
     : noise_(gl::make_noise_texture()),
+      relief_(gl::make_relief_texture()),
       ground_(gl::link_program("ground", gl::shaders::kGroundVert, gl::shaders::kGroundFrag)),
       hills_(gl::link_program("hills", gl::shaders::kHillsVert, gl::shaders::kHillsFrag)),
       sky_(gl::link_program("sky", gl::shaders::kSkyVert, gl::shaders::kSkyFrag)) {
   GroundMaps::set_samplers(ground_);
   sunlight_place_ = glGetUniformLocation(ground_.name(), "sunlight");
   gl::set_sampler(sky_, "noise_tile", 0);
-  gl::set_sampler(hills_, "noise_tile", 0);
+  gl::set_sampler(sky_, "moon_spots", 0);
+  gl::set_sampler(hills_, "relief_tile", 0);
+  gl::set_sampler(hills_, "corners", gl::kTilesUnit);
   range_place_ = glGetUniformLocation(hills_.name(), "range");
+  every_place_ = glGetUniformLocation(hills_.name(), "every");
   for (std::size_t range = 0; range < ranges_.size(); ++range) {
-    // Each corner twice: the foot and the top.
-    std::vector<meshes::FarCorner> walls;
-    for (const meshes::FarCorner& corner : meshes::far_corners(range)) walls.insert(walls.end(), 2, corner);
-    glBindVertexArray(ranges_.at(range).array.name());
-    glBindBuffer(GL_ARRAY_BUFFER, ranges_.at(range).corners.name());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(std::span(walls).size_bytes()), walls.data(), GL_STATIC_DRAW);
-    glEnableVertexAttribArray(0);
-    glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(meshes::FarCorner), nullptr);
+    const std::vector<meshes::FarCorner> corners = meshes::far_corners(range);
+    glBindBuffer(GL_TEXTURE_BUFFER, ranges_.at(range).corners.name());
+    glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(std::span(corners).size_bytes()), corners.data(),
+                 GL_STATIC_DRAW);
+    glBindTexture(GL_TEXTURE_BUFFER, ranges_.at(range).texture.name());
+    glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, ranges_.at(range).corners.name());
   }
-  glBindVertexArray(0);
+}
+
+void Landscape::set_quality(look::Quality quality) {
+  quality_ = quality;
+  small_sky_.reset();
+  if (quality == look::Quality::kLow) small_sky_.emplace();
+}
+
+void Landscape::prepare(const light::Light& light, const meshes::View& view, int width_px, int height_px) {
+  light_ = light;
+  clouds_.advance(light, noise_);
+  if (small_sky_) small_sky_->make(view, clouds_, noise_, width_px, height_px);
 }
 
 /// Ranges from near to far: what they hide is not painted.
 void Landscape::draw_far_country(const meshes::View& view) {
   glUseProgram(hills_.name());
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, relief_.name());
   for (std::size_t range = 0; range < ranges_.size(); ++range) {
     const meshes::FarRange& form = meshes::kFarRanges.at(range);
     const std::optional<Arc> arc = arc_in_view(view, form.distance_m - form.distance_varies_m);
     if (!arc) continue;
-    constexpr float step_rad = glm::two_pi<float>() / static_cast<float>(meshes::kFarCorners);
+    const float apart_px =
+        (quality_ == look::Quality::kLow ? kLowCorner_px : kCorner_px) * (form.trees_m > 0.0F ? 1.0F : kBareHill);
+    const int every = meshes::far_corner_step(apart_px * view.eye_m.w);
+    const int around = meshes::kFarCorners / every;
+    const float step_rad = glm::two_pi<float>() / static_cast<float>(around);
     glUniform1i(range_place_, static_cast<GLint>(range));
-    glBindVertexArray(ranges_.at(range).array.name());
-    const auto first = static_cast<GLint>(arc->from_rad / step_rad) % meshes::kFarCorners;
+    glUniform1i(every_place_, every);
+    glActiveTexture(GL_TEXTURE0 + gl::kTilesUnit);
+    glBindTexture(GL_TEXTURE_BUFFER, ranges_.at(range).texture.name());
+    const auto first = static_cast<GLint>(arc->from_rad / step_rad) % around;
     const auto count = static_cast<GLsizei>(std::ceil(arc->size_rad / step_rad)) + 2;
     // More than half of the way around is all of it.
-    const bool is_all = count > meshes::kFarCorners / 2;
-    glDrawArrays(GL_TRIANGLE_STRIP, is_all ? 0 : 2 * first, 2 * (is_all ? meshes::kFarCorners + 1 : count));
+    const bool is_all = count > around / 2;
+    glDrawArrays(GL_TRIANGLE_STRIP, is_all ? 0 : 2 * first, 2 * (is_all ? around + 1 : count));
   }
-  glBindVertexArray(no_attributes_.name());
+  glActiveTexture(GL_TEXTURE0);
 }
 
-void Landscape::draw(const meshes::View& view) {
+void Landscape::draw_ground() {
   glBindVertexArray(no_attributes_.name());
   glUseProgram(ground_.name());
   glEnable(GL_STENCIL_TEST);
@@ -114,19 +140,30 @@ void Landscape::draw(const meshes::View& view) {
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   }
   glDisable(GL_STENCIL_TEST);
-  draw_sky(view);
+}
+
+template <class DrawSky>
+void Landscape::draw_behind(const meshes::View& view, DrawSky&& draw_sky) {
+  glBindVertexArray(no_attributes_.name());
+  draw_far_country(view);
+  glBindTexture(GL_TEXTURE_2D, noise_.name());
+  // The sky is at the far end of the depth range.
+  glDepthFunc(GL_LEQUAL);
+  draw_sky();
+  glDepthFunc(GL_LESS);
 }
 
 void Landscape::draw_sky(const meshes::View& view) {
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, noise_.name());
-  draw_far_country(view);
-  // The sky is at the far end of the depth range.
-  glDepthFunc(GL_LEQUAL);
-  glUseProgram(sky_.name());
-  clouds_.bind(sky_);
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kSkyColumns + 1), kSkyRows);
-  glDepthFunc(GL_LESS);
+  if (!small_sky_) return draw_mirrored_sky(view);
+  draw_behind(view, [&] { small_sky_->draw(light_, view); });
+}
+
+void Landscape::draw_mirrored_sky(const meshes::View& view) {
+  draw_behind(view, [&] {
+    glUseProgram(sky_.name());
+    clouds_.bind(sky_);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kSkyColumns + 1), kSkyRows);
+  });
 }
 
 }  // namespace yuragi::viewer::looks

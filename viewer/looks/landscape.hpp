@@ -1,10 +1,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
+#include "engine/look/look.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/light/light.hpp"
 #include "viewer/looks/cloud_map.hpp"
+#include "viewer/looks/small_sky.hpp"
 #include "viewer/meshes/far_country.hpp"
 #include "viewer/meshes/view.hpp"
 
@@ -16,30 +19,39 @@ class Landscape {
  public:
   Landscape();
 
-  /// Before a picture in this light. Binds another framebuffer.
-  void prepare(const light::Light& light) { clouds_.advance(light, noise_); }
+  /// With low quality the hills have fewer corners, and the sky is a SmallSky.
+  void set_quality(look::Quality quality);
 
-  /// The same View (ViewBuffer::set) and the GroundMaps are bound. The ground has holes and shadows where the stencil
-  /// has kHole and kShadow.
-  void draw(const meshes::View& view);
-  /// The hills and the sky alone.
+  /// Before a picture of this size in this light, whose `view` (ViewBuffer::set) is bound. Binds another framebuffer.
+  void prepare(const light::Light& light, const meshes::View& view, int width_px, int height_px);
+
+  /// The View and the GroundMaps are bound. The ground has holes and shadows where the stencil has kHole and kShadow.
+  void draw_ground();
+  /// The hills and the sky of the picture.
   void draw_sky(const meshes::View& view);
+  /// The same of a mirror, whose View is bound.
+  void draw_mirrored_sky(const meshes::View& view);
 
  private:
   void draw_far_country(const meshes::View& view);
+  template <class DrawSky>
+  void draw_behind(const meshes::View& view, DrawSky&& draw_sky);
 
-  gl::GlTexture noise_;
+  look::Quality quality_ = look::Quality::kLow;
+  light::Light light_;
+  gl::GlTexture noise_, relief_;
   CloudMap clouds_;
   gl::GlProgram ground_;
   GLint sunlight_place_ = -1;
   gl::GlProgram hills_;
-  GLint range_place_ = -1;
+  GLint range_place_ = -1, every_place_ = -1;
   struct Range {
     gl::GlBuffer corners;
-    gl::GlVertexArray array;
+    gl::GlTexture texture;
   };
   std::array<Range, meshes::kFarRanges.size()> ranges_;
   gl::GlProgram sky_;
+  std::optional<SmallSky> small_sky_{std::in_place};  // with low quality
   gl::GlVertexArray no_attributes_;
 };
 

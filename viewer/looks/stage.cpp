@@ -217,6 +217,7 @@ void Stage::set_quality(look::Quality quality) {
   for (const auto& view : views_) view->renderer = make_scene_renderer(view->scene, quality_);
   meadow_.reset();
   lawn_.reset();
+  landscape_.set_quality(quality);
   const int texels =
       quality == look::Quality::kLow ? 0 : (quality == look::Quality::kMedium ? kMediumTexels : kHighTexels);
   shadow_map_.reset();
@@ -284,7 +285,7 @@ void Stage::draw_mirror(const stream::PoseMoment& moment, const meshes::View& vi
     door_.close();
   }
   if (quality_ == look::Quality::kHigh || quality_ == look::Quality::kAuto) draw_sward(image);
-  landscape_.draw_sky(image);
+  landscape_.draw_mirrored_sky(image);
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (is_seen(moment, scene)) views_[scene]->renderer->draw_light();
   }
@@ -309,7 +310,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   const meshes::View flat = has_flat_shadows ? meshes::laid_flat(view, to_sun) : view;
   view_buffer_.set(view);
   view_buffer_.set(light_);
-  landscape_.prepare(light_);
+  landscape_.prepare(light_, view, target.drawn_width_px(), target.drawn_height_px());
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   glDisable(GL_BLEND);
@@ -341,8 +342,10 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   }
   draw_sward(view);
   mark_pass("sward");
-  landscape_.draw(view);
-  mark_pass("landscape");
+  landscape_.draw_ground();
+  mark_pass("ground");
+  landscape_.draw_sky(view);
+  mark_pass("hills and sky");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!is_seen(moment, scene)) continue;
     door_.open(moment.opacities[scene], scene);

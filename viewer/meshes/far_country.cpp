@@ -115,4 +115,13 @@ std::vector<FarCorner> far_corners(std::size_t range) {
   return corners;
 }
 
+int far_corner_step(float apart_rad) {
+  constexpr float kStep_rad = static_cast<float>(2.0 * kPi) / static_cast<float>(kFarCorners);
+  int step = 1;
+  for (const int wider : {2, 3, 4, 6, 8, 12}) {
+    if (static_cast<float>(wider) * kStep_rad <= apart_rad) step = wider;
+  }
+  return step;
+}
+
 }  // namespace yuragi::viewer::meshes

@@ -35,4 +35,8 @@ inline constexpr int kFarCorners = 8640;  ///< around the circle
 /// much as half of the way around once more.
 std::vector<FarCorner> far_corners(std::size_t range);
 
+/// Every how manieth corner is to be drawn so that those in the picture are at least about so far apart; radians. It
+/// divides kFarCorners.
+int far_corner_step(float apart_rad);
+
 }  // namespace yuragi::viewer::meshes

@@ -562,6 +562,34 @@ TEST_F(StageTest, AFlameShinesOnTheGroundByNightAndHardlyByDay) {
   EXPECT_LT(shines("60"), 0.5 * by_night);
 }
 
+TEST_F(StageTest, ASmallerSkyIsTheSameSky) {
+  show({});
+  meshes::CameraPlace place = stage_->home(static_cast<double>(kWidth_px) / kHeight_px);
+  place.target_m = {0.0, 8.0, 0.0};  // the sky fills the upper half
+  camera_.frame(place);
+  const auto sky = [&](look::Quality quality, const std::vector<std::string>& look) {
+    stage_->set_quality(quality);
+    stage_->set_light(light::light_of(look::edited({}, look).value(), 0.0));
+    Pixels picture = draw(0.0, {});
+    picture.resize(picture.size() / 2);
+    return picture;
+  };
+  for (const std::vector<std::string>& look : {std::vector<std::string>{"clouds=0.5"},
+                                               {"clouds=1"},
+                                               {"sun=fixed", "sun_height=-30"},
+                                               {"sun=fixed", "sun_height=8", "sun_azimuth=0"},
+                                               {"sun=fixed", "sun_height=8", "sun_azimuth=180"}}) {
+    const Pixels small = sky(look::Quality::kLow, look);
+    const Pixels full = sky(look::Quality::kMedium, look);
+    // The edges of clouds are softer, in so small a picture the most; hills have fewer corners.
+    EXPECT_LT(changed(small, full), small.size() / 3 / 20) << look.back();
+    const auto bright = [](const Pixels& picture) {
+      return static_cast<double>(std::ranges::count_if(picture, [](std::uint8_t value) { return value > 240; }));
+    };
+    EXPECT_NEAR(bright(small), bright(full), 0.1 * bright(full) + 60.0) << look.back();
+  }
+}
+
 TEST_F(StageTest, IsAtHomeInNothing) {
   show({});
   EXPECT_TRUE(std::isfinite(stage_->home(1.5).distance_m));

@@ -73,5 +73,17 @@ TEST(FarCountry, HasGapsBetweenItsCopsesAndTrees) {
   EXPECT_GT(high, kFarCorners / 20U);
 }
 
+TEST(FarCountry, HasNoMoreCornersThanThePictureShows) {
+  EXPECT_EQ(far_corner_step(0.0F), 1);
+  EXPECT_EQ(far_corner_step(1.0F), 12);
+  const double step_rad = 6.283185307179586 / kFarCorners;
+  for (double apart_rad = 0.5 * step_rad; apart_rad < 20.0 * step_rad; apart_rad += 0.3 * step_rad) {
+    const int step = far_corner_step(static_cast<float>(apart_rad));
+    EXPECT_EQ(kFarCorners % step, 0);
+    EXPECT_LE((step == 1 ? 0 : step) * step_rad * 0.9999, apart_rad);
+    EXPECT_GE(2.0001 * step * step_rad, std::min(apart_rad, 12.0 * step_rad));
+  }
+}
+
 }  // namespace
 }  // namespace yuragi::viewer::meshes

@@ -38,7 +38,7 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
   float t = ring_at(v >> 1, head_from);
   vec3 place = foot_m + length_m * arc_point(foot, turned, t);
   vec3 along = leaning(foot + turned * max(t, 0.15));
-  float lean = mix(0.55, length(leaning(foot + turned * 0.5).xz), tall);
+  float lean = mix(0.55, length(leaning(foot + turned * 0.5).xz) + kGust * gust_of(bend), tall);
   vec3 to_eye = eye_m.xyz - place;
   float distance_m = length(to_eye);
   to_eye /= distance_m;

@@ -64,12 +64,15 @@ void main() {
     float up = kThickness * (float(i) + 0.5) / float(kSteps);
     vec2 at = way * (first + step_long * (float(i) + 0.5)) - cover.xy;
     float here = density(at, up, blur);
-    if (here <= 0.0) continue;
-    float part = left * (1.0 - exp(-kDensity * min(step_long, 0.25) * here));
-    sun += part * sun_through(at, up, blur);
-    // Thin parts let light down to the base.
-    sky += part * (0.75 * smoothstep(0.0, 0.65 * kThickness, up) + 1.3 * exp(-3.6 * max(heap(at, blur), 0.0)));
-    left -= part;
+    // Once or not at all: a branch in which no pixel goes on is computed by llvmpipe nevertheless, a loop is not.
+    for (float cloud = here; cloud > 0.0; cloud = 0.0) {
+      float part = left * (1.0 - exp(-kDensity * min(step_long, 0.25) * here));
+      sun += part * sun_through(at, up, blur);
+      // Thin parts let light down to the base; of an overcast sky the parts that are thinner than the others.
+      float deep = max(heap(at, blur) + min(cover.z - 0.34, 0.0), 0.0);
+      sky += part * (mix(0.75, 0.30, smoothstep(0.45, 0.15, cover.z)) * smoothstep(0.0, 0.65 * kThickness, up) + 1.3 * exp(-mix(3.6, 4.8, smoothstep(0.45, 0.15, cover.z)) * deep));
+      left -= part;
+    }
     if (left < 0.02) break;
   }
   float covered = min((1.0 - left) * 1.02, 1.0);

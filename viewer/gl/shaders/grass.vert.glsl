@@ -26,5 +26,5 @@ void main() {
   vec4 rest = texelFetch(blades, 3 * blade + 1);  // how its foot leans, and how far it is turned up to its tip
   vec2 turned = rest.zw + texelFetch(streamed_bends, slot).rg;
   put_corner(gl_VertexID - slot * corners, root_length.xyz, root_length.w * is_up, rest.xy, turned, traits.x * pow(share, -0.7) * is_up,
-             traits.y, traits.z, patches(root_length.xz), bend_at(root_length.xz, 1.0), 1.0);
+             traits.y, traits.z, patches(root_length.xz, 0.0), bend_at(root_length.xz, 1.0), 1.0);
 }

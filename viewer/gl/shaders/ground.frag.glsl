@@ -9,21 +9,21 @@ void main() {
   float distance_m = length(from_eye);
   vec3 to_eye = -from_eye / distance_m;
   vec2 at_m = place_m.xz;
-  vec2 patch_at = patches(at_m);
+  vec2 patch_at = patches(at_m, log2(256.0 * 0.0061 * distance_m * eye_m.w));
   float growth_here = growth_at(at_m).r;
   // While tall grass fades it is on the pixels that its door leaves open (door.frag.glsl).
   float threshold = pixel_chance(floor(gl_FragCoord.xy) + 5.588238 * stand.z);
   float tall = threshold < bend_mean.w ? tall_share(growth_here) : 0.0;
 
-  // Tufts, as large as a few pixels at every distance: two sizes, of which one replaces the other. Of the noise only what
-  // is fine, so that its tile is not seen. At flat angles as sharp as half of them allow.
+  // Tufts, as large as a few pixels at every distance: two sizes, of which one replaces the other. At flat angles as sharp
+  // as half of them allow.
   float size = log2(max(distance_m, 2.0) * 0.035);
   float next = fract(size);
   float per_m = 0.30 * exp2(-floor(size));
   float blur = log2(256.0 * per_m * distance_m * eye_m.w) - 0.5 * log2(max(to_eye.y, 0.02));
   vec2 turned_m = mat2(0.8, 0.6, -0.6, 0.8) * at_m * (0.5 * per_m) + 0.31;
-  float fine = textureLod(noise_tile, at_m * per_m, blur).r - textureLod(noise_tile, at_m * per_m, max(blur, 4.0)).r;
-  float coarse = textureLod(noise_tile, turned_m, blur - 1.0).r - textureLod(noise_tile, turned_m, max(blur - 1.0, 4.0)).r;
+  float fine = textureLod(turf_tile, at_m * per_m, blur).b - 0.5;
+  float coarse = textureLod(turf_tile, turned_m, blur - 1.0).b - 0.5;
   float tufts = clamp(2.6 * mix(fine, coarse, next), -0.5, 0.5);
 
   float lit = sunlight * mix(kSunInShadow, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));

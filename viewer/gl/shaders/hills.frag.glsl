@@ -1,26 +1,25 @@
 // Woods and slopes far away: lit by the sun and the sky, and seen through much air.
-uniform sampler2D noise_tile;
+uniform sampler2D relief_tile;  // gl::make_relief_texture()
 uniform int range;
 in vec3 place_m;
 in vec2 wall_m;
 in float top_m;
+in vec3 air_there;
+in vec3 hazed;
 out vec4 color;
 
 void main() {
-  vec3 from_eye = place_m - eye_m.xyz;
-  float distance_m = length(from_eye);
-  vec3 ray = from_eye / distance_m;
+  vec3 ray = normalize(place_m - eye_m.xyz);
   bool is_wood = range < 2;
 
   // Crowns and slopes bulge toward the eye and up, unevenly.
   float grain_m = is_wood ? 26.0 : range == 2 ? 260.0 : range == 3 ? 1400.0 : 5200.0;
   vec2 at = wall_m * vec2(1.0, is_wood ? 1.3 : 2.4) / grain_m;
-  float bumps = texture(noise_tile, at).r - 0.5;
-  float bumps_up = texture(noise_tile, at + vec2(0.0, 0.035)).r - 0.5;
-  float bumps_aside = texture(noise_tile, at + vec2(0.035, 0.0)).r - 0.5;
+  vec3 relief = texture(relief_tile, at).rgb - 0.5;
+  float bumps = relief.r;
   vec3 aside = normalize(vec3(-ray.z, 0.0, ray.x));
-  vec3 normal = normalize(vec3(-ray.x, is_wood ? 0.5 : 0.9, -ray.z) - aside * ((is_wood ? 5.0 : 2.5) * (bumps_aside - bumps)) +
-                          vec3(0.0, 1.0, 0.0) * (4.0 * (bumps - bumps_up)));
+  vec3 normal = normalize(vec3(-ray.x, is_wood ? 0.5 : 0.9, -ray.z) - aside * ((is_wood ? 5.0 : 2.5) * relief.g) +
+                          vec3(0.0, 1.0, 0.0) * (-4.0 * relief.b));
 
   float up = clamp(wall_m.y / top_m, 0.0, 1.0);
   float open = is_wood ? (0.35 + 0.65 * up) * (0.75 + 0.9 * bumps) : 0.85 + 0.4 * bumps;  // to the sky
@@ -32,6 +31,5 @@ void main() {
   float against = max(dot(ray, to_sun.xyz), 0.0);
   if (is_wood) light += paint * vec3(1.2, 1.1, 0.5) * sun_light.rgb * (0.22 * against * against * up);
 
-  vec3 air_there = air_light(normalize(vec3(ray.x, 0.02, ray.z)));
-  color = vec4(dithered(finish(mix(light, air_there, far_haze(place_m))), gl_FragCoord.xy), 1.0);
+  color = vec4(dithered(finish(mix(light, air_there, hazed)), gl_FragCoord.xy), 1.0);
 }

@@ -9,6 +9,7 @@ layout(std140) uniform Ground {
   vec4 stand;         // tall grass: mean length, metres; curl, radians; number of the door through which it fades; tilt, radians
 };
 uniform sampler2D noise_tile;
+uniform sampler2D turf_tile;  // gl::make_turf_texture()
 uniform sampler2D bends;   // east, south, radians
 uniform sampler2D growth;  // r: 0 bare, 1 nothing keeps grass from growing; g: streamed blades stand here; b: water
 
@@ -38,15 +39,14 @@ float grown_m(float growth, float tall, float chance) {
 }
 
 // Patches of moisture and soil, from -0.5 to 0.5: broad ones (x), and clumps (y).
-vec2 patches(vec2 at_m) {
-  float broad = textureLod(noise_tile, mat2(0.8, 0.6, -0.6, 0.8) * at_m * 0.0061 + 0.17, 0.0).r;
-  float clumps = textureLod(noise_tile, mat2(0.6, -0.8, 0.8, 0.6) * at_m * 0.047, 0.0).r;
-  return vec2(broad, clumps) - 0.5;
+vec2 patches(vec2 at_m, float blur) {
+  return textureLod(turf_tile, mat2(0.8, 0.6, -0.6, 0.8) * at_m * 0.0061 + 0.17, blur).rg - 0.5;
 }
 
 // The colour of a blade's upper part: from a young blue-green over fresh green to straw. `chance` from 0 to 1.
 vec3 tint_of(vec2 patch_at, float chance) {
-  float dryness = clamp(0.46 + grass_lush.w + 0.75 * patch_at.x + 0.42 * patch_at.y + 0.42 * (chance - 0.5), 0.0, 1.0);
+  // Kinds of grass grow through each other: at a patch's edge blade by blade, so that it has no outline.
+  float dryness = clamp(0.44 + grass_lush.w + 0.42 * patch_at.x + 0.50 * patch_at.y + 0.62 * (chance - 0.5), 0.0, 1.0);
   return dryness < 0.6 ? mix(grass_lush.rgb, grass_fresh.rgb, dryness / 0.6) : mix(grass_fresh.rgb, grass_straw.rgb, (dryness - 0.6) / 0.4);
 }
 
@@ -59,6 +59,8 @@ vec3 leaning(vec2 bend) {
 
 // The share of blades that are drawn at a distance (Thinning::share).
 float kept_share(float thinning, float distance_m) { return min(1.0, thinning * inversesqrt(distance_m) / distance_m); }
+
+const float kGust = 0.5;  // a gust is seen by the light on it: more than its bend alone would show
 
 const float kSunInShadow = 0.16;  // leaves, threads and the air let some through
 
@@ -87,12 +89,15 @@ vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float
   return sum * exp2(4.0 * (lean - 0.60));
 }
 
+// How much more the grass is bent at a place than on the average: where a gust is.
+float gust_of(vec2 bend) { return clamp(length(bend) - length(bend_mean.xy), -0.25, 0.35); }
+
 // The light of grass as one sees it from afar: the upper parts of its blades, leaning with the wind. `tufts` from -0.5 to
 // 0.5: how a tuft differs from its neighbours.
 vec3 canopy_light(vec2 bend, vec3 to_eye, vec2 patch_at, float tufts, float tall, float sunlight) {
   vec3 along = leaning(bend * mix(0.35, 0.8, tall) + vec2(0.25, 0.1) * tufts);
   vec3 normal = normalize(vec3(to_eye.x, 0.35, to_eye.z) + vec3(along.x, 0.0, along.z) * 0.5);
-  float lean = mix(0.55, clamp(0.36 + 0.42 * length(bend) + 0.45 * tufts, 0.0, 1.0), tall);
+  float lean = mix(0.55, clamp(0.36 + 0.42 * length(bend) + kGust * gust_of(bend) + 0.45 * tufts, 0.0, 1.1), tall);
   vec3 light = blade_light(to_eye, along, normal, mix(0.72, 0.82, tall) + 0.3 * tufts, tint_of(patch_at, 0.5 + 0.8 * tufts), lean, sunlight);
   // From above one looks down between the blades.
   return light * (1.0 - tall * (0.15 + 0.30 * to_eye.y * to_eye.y * (1.0 - 0.6 * min(length(bend), 1.0))));

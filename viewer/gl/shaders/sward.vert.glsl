@@ -26,7 +26,7 @@ void main() {
   on_tile.y = (turn & 4) == 4 ? 1.0 - on_tile.y : on_tile.y;
   vec2 root_m = tile.xy + on_tile * tile_m;
 
-  vec2 patch_at = patches(root_m);
+  vec2 patch_at = patches(root_m, 0.0);
   vec3 grown = growth_at(root_m);
   float chance = fract(traits.y + 0.37 * tile.z);
   float distance_m = max(distance(eye_m.xyz, vec3(root_m.x, 0.0, root_m.y)), 0.01);
