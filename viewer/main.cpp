@@ -2,10 +2,12 @@
 #include <cstdio>
 #include <exception>
 
+#include "engine/base/result.hpp"
 #include "engine/base/version.hpp"
 #include "engine/base/word_suggestion.hpp"
 #include "viewer/viewer.hpp"
 #include "viewer/viewer_exit.hpp"
+#include "viewer/window.hpp"
 
 namespace {
 
@@ -28,6 +30,10 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : EX_USAGE;
   }
 
+  if (options.lists_monitors) {
+    std::fputs(viewer::list_monitors().c_str(), stdout);
+    return 0;
+  }
   std::signal(SIGINT, [](int) { is_stopping = true; });
   std::signal(SIGTERM, [](int) { is_stopping = true; });
   viewer::Viewer(options, is_stopping).run();
@@ -42,6 +48,9 @@ int main(int argc, char** argv) {
   } catch (const yuragi::viewer::ViewerExit& error) {
     std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
     return error.code();
+  } catch (const yuragi::FailureError& error) {
+    std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
+    return yuragi::viewer::exit_code_of(error.kind());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
     return EX_SOFTWARE;

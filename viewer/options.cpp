@@ -72,6 +72,18 @@ void add_options(CLI::App& app, ViewerOptions& options) {
   app.add_flag("--dark-when-closed", options.is_dark_when_closed,
                "Fade to black outside of the daemon's opening hours ([shaping] hours)");
   app.add_option("--monitor", options.monitor, "Which screen to use, counted from 0")->check(CLI::NonNegativeNumber);
+  auto* const config =
+      app.add_option(
+             "--config", options.config,
+             "A configuration of Yuragi, whose [[output]] says which monitors show the picture and how; without "
+             "one in it, as without this option")
+          ->type_name("FILE.toml");
+  app.add_option("--output", options.output, "The name of the [[output]] to show; default: the first")
+      ->needs(config)
+      ->type_name("NAME");
+  app.add_flag("--test-card", options.has_test_card,
+               "Show lines, circles and greys in place of the picture, to set up an [[output]]; needs no daemon");
+  app.add_flag("--list-monitors", options.lists_monitors, "List the monitors by number and name, and end");
   app.add_flag("--turn", options.is_turning, "Turn the camera slowly");
   app.add_option("--scene", options.scene, "Show only the scene of this name");
   app.add_option(
@@ -123,12 +135,15 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       "  yuragi run &                                    the daemon, with a synthetic wind\n"
       "  yuragi-viewer                                   show it\n"
       "  yuragi-viewer --connect wall.local:7410 --fullscreen --no-overlay\n"
+      "  yuragi-viewer --config wall.toml --test-card    set up the monitors and projectors of its [[output]]\n"
       "  yuragi-viewer --screenshot now.png              a picture; needs no screen\n"
       "  yuragi-viewer --camera night                    by one of the daemon's cameras, whatever the hour\n"
       "\n"
-      "Exit code 0: done; 64: wrong command line; 69: no daemon answers, or nothing to draw on; 73: the picture "
-      "cannot be\n"
-      "written.");
+      "Exit code 0: done; 64: wrong command line; 66: the configuration cannot be read; 69: no daemon answers, nothing "
+      "to\n"
+      "draw on, or a monitor that is not there; 73: the picture cannot be written; 78: a mistake in the "
+      "configuration's\n"
+      "outputs.");
 }
 
 }  // namespace yuragi::viewer

@@ -20,6 +20,10 @@ struct ViewerOptions {
   bool has_panel = false;       ///< shown from the start
   bool is_fullscreen = false;
   std::optional<int> monitor;
+  std::string config;           ///< a configuration file, of whose outputs one is shown
+  std::string output;           ///< its name; empty: the first
+  bool has_test_card = false;   ///< in place of the picture
+  bool lists_monitors = false;  ///< and no more
   bool is_turning = false;
   bool is_dark_when_closed = false;
   std::vector<std::string> look;  ///< "time=06:30": over the daemon's look
