@@ -109,6 +109,7 @@ class Viewer::Show {
     if (!options.scene.empty()) stage_->show_only(options.scene);
     window_ ? overlay_.emplace(window_->handle(), window_->content_scale()) : overlay_.emplace(nullptr, 1.0);
     begin_cameras();
+    if (output_ && output_->screen) see_through(*output_->screen);
     camera_.set_turning(options.is_turning);
     frame_camera();
   }
@@ -207,6 +208,14 @@ class Viewer::Show {
     for (const look::Camera& camera : cameras_.cameras()) names += names.empty() ? camera.name : ", " + camera.name;
     throw ViewerExit(EX_USAGE, "--camera: " + options_.connect + " has no camera '" + options_.camera + "'; it has " +
                                    (names.empty() ? "none: there is no [[camera]] in its configuration" : names));
+  }
+
+  void see_through(const output::Screen& screen) {
+    const auto place = [](const output::RoomPlace& of) { return glm::dvec3(of[0], of[1], of[2]); };
+    const meshes::Frustum frustum = meshes::frustum_through(place(screen.lower_left_m), place(screen.lower_right_m),
+                                                            place(screen.upper_left_m), place(screen.eye_m));
+    camera_.see_through(frustum);
+    shot_camera_.see_through(frustum);
   }
 
   /// What the command line asks for comes before the hour.
