@@ -141,7 +141,9 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       "\n"
       "Exit code 0: done; 64: wrong command line; 66: the configuration cannot be read; 69: no daemon answers, nothing "
       "to\n"
-      "draw on, or a monitor that is not there; 73: the picture cannot be written; 78: a mistake in the "
+      "draw on, or a monitor that is not there; 73: the picture cannot be written; 75: the graphics card was reset, to "
+      "be\n"
+      "started again; 78: a mistake in the "
       "configuration's\n"
       "outputs.");
 }

@@ -26,6 +26,7 @@
 #include "viewer/wall/outputs_file.hpp"
 #include "viewer/wall/test_card.hpp"
 #include "viewer/wall/wall.hpp"
+#include "viewer/watchdog.hpp"
 #include "viewer/window.hpp"
 
 namespace yuragi::viewer {
@@ -116,6 +117,7 @@ class Viewer::Show {
 
   void run_window() {
     while (!is_stopping_ && !window_->is_closing()) {
+      watchdog_.went_round(now_s());
       window_->poll();
       use_input();
       if (wall_) wall_->follow_monitors(now_s());
@@ -127,6 +129,7 @@ class Viewer::Show {
       }
       draw(size);
       show(size);
+      if (gl::is_context_lost()) throw ViewerExit(EX_TEMPFAIL, "the graphics card was reset; start the viewer again");
       // Where the processor draws the picture is done now.
       if (is_drawn_for_pace()) pace_.advance(picture_passed_s_, now_s() - last_s_);
       keep_pace();
@@ -420,6 +423,7 @@ class Viewer::Show {
   std::optional<Overlay> overlay_;
   std::optional<gl::RenderTarget> target_;
 
+  Watchdog watchdog_;
   std::optional<CameraView> view_;  // of the command line
   CameraKeeper cameras_;
   meshes::OrbitCamera camera_;       // by hand
