@@ -67,7 +67,7 @@ const std::array<Parameter, 9> kWindowParameters{{
      .min = 0,
      .max = 270,
      .help = "How far the picture is turned clockwise on the monitor: 0, 90, 180 or 270. 90 is for a monitor that "
-             "hangs with its left side up"},
+             "hangs with its right side up"},
     {.name = "corners",
      .unit = "",
      .default_value = std::string("0 0 1 0 1 1 0 1"),

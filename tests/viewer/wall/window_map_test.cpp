@@ -61,7 +61,7 @@ TEST(MonitorToCrop, UndoesTheCorners) {
   }
 }
 
-/// On a monitor that hangs with its left side up, the picture's upper left corner is at the monitor's upper right.
+/// On a monitor that hangs with its right side up, the picture's upper left corner is at the monitor's upper right.
 TEST(MonitorToCrop, TurnsThePictureClockwise) {
   const auto shown_at = [](int rotation_deg, const glm::dvec2& place) {
     return mapped(monitor_to_crop(output::Window{.rotation_deg = rotation_deg}), place);
