@@ -33,7 +33,9 @@ class VirtualMonitors {
     int height_px = 0;
     std::vector<std::uint32_t> rows;  ///< 0xRRGGBB, from the top down
 
-    std::uint32_t at(int x, int y) const { return rows[static_cast<std::size_t>(y * width_px + x)]; }
+    std::uint32_t at(int x, int y) const {
+      return rows[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) + static_cast<std::size_t>(x)];
+    }
   };
   /// What all monitors show at this moment, as one picture.
   Pixels pixels() const;

@@ -2,8 +2,11 @@
 
 #include "viewer/wall/wall_pass.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +28,9 @@ struct Pixels {
   int at(int x, int y, int channel) const {
     const int column = std::clamp(x, 0, size.width_px - 1);
     const int row = std::clamp(y, 0, size.height_px - 1);
-    return bytes[static_cast<std::size_t>(3 * (row * size.width_px + column) + channel)];
+    const auto pixel =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(size.width_px) + static_cast<std::size_t>(column);
+    return bytes[3 * pixel + static_cast<std::size_t>(channel)];
   }
   /// Between four pixels; x and y are parts of the picture.
   double between(const glm::dvec2& place, int channel) const {

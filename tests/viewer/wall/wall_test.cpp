@@ -80,6 +80,11 @@ class RunningViewer {
   pid_t child_ = 0;
 };
 
+/// Where a pixel is in the rows of a picture.
+std::size_t place(int width_px, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) + static_cast<std::size_t>(x);
+}
+
 /// Waits for a condition; a program that hangs makes it false.
 bool comes_true(const std::function<bool()>& condition) {
   const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(1);
@@ -139,7 +144,7 @@ class WallTest : public testing::Test {
     int count = 0;
     for (int y = 2; y < kHeight_px - 2; ++y) {
       for (int x = 2; x < kWidth_px - 2; ++x) {
-        const auto at = static_cast<std::size_t>(y * picture_width_px + from_x + x);
+        const std::size_t at = place(picture_width_px, from_x + x, y);
         if (at >= picture.size() || monitor_x + x >= seen.width_px || seen.at(monitor_x + x, y) != picture[at]) ++count;
       }
     }
@@ -237,7 +242,7 @@ monitor = "DUMMY2"
   std::vector<std::uint32_t> picture = card(2 * kWidth_px, kHeight_px);
   std::vector<std::uint32_t> turned;
   for (int y = kHeight_px - 1; y >= 0; --y) {
-    for (int x = kWidth_px - 1; x >= 0; --x) turned.push_back(picture[static_cast<std::size_t>(y * 2 * kWidth_px + x)]);
+    for (int x = kWidth_px - 1; x >= 0; --x) turned.push_back(picture[place(2 * kWidth_px, x, y)]);
   }
   EXPECT_TRUE(comes_true([&] {
     return differences(turned, kWidth_px, 0, 0) == 0 && differences(picture, 2 * kWidth_px, kWidth_px, kWidth_px) == 0;
