@@ -33,6 +33,7 @@ test_packages=(
   umockdev libumockdev-dev                                # USB devices without a kernel's
   libasound2-dev libasound2-plugins pulseaudio pulseaudio-utils # sound cards without a card
   xvfb                                                    # a display for the viewer's window
+  xserver-xorg-core xserver-xorg-video-dummy x11-xserver-utils libx11-dev # monitors that come and go, for its wall
   glslang-tools                                           # an independent judge of the shaders
   systemd lintian man-db                                  # independent judges of the units and of the package
   qemu-system-x86 busybox-static kmod cpio usbip alsa-utils     # USB and sound through a real kernel, in a virtual machine

@@ -2,11 +2,13 @@
 #include <cstdio>
 #include <exception>
 
+#include "engine/base/result.hpp"
 #include "engine/base/version.hpp"
 #include "engine/base/word_suggestion.hpp"
 #include "viewer/film.hpp"
 #include "viewer/viewer.hpp"
 #include "viewer/viewer_exit.hpp"
+#include "viewer/window.hpp"
 
 namespace {
 
@@ -29,6 +31,10 @@ int run(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : EX_USAGE;
   }
 
+  if (options.lists_monitors) {
+    std::fputs(viewer::list_monitors().c_str(), stdout);
+    return 0;
+  }
   std::signal(SIGINT, [](int) { is_stopping = true; });
   std::signal(SIGTERM, [](int) { is_stopping = true; });
   if (!options.render.empty()) {
@@ -47,6 +53,9 @@ int main(int argc, char** argv) {
   } catch (const yuragi::viewer::ViewerExit& error) {
     std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
     return error.code();
+  } catch (const yuragi::FailureError& error) {
+    std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
+    return yuragi::viewer::exit_code_of(error.kind());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
     return EX_SOFTWARE;

@@ -65,8 +65,8 @@ void add_film_options(CLI::App& app, ViewerOptions& options) {
       app.add_option("--render", options.render, "Play FILE.windlog tick by tick, and draw each picture")
           ->type_name("FILE.windlog")
           ->group(film);
-  for (const char* other :
-       {"--connect", "--screenshot", "--fullscreen", "--monitor", "--overlay", "--panel", "--dark-when-closed"}) {
+  for (const char* other : {"--connect", "--screenshot", "--fullscreen", "--monitor", "--overlay", "--panel",
+                            "--dark-when-closed", "--output", "--test-card"}) {
     render->excludes(other);
   }
   auto* const out = app.add_option("--out", options.out,
@@ -91,14 +91,9 @@ void add_film_options(CLI::App& app, ViewerOptions& options) {
       ->transform(CLI::Validator(duration_to_seconds, ""))
       ->check(CLI::Range(0.001, 1e6))
       ->group(film);
-  auto* const config = app.add_option("--config", options.config,
-                                      "The configuration with the scenes; default: a meadow, as `yuragi replay` has it")
-                           ->needs(render)
-                           ->type_name("FILE")
-                           ->group(film);
   app.add_flag("--as-recorded", options.is_as_recorded, "With the configuration and all sensors of the recording")
       ->needs(render)
-      ->excludes(config)
+      ->excludes("--config")
       ->group(film);
   app.add_flag("--draw-nothing", options.draws_nothing,
                "All but the drawing: black pictures, on a machine without OpenGL or to test the rest")
@@ -124,6 +119,18 @@ void add_options(CLI::App& app, ViewerOptions& options) {
   app.add_flag("--dark-when-closed", options.is_dark_when_closed,
                "Fade to black outside of the daemon's opening hours ([shaping] hours)");
   app.add_option("--monitor", options.monitor, "Which screen to use, counted from 0")->check(CLI::NonNegativeNumber);
+  auto* const config =
+      app.add_option(
+             "--config", options.config,
+             "A configuration of Yuragi: its [[output]] says which monitors show the picture and how; of a film "
+             "(--render) it has the scenes")
+          ->type_name("FILE.toml");
+  app.add_option("--output", options.output, "The name of the [[output]] to show; default: the first")
+      ->needs(config)
+      ->type_name("NAME");
+  app.add_flag("--test-card", options.has_test_card,
+               "Show lines, circles and greys in place of the picture, to set up an [[output]]; needs no daemon");
+  app.add_flag("--list-monitors", options.lists_monitors, "List the monitors by number and name, and end");
   app.add_flag("--turn", options.is_turning, "Turn the camera slowly");
   app.add_option("--scene", options.scene, "Show only the scene of this name");
   app.add_option(
@@ -177,6 +184,7 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       "  yuragi run &                                    the daemon, with a synthetic wind\n"
       "  yuragi-viewer                                   show it\n"
       "  yuragi-viewer --connect wall.local:7410 --fullscreen --no-overlay\n"
+      "  yuragi-viewer --config wall.toml --test-card    set up the monitors and projectors of its [[output]]\n"
       "  yuragi-viewer --screenshot now.png              a picture; needs no screen\n"
       "  yuragi-viewer --camera night                    by one of the daemon's cameras, whatever the hour\n"
       "  yuragi-viewer --render storm.windlog --out storm.mp4 --size 1920x1080 --fps 60 --duration 20\n"
@@ -187,10 +195,13 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       "unless another is asked for. The same recording, configuration and graphics driver give the same pictures, bit "
       "for bit.\n"
       "\n"
-      "Exit code 0: done; 64: wrong command line; 69: no daemon answers, nothing to draw on, or no ffmpeg; 73: the "
-      "picture\n"
-      "or film cannot be written; 130: a film was interrupted. Of a recording that cannot be played, those of `yuragi "
-      "replay`.");
+      "Exit code 0: done; 64: wrong command line; 66: the configuration cannot be read; 69: no daemon answers, "
+      "nothing\n"
+      "to draw on, a monitor that is not there, or no ffmpeg; 73: the picture or film cannot be written; 75: the "
+      "graphics\n"
+      "card was reset, to be started again; 78: a mistake in the configuration's outputs; 130: a film was interrupted. "
+      "Of\n"
+      "a recording that cannot be played, those of `yuragi replay`.");
 }
 
 }  // namespace yuragi::viewer

@@ -20,6 +20,10 @@ struct ViewerOptions {
   bool has_panel = false;       ///< shown from the start
   bool is_fullscreen = false;
   std::optional<int> monitor;
+  std::string config;           ///< a file: of its outputs one is shown, of its scenes a film is made; empty: none
+  std::string output;           ///< its name; empty: the first
+  bool has_test_card = false;   ///< in place of the picture
+  bool lists_monitors = false;  ///< and no more
   bool is_turning = false;
   bool is_dark_when_closed = false;
   std::vector<std::string> look;  ///< "time=06:30": over the daemon's look
@@ -31,7 +35,6 @@ struct ViewerOptions {
   double wait_s = 10.0;
 
   std::string render;  ///< a recording, of which a film is made; empty: none
-  std::string config;  ///< for it; empty: what `yuragi replay` takes without one
   bool is_as_recorded = false;
   std::string from;                  ///< as `yuragi replay --start`
   std::optional<double> duration_s;  ///< of the film; unset: to the recording's end

@@ -268,8 +268,14 @@ void Overlay::draw(const PixelSize& size, const OverlayFacts& facts) {
   ImGui_ImplOpenGL3_NewFrame();
   if (has_window_) {
     ImGui_ImplGlfw_NewFrame();
-  } else {
-    ImGui::GetIO().DisplaySize = ImVec2(static_cast<float>(size.width_px), static_cast<float>(size.height_px));
+  }
+  // The picture of a wall has not the size of the window that has the keyboard.
+  ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 picture(static_cast<float>(size.width_px), static_cast<float>(size.height_px));
+  const ImVec2 window(io.DisplaySize.x * io.DisplayFramebufferScale.x, io.DisplaySize.y * io.DisplayFramebufferScale.y);
+  if (!has_window_ || std::lround(window.x) != size.width_px || std::lround(window.y) != size.height_px) {
+    io.DisplaySize = picture;
+    io.DisplayFramebufferScale = ImVec2(1.0F, 1.0F);
   }
   ImGui::NewFrame();
   if (facts.has_texts) draw_texts(facts);

@@ -22,6 +22,10 @@
 #include "viewer/stream/scene_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
 #include "viewer/viewer_exit.hpp"
+#include "viewer/wall/outputs_file.hpp"
+#include "viewer/wall/test_card.hpp"
+#include "viewer/wall/wall.hpp"
+#include "viewer/watchdog.hpp"
 #include "viewer/window.hpp"
 
 namespace yuragi::viewer {
@@ -46,6 +50,12 @@ stream::StreamOptions address_of(const ViewerOptions& options) {
   return {.host = address->host, .port = address->port};
 }
 
+/// What the configuration says of the wall; nothing where there is none.
+std::optional<output::Output> output_of(const ViewerOptions& options) {
+  if (options.config.empty()) return std::nullopt;
+  return wall::load_output(options.config, options.output);
+}
+
 }  // namespace
 
 class Viewer::Show {
@@ -54,16 +64,19 @@ class Viewer::Show {
       : options_(options),
         is_stopping_(is_stopping),
         connection_(address_of(options)),
+        output_(output_of(options)),
         began_s_(now_s()),
         last_s_(began_s_),
-        brightness_(options.is_dark_when_closed ? 0.0 : 1.0),
-        has_overlay_(options.overlay.value_or(options.screenshot.empty())),
+        brightness_(options.is_dark_when_closed || output_ ? 0.0 : 1.0),
+        has_overlay_(options.overlay.value_or(options.screenshot.empty() && !output_)),
         has_panel_(options.has_panel) {
     if (options.screenshot.empty()) {
       window_.emplace(WindowOptions{.width_px = options.width_px,
                                     .height_px = options.height_px,
                                     .is_fullscreen = options.is_fullscreen,
-                                    .monitor = options.monitor});
+                                    .monitor = options.monitor,
+                                    .is_hidden = output_.has_value()});
+      if (output_) wall_.emplace(window_->handle(), *output_);
     } else {
       headless_ = make_headless_context();
     }
@@ -76,27 +89,31 @@ class Viewer::Show {
     stage_.emplace();
     dimmer_.emplace();
     cross_fade_.emplace();
+    if (options.has_test_card) test_card_.emplace();
     sky_.start(look_for({}));
     if (!options.scene.empty()) stage_->show_only(options.scene);
     window_ ? overlay_.emplace(window_->handle(), window_->content_scale()) : overlay_.emplace(nullptr, 1.0);
     begin_cameras();
+    if (output_ && output_->screen) see_through(*output_->screen);
     camera_.set_turning(options.is_turning);
     frame_camera();
   }
 
   void run_window() {
     while (!is_stopping_ && !window_->is_closing()) {
+      watchdog_.went_round(now_s());
       window_->poll();
       use_input();
+      if (wall_) wall_->follow_monitors(now_s());
       advance();
-      const PixelSize size = window_->framebuffer_size();
+      const PixelSize size = size_to_show();
       if (size.is_empty()) {
         window_->wait(kIdleWait_s);
         continue;
       }
       draw(size);
-      target_->show(size.width_px, size.height_px);
-      window_->swap();
+      show(size);
+      if (gl::is_context_lost()) throw ViewerExit(EX_TEMPFAIL, "the graphics card was reset; start the viewer again");
       // Where the processor draws the picture is done now.
       if (is_drawn_for_pace()) pace_.advance(picture_passed_s_, now_s() - last_s_);
       keep_pace();
@@ -108,6 +125,7 @@ class Viewer::Show {
     const PixelSize size{options_.width_px, options_.height_px};
     double first_pose_s = 0.0;
     int drawn = 0;
+    if (options_.has_test_card) return draw_to_file(size);
     while (!is_stopping_) {
       connection_.wait_for_news(from_seconds(kIdleWait_s));
       advance();
@@ -119,16 +137,31 @@ class Viewer::Show {
       if (!sensors_ && last_s_ - first_pose_s < longest_wait_for_status_s()) continue;
       require_camera();
       if (options_.at_s && last_s_ - first_pose_s < *options_.at_s) continue;
-      draw(size);
       ++drawn;
-      if (drawn >= (options_.at_s ? kOverlayPictures : options_.frames)) {
-        write_picture(options_.screenshot, size.width_px, size.height_px, target_->read_rgb());
-        return;
-      }
+      if (drawn >= (options_.at_s ? kOverlayPictures : options_.frames)) return draw_to_file(size);
+      draw(size);
     }
   }
 
  private:
+  void draw_to_file(const PixelSize& size) {
+    draw(size);
+    write_picture(options_.screenshot, size.width_px, size.height_px, target_->read_rgb());
+  }
+
+  /// Empty where there is nothing to show it on.
+  PixelSize size_to_show() const {
+    if (!wall_) return window_->framebuffer_size();
+    const output::Size size = wall_->picture_size();
+    return wall_->is_dark() ? PixelSize{} : PixelSize{.width_px = size.width_px, .height_px = size.height_px};
+  }
+
+  void show(const PixelSize& size) {
+    if (wall_) return wall_->show(*target_, options_.has_test_card);
+    target_->show(size.width_px, size.height_px);
+    window_->swap();
+  }
+
   [[noreturn]] void throw_no_daemon() const {
     throw ViewerExit(EX_UNAVAILABLE, "no pose was received from " + options_.connect + " (" +
                                          connection_.status().text +
@@ -162,6 +195,14 @@ class Viewer::Show {
     for (const look::Camera& camera : cameras_.cameras()) names += names.empty() ? camera.name : ", " + camera.name;
     throw ViewerExit(EX_USAGE, "--camera: " + options_.connect + " has no camera '" + options_.camera + "'; it has " +
                                    (names.empty() ? "none: there is no [[camera]] in its configuration" : names));
+  }
+
+  void see_through(const output::Screen& screen) {
+    const auto place = [](const output::RoomPlace& of) { return glm::dvec3(of[0], of[1], of[2]); };
+    const meshes::Frustum frustum = meshes::frustum_through(place(screen.lower_left_m), place(screen.lower_right_m),
+                                                            place(screen.upper_left_m), place(screen.eye_m));
+    camera_.see_through(frustum);
+    shot_camera_.see_through(frustum);
   }
 
   /// What the command line asks for comes before the hour.
@@ -262,10 +303,10 @@ class Viewer::Show {
     const double passed_s = now - last_s_;
     last_s_ = now;
     picture_passed_s_ = passed_s;
-    follow_opening_hours(is_first_status ? kDimming_s : passed_s);
     camera_.advance(passed_s);
     cameras_.advance(passed_s);
     moment_ = &timeline_.advance(now);
+    follow_brightness(is_first_status ? kDimming_s : passed_s);
     if (auto scenes = timeline_.take_new_scenes()) {
       stage_->set_scenes(std::move(*scenes));
       if (!has_framed_) {
@@ -291,14 +332,23 @@ class Viewer::Show {
   }
 
   /// Dark until the first status says whether it is open, so that a wall that starts at night stays dark.
-  void follow_opening_hours(double passed_s) {
-    if (!options_.is_dark_when_closed || !sensors_) return;
-    brightness_ += std::min(1.0, passed_s / kDimming_s) * (sensors_->shaping.openness - brightness_);
+  void follow_brightness(double passed_s) {
+    brightness_ += std::min(1.0, passed_s / kDimming_s) * (wanted_brightness() - brightness_);
+  }
+
+  double wanted_brightness() const {
+    if (wall_ && timeline_.playback() == stream::Playback::kNothing) return 0.0;
+    if (!options_.is_dark_when_closed) return 1.0;
+    return sensors_ ? sensors_->shaping.openness : 0.0;
   }
 
   void draw(const PixelSize& size) {
     if (!target_ || PixelSize{target_->width_px(), target_->height_px()} != size) {
       target_.emplace(size.width_px, size.height_px, samples_);
+    }
+    if (test_card_) {
+      target_->bind_resolved();
+      return test_card_->draw({.width_px = size.width_px, .height_px = size.height_px});
     }
     aspect_ = static_cast<double>(size.width_px) / size.height_px;
     const DrawnPart part = is_drawn_for_pace() ? pace_.drawn() : DrawnPart{};
@@ -338,21 +388,26 @@ class Viewer::Show {
 
   /// Waits where the driver does not wait for the screen: no more pictures than the screen can show.
   void keep_pace() {
-    const double rest_s = 0.95 / window_->refresh_rate_hz() - (now_s() - last_s_);
+    const double interval_s = wall_ ? wall_->picture_interval_s() : 1.0 / window_->refresh_rate_hz();
+    const double rest_s = 0.95 * interval_s - (now_s() - last_s_);
     if (rest_s > 0.0) window_->wait(rest_s);
   }
 
   const ViewerOptions options_;
   const std::atomic<bool>& is_stopping_;
   stream::StreamConnection connection_;
-  std::optional<Window> window_;  // this or the next; the members below need its context
+  const std::optional<output::Output> output_;
+  std::optional<Window> window_;    // this or headless_; the members below need its context
+  std::optional<wall::Wall> wall_;  // of the window, where there is an output
   std::unique_ptr<gl::HeadlessContext> headless_;
   std::optional<looks::Stage> stage_;
   std::optional<gl::Dimmer> dimmer_;
   std::optional<gl::CrossFade> cross_fade_;
+  std::optional<wall::TestCard> test_card_;
   std::optional<Overlay> overlay_;
   std::optional<gl::RenderTarget> target_;
 
+  Watchdog watchdog_;
   std::optional<CameraView> view_;  // of the command line
   CameraKeeper cameras_;
   meshes::OrbitCamera camera_;       // by hand

@@ -8,6 +8,7 @@
 #include <GLFW/glfw3.h>
 
 #include "viewer/viewer_exit.hpp"
+#include "viewer/wall/monitors.hpp"
 
 namespace yuragi::viewer {
 namespace {
@@ -23,19 +24,29 @@ std::string& last_glfw_error() {
                        ").\nA picture in a file needs no screen: yuragi-viewer --screenshot picture.png");
 }
 
+void begin_glfw() {
+  glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
+  if (glfwInit() != GLFW_TRUE) throw_unavailable("there is no display to open a window on");
+}
+
 }  // namespace
 
 struct Window::State {
   explicit State(const WindowOptions& options) {
-    glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
-    if (glfwInit() != GLFW_TRUE) throw_unavailable("there is no display to open a window on");
+    begin_glfw();
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);  // gl::is_context_lost()
 #ifdef YURAGI_GL_DEBUG
     glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
 #endif
+    if (options.is_hidden) {
+      // For this window, and for those that share its context. A wall goes on where another window has the keyboard.
+      for (const int hint : {GLFW_VISIBLE, GLFW_DECORATED, GLFW_AUTO_ICONIFY}) glfwWindowHint(hint, GLFW_FALSE);
+    }
+    is_placed_by_wall = options.is_hidden;
     window = glfwCreateWindow(options.width_px, options.height_px, "Yuragi", nullptr, nullptr);
     if (window == nullptr) {
       glfwTerminate();
@@ -127,6 +138,7 @@ struct Window::State {
   }
 
   void toggle_fullscreen() {
+    if (is_placed_by_wall) return;
     if (glfwGetWindowMonitor(window) != nullptr) {
       glfwSetWindowMonitor(window, nullptr, windowed_x, windowed_y, windowed_width, windowed_height, GLFW_DONT_CARE);
       return;
@@ -141,6 +153,7 @@ struct Window::State {
 
   GLFWwindow* window = nullptr;
   std::optional<int> monitor;
+  bool is_placed_by_wall = false;
   WindowInput input;
   bool is_mouse_taken = false;
   bool are_keys_taken = false;
@@ -196,6 +209,13 @@ void Window::set_taken(bool is_mouse_taken, bool are_keys_taken) {
 }
 void Window::swap() {
   glfwSwapBuffers(state_->window);
+}
+
+std::string list_monitors() {
+  begin_glfw();
+  std::string text = wall::monitors_text();
+  glfwTerminate();
+  return text;
 }
 
 }  // namespace yuragi::viewer

@@ -13,6 +13,7 @@ struct WindowOptions {
   int height_px = 720;
   bool is_fullscreen = false;
   std::optional<int> monitor;  ///< for full screen, counted from 0; empty: the primary one
+  bool is_hidden = false;      ///< at first, and without a frame: for a wall (viewer/wall), which places it
 };
 
 /// The user's input since the last take_input(). Drags are shares of the window's height.
@@ -77,5 +78,9 @@ class Window {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// The monitors of this display, a line for each (viewer/wall/monitors.hpp). Before any window. Throws ViewerExit
+/// (EX_UNAVAILABLE) where there is no display.
+std::string list_monitors();
 
 }  // namespace yuragi::viewer

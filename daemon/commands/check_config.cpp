@@ -17,6 +17,7 @@
 #include "daemon/state/json_value.hpp"
 #include "daemon/tools/sensors/description_json.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
+#include "engine/output/output.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -166,6 +167,15 @@ std::vector<DescribedTable> all_tables() {
                  "a place to see the scenes from, with a name, and how it moves; viewers follow it at once, and take "
                  "the next when its time comes",
                  look::camera_parameters()});
+  all.push_back(
+      {"[[output]]",
+       "how `yuragi-viewer --config FILE` shows its picture on a wall; with a name where there are several, for "
+       "`--output NAME`",
+       output::output_parameters()});
+  all.push_back({"[[output.window]]",
+                 "below an [[output]]: a monitor that it fills, with all of the picture or a part; without any it is "
+                 "the primary monitor",
+                 output::window_parameters()});
   return all;
 }
 

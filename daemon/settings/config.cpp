@@ -15,6 +15,8 @@
 
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
+#include "engine/output/output_tables.hpp"
+#include "engine/tables/toml_values.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
@@ -45,21 +47,12 @@ std::span<const scenes::RetiredParameter> retired_of(const scenes::SceneDescript
   return scene.retired;
 }
 
-/// A TOML value as a parameter's value; nothing for dates, arrays and tables, which no parameter has.
-std::optional<ParameterValue> to_parameter_value(const toml::node& node) {
-  if (const auto* flag = node.as_boolean()) return ParameterValue(flag->get());
-  if (const auto* whole = node.as_integer()) return ParameterValue(whole->get());
-  if (const auto* number = node.as_floating_point()) return ParameterValue(number->get());
-  if (const auto* text = node.as_string()) return ParameterValue(text->get());
-  return std::nullopt;
-}
-
 /// Reads a parsed file and collects every error with its place.
 class ConfigReader {
  public:
   /// Pictures' paths begin at `folder`; without a folder none is read.
   explicit ConfigReader(std::string source_name, std::optional<std::filesystem::path> folder = std::nullopt)
-      : source_name_(std::move(source_name)), folder_(std::move(folder)) {}
+      : mistakes_(std::move(source_name)), folder_(std::move(folder)) {}
 
   Config read(const toml::table& root) {
     Config config;
@@ -98,8 +91,9 @@ class ConfigReader {
                    });
     if (config.scenes.empty()) config.scenes = default_scenes();
     read_cameras(root, config);
+    config.outputs = output::read_outputs(root, mistakes_);
 
-    if (!mistakes_.empty()) throw ConfigError(mistakes_);
+    if (!mistakes_.empty()) throw ConfigError(mistakes_.text());
     return config;
   }
 
@@ -136,28 +130,21 @@ class ConfigReader {
 
  private:
   void mistake(const toml::source_region& where, const std::string& key, const std::string& what) {
-    mistakes_.append(mistakes_.empty() ? "" : "\n")
-        .append(place(where))
-        .append(": ")
-        .append(key)
-        .append(": ")
-        .append(what);
+    mistakes_.add(where, key, what);
   }
 
-  std::string place(const toml::source_region& where) const {
-    return source_name_ + ':' + std::to_string(where.begin.line) + ':' + std::to_string(where.begin.column);
-  }
+  std::string place(const toml::source_region& where) const { return mistakes_.place(where); }
 
   void check_top_level(const toml::table& root) {
     for (const auto& [key, node] : root) {
-      const bool is_array = key == "sensor" || key == "scene" || key == kCameraList;
+      const bool is_array = key == "sensor" || key == "scene" || key == kCameraList || key == output::kOutputList;
       bool known = is_array || key == "seed";
       for (const ConfigTable& table : config_tables()) known = known || table.name == key.str();
       if (!known) {
         mistake(
             key.source(), std::string(key.str()),
             "is not known here; allowed: seed, [stream], [http], [recording], [animation], [wind], [shaping], [look], "
-            "[log], [[sensor]], [[scene]], [[camera]]");
+            "[log], [[sensor]], [[scene]], [[camera]], [[output]]");
       } else if (is_array && !(node.is_array_of_tables() || (node.is_array() && node.as_array()->empty()))) {
         mistake(key.source(), std::string(key.str()),
                 "is one table; write [[" + std::string(key.str()) + "]] above it");
@@ -222,28 +209,13 @@ class ConfigReader {
   ParameterValues read_values(const toml::table& table, const std::string& prefix,
                               std::span<const Parameter> parameters, const std::set<std::string_view>& aside,
                               std::span<const scenes::RetiredParameter> retired = {}) {
-    // One key at a time, so that each error is reported at its own place.
-    ParameterValues::Map good;
-    for (const auto& [key, node] : table) {
-      if (aside.contains(key.str())) continue;
-      const std::optional<ParameterValue> value = to_parameter_value(node);
-      if (!value) {
-        mistake(node.source(), prefix + std::string(key.str()), "takes one value: true, a number or a text");
-        continue;
-      }
-      const auto gone = std::ranges::find(retired, key.str(), &scenes::RetiredParameter::name);
-      if (gone != retired.end()) {
-        mistake(node.source(), prefix + std::string(key.str()), std::string(gone->now));
-        continue;
-      }
-      const ParameterValues::Map one{{std::string(key.str()), *value}};
-      if (auto checked = ParameterValues::resolve(parameters, one); !checked) {
-        mistake(node.source(), prefix + checked.error().name, checked.error().message);
-      } else {
-        good.insert(one.begin(), one.end());
-      }
+    std::set<std::string_view> others = aside;
+    for (const scenes::RetiredParameter& gone : retired) {
+      if (const toml::node* node = table.get(gone.name))
+        mistake(node->source(), prefix + std::string(gone.name), std::string(gone.now));
+      others.insert(gone.name);
     }
-    return ParameterValues::resolve(parameters, good).value();
+    return tables::read_values(table, prefix, parameters, others, mistakes_);
   }
 
   /// Every [[sensor]] or [[scene]], of which `most` are allowed: finds its description by `kind_key`, its name, and its
@@ -359,9 +331,8 @@ class ConfigReader {
     return otherwise;
   }
 
-  std::string source_name_;
+  tables::TomlMistakes mistakes_;
   std::optional<std::filesystem::path> folder_;
-  std::string mistakes_;
 };
 
 template <class Description>
@@ -560,6 +531,17 @@ std::string to_toml(const Config& config) {
   }
   if (!cameras.empty()) root.insert(kCameraList, std::move(cameras));
 
+  toml::array outputs;
+  for (const output::OutputTable& output : config.outputs) {
+    toml::table entry = to_table(output.values);
+    entry.insert_or_assign(kNameKey, output.output.name);
+    toml::array windows;
+    for (const ParameterValues& window : output.windows) windows.push_back(to_table(window));
+    if (!windows.empty()) entry.insert(output::kWindowList, std::move(windows));
+    outputs.push_back(std::move(entry));
+  }
+  if (!outputs.empty()) root.insert(output::kOutputList, std::move(outputs));
+
   std::ostringstream out;
   out << root << '\n';
   return out.str();
@@ -580,7 +562,7 @@ Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::s
   try {
     ParameterValues::Map given;
     for (const auto& [key, node] : toml::parse(toml_text)) {
-      const std::optional<ParameterValue> value = to_parameter_value(node);
+      const std::optional<ParameterValue> value = tables::parameter_value_of(node);
       if (!value) return Failure{std::string(key.str()) + ": takes one value: true, a number or a text"};
       given.emplace(key.str(), *value);
     }

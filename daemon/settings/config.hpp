@@ -25,6 +25,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/look/look.hpp"
+#include "engine/output/output.hpp"
 
 namespace yuragi::daemon::settings {
 
@@ -47,6 +48,7 @@ struct Config {
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
   std::vector<CameraConfig> cameras;
+  std::vector<output::OutputTable> outputs;  ///< the viewers', who read the file themselves; here they are checked
   LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC where no camera has a time
 
   /// The values of the tables by key, from which the members above were made. For to_toml() and plan_reload() only.

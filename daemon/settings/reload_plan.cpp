@@ -308,6 +308,13 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
   if (plan.changes_scenes) next.scenes = wanted.scenes;
   compare_cameras(comparison, running.cameras, wanted.cameras);
   next.cameras = wanted.cameras;
+  const auto same_output = [](const output::OutputTable& one, const output::OutputTable& other) {
+    return one.output == other.output;
+  };
+  if (!std::ranges::equal(running.outputs, wanted.outputs, same_output)) {
+    comparison.note(kTakesRestart, "[[output]]: has changed; viewers read it when they are started");
+  }
+  next.outputs = wanted.outputs;
   next.clock = wanted.clock;
   return plan;
 }

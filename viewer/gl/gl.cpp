@@ -178,6 +178,11 @@ bool is_software_renderer() {
   return name.find("llvmpipe") != std::string_view::npos || name.find("softpipe") != std::string_view::npos;
 }
 
+bool is_context_lost() {
+  static const bool is_told = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness");
+  return is_told && glGetGraphicsResetStatus() != GL_NO_ERROR;
+}
+
 void report_gl_errors() {
   if (!epoxy_has_gl_extension("GL_KHR_debug") && epoxy_gl_version() < 43) return;
   glEnable(GL_DEBUG_OUTPUT);

@@ -130,6 +130,10 @@ void stream_to(GLenum target, const GlBuffer& buffer, std::span<const T> content
 /// Does the driver compute every pixel on the processor, without graphics hardware?
 bool is_software_renderer();
 
+/// Has the graphics card been reset, and with it all that the context had? Only a new context, that is, a program that
+/// is started again, can draw then. Never where the driver does not say so (GL_KHR_robustness).
+bool is_context_lost();
+
 /// From now on the driver's error messages go to standard error (KHR_debug; does nothing where the driver does not
 /// support it).
 void report_gl_errors();

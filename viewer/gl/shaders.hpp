@@ -52,6 +52,8 @@ extern const std::string_view kSolidVert;
 extern const std::string_view kSolidFrag;
 extern const std::string_view kSparkVert;
 extern const std::string_view kSparkFrag;
+extern const std::string_view kTestCardFrag;
+extern const std::string_view kWallFrag;
 extern const std::string_view kWaterVert;
 extern const std::string_view kWaterFrag;
 extern const std::string_view kWideHeavensFrag;

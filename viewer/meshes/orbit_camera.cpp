@@ -26,6 +26,7 @@ constexpr double kStandingEye_m = 1.5;
 constexpr double kLowestHorizon = 0.55;  // so far from the picture's middle to its lower side
 constexpr double kFilled = 0.95;         // of the picture
 constexpr double kUsualAspect = 16.0 / 9.0;
+constexpr double kFar_m = 2000.0;
 constexpr double kMinFieldOfView_deg = 2.0;
 constexpr double kMaxFieldOfView_deg = 120.0;
 constexpr double kShorePitch_deg = 11.0;
@@ -116,10 +117,17 @@ glm::mat4 OrbitCamera::view() const {
   return glm::mat4(glm::lookAt(eye_m(), place_.target_m, glm::dvec3(0.0, 1.0, 0.0)));
 }
 
+Frustum OrbitCamera::frustum(double aspect) const {
+  if (frustum_) return *frustum_;
+  const double up = tangent_up(place_.field_of_view_deg, aspect);
+  return {.left = -aspect * up, .right = aspect * up, .bottom = -up, .top = up};
+}
+
 glm::mat4 OrbitCamera::projection(double aspect) const {
   const double near_m = std::clamp(0.02 * place_.distance_m, 0.01, 1.0);
+  if (frustum_) return glm::mat4(projection_of(*frustum_, near_m, kFar_m));
   const double up_rad = 2.0 * std::atan(tangent_up(place_.field_of_view_deg, aspect));
-  return glm::mat4(glm::perspective(up_rad, aspect, near_m, 2000.0));
+  return glm::mat4(glm::perspective(up_rad, aspect, near_m, kFar_m));
 }
 
 CameraPlace place_across(const Bounds& bounds) {

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <optional>
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
 #include "viewer/meshes/bounds.hpp"
+#include "viewer/meshes/frustum.hpp"
 #include "viewer/meshes/shore.hpp"
 
 namespace yuragi::viewer::meshes {
@@ -56,11 +59,16 @@ class OrbitCamera {
   /// Advances by dt_s.
   void advance(double dt_s);
 
+  /// From now on it sees this, whatever its field of view and the picture's shape; nothing: those again.
+  void see_through(const std::optional<Frustum>& frustum) { frustum_ = frustum; }
+
   const CameraPlace& place() const { return place_; }
   glm::dvec3 eye_m() const { return eye_of(place_); }
 
   glm::mat4 view() const;
-  /// For a picture of width / height `aspect`; near and far planes fit the distance.
+  /// What it sees in a picture of width / height `aspect`.
+  Frustum frustum(double aspect) const;
+  /// For such a picture; near and far planes fit the distance.
   glm::mat4 projection(double aspect) const;
 
  private:
@@ -68,6 +76,7 @@ class OrbitCamera {
   CameraPlace wanted_;
   CameraPlace place_;
   bool is_turning_ = false;
+  std::optional<Frustum> frustum_;
 };
 
 /// A low place to look at the content of `bounds` from, toward the evening sun's side: across a field from just inside

@@ -20,16 +20,22 @@ float mist_below(double height_m) {
 
 View view_of(const OrbitCamera& camera, int width_px, int height_px) {
   const float aspect = static_cast<float>(width_px) / static_cast<float>(height_px);
-  const auto tan_up = static_cast<float>(tangent_up(camera.place().field_of_view_deg, static_cast<double>(aspect)));
+  const Frustum frustum = camera.frustum(static_cast<double>(aspect));
+  const auto tan_up = static_cast<float>(0.5 * (frustum.top - frustum.bottom));
+  const auto tan_right = static_cast<float>(0.5 * (frustum.right - frustum.left));
+  // Of the picture's middle from where the camera looks.
+  const auto middle_up = static_cast<float>(0.5 * (frustum.top + frustum.bottom));
+  const auto middle_right = static_cast<float>(0.5 * (frustum.right + frustum.left));
   const glm::mat4 to_camera = camera.view();
 
   View view;
   view.to_clip = camera.projection(static_cast<double>(aspect)) * to_camera;
   view.eye_m = glm::vec4(glm::vec3(camera.eye_m()), 2.0F * tan_up / static_cast<float>(height_px));
   // The rows of the rotation are the camera's axes in the world.
-  view.right = {to_camera[0][0], to_camera[1][0], to_camera[2][0], tan_up * aspect};
+  view.right = {to_camera[0][0], to_camera[1][0], to_camera[2][0], tan_right};
   view.up = {to_camera[0][1], to_camera[1][1], to_camera[2][1], tan_up};
   view.forward = {-to_camera[0][2], -to_camera[1][2], -to_camera[2][2], mist_below(camera.eye_m().y)};
+  view.forward += glm::vec4(middle_right * glm::vec3(view.right) + middle_up * glm::vec3(view.up), 0.0F);
   return view;
 }
 

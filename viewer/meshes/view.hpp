@@ -14,10 +14,12 @@ namespace yuragi::viewer::meshes {
 /// layout (std140).
 struct View {
   glm::mat4 to_clip{1.0F};
-  glm::vec4 eye_m{0.0F};      ///< w: the size of a pixel at a distance of one metre, metres
-  glm::vec4 right{0.0F};      ///< unit vectors of the camera; w: tangent of half the field of view, horizontally
-  glm::vec4 up{0.0F};         ///< w: the same, vertically
-  glm::vec4 forward{0.0F};    ///< w: mean density of the mist between the eye's height and the ground, 1 on it
+  glm::vec4 eye_m{0.0F};  ///< w: the size of a pixel at a distance of one metre, metres
+  glm::vec4 right{0.0F};  ///< unit vectors of the camera; w: tangent of half the field of view, horizontally
+  glm::vec4 up{0.0F};     ///< w: the same, vertically
+  /// To the picture's middle: of a camera that looks through it at right angles a unit vector, otherwise 1 long along
+  /// the camera's axis; w: mean density of the mist between the eye's height and the ground, 1 on it
+  glm::vec4 forward{0.0F};
   glm::mat4 to_shadow{1.0F};  ///< to the shadow map: place and depth, 0 to 1
   glm::vec4 shadow{
       0.0F};  ///< a texel of the map (0: there is none); how a penumbra grows, across and upright; depth, m

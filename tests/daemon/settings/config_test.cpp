@@ -38,6 +38,19 @@ std::string mistakes_of(std::string_view text) {
   return "no mistake was found";
 }
 
+TEST(Config, ChecksTheOutputsOfTheViewersAndWritesThemOut) {
+  const std::string text =
+      "[[output]]\nname = \"foyer\"\n[[output.window]]\nmonitor = \"HDMI-1\"\ncrop = \"0 0 0.5 1\"\n";
+  const Config config = parse_config(text, "wall.toml");
+  ASSERT_EQ(config.outputs.size(), 1U);
+  EXPECT_EQ(config.outputs[0].output.windows.at(0).monitor, "HDMI-1");
+  const Config again = parse_config(to_toml(config), "written.toml");
+  ASSERT_EQ(again.outputs.size(), 1U);
+  EXPECT_EQ(again.outputs[0].output, config.outputs[0].output);
+  EXPECT_THAT(mistakes_of("[[output]]\n[[output.window]]\ncrop = \"1 1 1 1\"\n"),
+              StartsWith("wall.toml:3:8: output.window.crop: is \"1 1 1 1\""));
+}
+
 TEST(Config, HasTheColorsAndThePictureOfACloth) {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "wall.toml";

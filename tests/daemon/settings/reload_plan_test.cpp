@@ -127,6 +127,14 @@ TEST(ReloadPlan, TheCamerasFollowTheClocksOfAnotherZone) {
   EXPECT_EQ(plan.next.clock.zone_name(), "Europe/Berlin");
 }
 
+TEST(ReloadPlan, SaysThatViewersReadTheirOutputWhenTheyAreStarted) {
+  const Config running = parse_config("[[output]]\n", "wall.toml");
+  const Config wanted = parse_config("[[output]]\nrefreshes = 2\n", "wall.toml");
+  const ReloadPlan plan = plan_reload(running, wanted, true);
+  EXPECT_THAT(plan.takes_restart, ElementsAre("[[output]]: has changed; viewers read it when they are started"));
+  EXPECT_TRUE(plan_reload(plan.next, wanted, true).takes_restart.empty());
+}
+
 TEST(ReloadPlan, OfTheSameConfigurationIsEmpty) {
   const Config config = wall(kTwoSensors);
   const ReloadPlan plan = plan_reload(config, wall(kTwoSensors), true);

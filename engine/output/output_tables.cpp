@@ -1,0 +1,101 @@
+#include "engine/output/output_tables.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace yuragi::output {
+namespace {
+
+constexpr std::string_view kNameKey = "name";
+constexpr std::size_t kLongestName = 64;
+
+/// The tables of a list; a mistake where it is no list of tables, or too long.
+std::vector<const toml::table*> entries_of(const toml::table& around, std::string_view key, const std::string& path,
+                                           std::size_t most, tables::TomlMistakes& mistakes) {
+  std::vector<const toml::table*> entries;
+  const toml::node* const node = around.get(key);
+  if (node == nullptr) return entries;
+  const toml::array* const list = node->as_array();
+  if (list == nullptr || !(list->empty() || list->is_array_of_tables())) {
+    mistakes.add(node->source(), path, "is one table; write [[" + path + "]] above it");
+    return entries;
+  }
+  if (list->size() > most) {
+    mistakes.add(list->get(most)->source(), path,
+                 "is one of " + std::to_string(list->size()) + "; allowed: at most " + std::to_string(most));
+    return entries;
+  }
+  for (const toml::node& entry : *list) entries.push_back(entry.as_table());
+  return entries;
+}
+
+/// Takes a value made of a table, or its mistake at the key that has it.
+template <class Made>
+Made taken(Result<Made, ParameterError> made, const toml::table& table, const std::string& prefix,
+           tables::TomlMistakes& mistakes) {
+  if (made) return std::move(*made);
+  const toml::node* const node = table.get(made.error().name);
+  mistakes.add(node != nullptr ? node->source() : table.source(), prefix + made.error().name, made.error().message);
+  return {};
+}
+
+OutputTable read_output(const toml::table& entry, tables::TomlMistakes& mistakes) {
+  const std::string prefix = std::string(kOutputList) + ".";
+  std::string name = Output().name;
+  if (const toml::node* node = entry.get(kNameKey)) {
+    name = node->value_or(std::string());
+    if (name.empty() || name.size() > kLongestName) {
+      mistakes.add(node->source(), prefix + "name", "takes a text of 1 to 64 characters");
+    }
+  }
+  OutputTable table;
+  table.values = tables::read_values(entry, prefix, output_parameters(), {kNameKey, kWindowList}, mistakes);
+  table.output = taken(output_of(std::move(name), table.values), entry, prefix, mistakes);
+
+  const std::string windows = prefix + std::string(kWindowList);
+  for (const toml::table* window : entries_of(entry, kWindowList, windows, kMostWindows, mistakes)) {
+    table.windows.push_back(tables::read_values(*window, windows + ".", window_parameters(), {}, mistakes));
+    table.output.windows.push_back(taken(window_of(table.windows.back()), *window, windows + ".", mistakes));
+    const std::string& monitor = table.output.windows.back().monitor;
+    const auto same = std::ranges::count(table.output.windows, monitor, &Window::monitor);
+    if (same > 1) {
+      mistakes.add(window->source(), windows + ".monitor",
+                   monitor.empty() ? "is missing; only one window can be on the primary monitor"
+                                   : "\"" + monitor + "\" is that of another window, too");
+    }
+  }
+  if (table.output.windows.empty()) table.output.windows.emplace_back();
+  return table;
+}
+
+}  // namespace
+
+std::vector<OutputTable> read_outputs(const toml::table& root, tables::TomlMistakes& mistakes) {
+  std::vector<OutputTable> outputs;
+  for (const toml::table* entry : entries_of(root, kOutputList, std::string(kOutputList), kMostOutputs, mistakes)) {
+    OutputTable read = read_output(*entry, mistakes);
+    const auto has_its_name = [&read](const OutputTable& other) { return other.output.name == read.output.name; };
+    if (std::ranges::any_of(outputs, has_its_name)) {
+      const toml::node* const name = entry->get(kNameKey);
+      mistakes.add(name != nullptr ? name->source() : entry->source(), "output.name",
+                   "\"" + read.output.name + "\" is used twice; give each output a name");
+    }
+    outputs.push_back(std::move(read));
+  }
+  return outputs;
+}
+
+Result<std::vector<Output>, Failure> parse_outputs(std::string_view toml_text, const std::string& source_name) {
+  tables::TomlMistakes mistakes(source_name);
+  std::vector<Output> outputs;
+  try {
+    const toml::table root = toml::parse(toml_text, source_name);
+    for (OutputTable& table : read_outputs(root, mistakes)) outputs.push_back(std::move(table.output));
+  } catch (const toml::parse_error& error) {
+    mistakes.add(error.source(), "TOML", std::string(error.description()));
+  }
+  if (!mistakes.empty()) return Failure{mistakes.text(), FailureKind::kBadData};
+  return outputs;
+}
+
+}  // namespace yuragi::output

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <toml++/toml.h>
+
+#include "engine/base/parameter.hpp"
+
+namespace yuragi::tables {
+
+/// Collects what is wrong with a file, a line for each mistake: `file:line:column: key: what is wrong; what is
+/// allowed`.
+class TomlMistakes {
+ public:
+  /// `source_name`: the file's name in the lines.
+  explicit TomlMistakes(std::string source_name) : source_name_(std::move(source_name)) {}
+
+  void add(const toml::source_region& where, const std::string& key, const std::string& what);
+
+  /// `file:line:column`.
+  std::string place(const toml::source_region& where) const;
+
+  bool empty() const { return text_.empty(); }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string source_name_;
+  std::string text_;
+};
+
+/// A TOML value as a parameter's value; nothing for dates, arrays and tables, which no parameter has.
+std::optional<ParameterValue> parameter_value_of(const toml::node& node);
+
+/// The values of one table, except the keys in `aside`; `prefix` ("look.") stands before a key in mistakes. What is
+/// wrong goes to `mistakes`, and counts as left out.
+ParameterValues read_values(const toml::table& table, const std::string& prefix, std::span<const Parameter> parameters,
+                            const std::set<std::string_view>& aside, TomlMistakes& mistakes);
+
+}  // namespace yuragi::tables

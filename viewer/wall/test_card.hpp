@@ -1,0 +1,22 @@
+#pragma once
+
+#include "engine/output/output.hpp"
+#include "viewer/gl/gl.hpp"
+
+namespace yuragi::viewer::wall {
+
+/// A picture by which a wall is set up: lines, circles, greys. Needs a current context.
+class TestCard {
+ public:
+  TestCard();
+
+  /// Fills the framebuffer that is bound, of this size.
+  void draw(const output::Size& size);
+
+ private:
+  gl::GlProgram program_;
+  gl::GlVertexArray no_attributes_;
+  GLint picture_px_;
+};
+
+}  // namespace yuragi::viewer::wall

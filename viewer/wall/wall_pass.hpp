@@ -1,0 +1,30 @@
+#pragma once
+
+#include "engine/output/output.hpp"
+#include "viewer/gl/gl.hpp"
+#include "viewer/gl/render_target.hpp"
+
+namespace yuragi::viewer::wall {
+
+/// The last pass: a window's crop of the picture, rotated, straightened and blended, onto its monitor. One for all
+/// windows, whose contexts share it; take() in the context that made it, draw() in each window's.
+class WallPass {
+ public:
+  WallPass();
+
+  /// Takes the resolved pixels of `target`.
+  void take(const gl::RenderTarget& target);
+
+  /// Fills the framebuffer that is bound, of this size, black where the picture is not. `vertex_array`: any of the
+  /// current context, which no two contexts share. `is_marked`: with the crop's border and its strips.
+  void draw(const output::Window& window, const output::Size& monitor, GLuint vertex_array, bool is_marked);
+
+ private:
+  gl::GlProgram program_;
+  gl::GlTexture picture_;
+  int width_px_ = 0;
+  int height_px_ = 0;
+  GLint monitor_px_, to_crop_, crop_, blend_, gamma_, is_marked_;
+};
+
+}  // namespace yuragi::viewer::wall

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec2.hpp>
+
+#include "engine/output/output.hpp"
+
+namespace yuragi::viewer::wall {
+
+// Which place of the picture each place of a monitor shows. Places are parts of width and height, x to the right, y
+// down. Pure, without a GPU.
+
+/// The projective map from the unit square to a convex quadrilateral: its corners go to `corners`, and straight lines
+/// stay straight. (P. Heckbert, "Fundamentals of Texture Mapping and Image Warping", 1989, section 2.2.3.)
+glm::dmat3 square_to(const output::Corners& corners);
+
+/// From a place on the monitor to one in the window's crop, both from 0 to 1: undoes the rotation and the corners.
+/// Homogeneous; the third coordinate is above 0 wherever the picture can be seen.
+glm::dmat3 monitor_to_crop(const output::Window& window);
+
+/// A homogeneous map, applied.
+glm::dvec2 mapped(const glm::dmat3& map, const glm::dvec2& place);
+
+/// The part of the light at a place of the crop that the window shows, 0 to 1. In a strip of the width `blend` (parts
+/// of the crop) it falls so that the neighbour's strip makes it 1 again. (P. Bourke, "Edge blending using commodity
+/// projectors", 2004, with exponent 2.)
+double blend_light(const glm::dvec2& place, const output::Sides& blend);
+
+/// The blend's widths as parts of the window's crop.
+output::Sides blend_of_crop(const output::Window& window);
+
+/// The size of a picture that has a pixel for each pixel of the finest window. `monitors`: the size of each window's
+/// monitor, empty (0) where it is not there.
+output::Size picture_size(const output::Output& output, std::span<const output::Size> monitors);
+
+}  // namespace yuragi::viewer::wall
