@@ -18,6 +18,10 @@ layout(location = 6) in vec4 corner;       // where its leaf grows, its side, th
 layout(location = 7) in vec2 edge_leaf;
 
 out vec3 shade;
+// For the pictures of impostors (impostor_look.frag.glsl): without the palette's factor.
+out vec3 own_color;
+out vec3 own_normal;
+out float own_open;
 
 const float kStalkRadius_m = 0.0011;
 const float kTwigRadius_m = 0.0022;
@@ -103,6 +107,10 @@ void main() {
   bool is_below = dot(normal, to_eye) < 0.0;
   vec3 face = is_below && kind == 0 ? lower_face(tint) : tint;
   normal *= is_below ? -1.0 : 1.0;
+
+  own_color = kind == 0 ? face / max(leaves.rgb, vec3(0.05)) : face;
+  own_normal = normal;
+  own_open = 0.5 + 0.5 * clamp(open.w + 0.45 * dot(open.xyz, normal), 0.0, 1.0);
 
   // What the crown lets through to here. With a map of shadows that knows the leaves as they are now.
   float sun_seen = clamp(open.w + dot(open.xyz, to_sun.xyz), 0.02, 1.0);
