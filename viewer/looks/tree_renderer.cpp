@@ -253,6 +253,8 @@ void TreeRenderer::move_to(const pose::Pose& pose) {
   if (bends == nullptr || !fits(*bends, *tree_)) return;
   for (const auto& alike : trees_) turn_back(*alike, *bends);
   move(*trees_.front());
+  const glm::vec3 sway_m = middle_m(*trees_.front()) - middle_at_rest_m_;
+  sway_.add(moment_.time_s, {sway_m.x, sway_m.z}, moment_.wind_m_s);
 }
 
 void TreeRenderer::turn_back(Alike& alike, const pose::TreePose& bends) {
@@ -339,7 +341,14 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail&
                             bool is_shadow) {
   const auto planes = side_planes(view);
   const float radius_m = std::hypot(box_.half_width_m, box_.half_height_m);
-  const glm::vec3 sway_m = middle_m(*trees_.front()) - middle_at_rest_m_;
+  // Gusts come to the one that stands the farthest upwind first.
+  const auto downwind_m = [&](const meshes::TreePlace& place) {
+    return sway_.downwind_m({place.to_m.x - place.from_m.x, place.to_m.z - place.from_m.z});
+  };
+  float first_m = 0.0F;
+  for (const auto& alike : trees_) {
+    for (const meshes::TreePlace& place : alike->places) first_m = std::min(first_m, downwind_m(place));
+  }
   far_trees_.clear();
   for (const auto& alike : trees_) {
     for (const meshes::TreePlace& place : alike->places) {
@@ -350,8 +359,9 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail&
         return glm::dot(plane, middle_m) >= -1.2F * place.scale * radius_m;
       });
       if (share > 0.0F && is_seen) {
+        const glm::vec2 sway_m = sway_.sway_m(sway_.delay_s(downwind_m(place) - first_m));
         far_trees_.push_back({.foot_scale = glm::vec4(place.to_m, place.scale),
-                              .turn_sway = {place.cosine, place.sine, sway_m.x, sway_m.z},
+                              .turn_sway = {place.cosine, place.sine, sway_m.x, sway_m.y},
                               .share = share});
       }
     }

@@ -12,6 +12,7 @@
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/branches.hpp"
 #include "viewer/meshes/crown.hpp"
+#include "viewer/meshes/sway_history.hpp"
 
 namespace yuragi::viewer::looks {
 
@@ -105,7 +106,8 @@ class TreeRenderer : public SceneRenderer {
   std::vector<std::unique_ptr<Alike>> trees_;  // the streamed one is the first of the first
   Moment moment_;
   meshes::ImpostorBox box_;
-  glm::vec3 middle_at_rest_m_{0.0F};             // of the tips of the thinnest wood
+  glm::vec3 middle_at_rest_m_{0.0F};  // of the tips of the thinnest wood
+  meshes::SwayHistory sway_;
   std::optional<TreeImpostors> impostors_;       // made when first needed
   std::vector<meshes::TreeImpostor> far_trees_;  // of a picture
 };
