@@ -422,8 +422,7 @@ TEST_F(StageTest, ShowsATreesGroveAndItsShadows) {
 }
 
 TEST_F(StageTest, ShowsFarTreesByPicturesInTheirPlaceAndLight) {
-  // A tree so far away that it is an impostor, and the same as large beside a larger picture's size of pixel: with a
-  // mesh. Their middles are alike.
+  // The copy is 30 m from the eye: an impostor.
   wire::SceneModel far = test_model("tree");
   auto& copies = std::get<pose::TreeSkeleton>(far.skeleton).copies;
   copies = {.x_m = {60.0F}, .z_m = {0.0F}, .turn_rad = {1.5F}, .scale = {1.0F}};
