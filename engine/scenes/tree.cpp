@@ -68,7 +68,7 @@ const std::array kTreeParameters = {
               {},
               "the colour of its leaves; bare: as in winter, with twigs in their place",
               pose::kFoliageColorNames},
-    Parameter{"grove", "", std::int64_t{1}, 1, 64,
+    Parameter{"grove", "", std::int64_t{1}, 1, 256,
               "trees in all: the others are this one, turned and scaled; they cost the stream nothing"},
     Parameter{"grove_radius", "m", 20.0, 1, 500, "how far from it they stand"},
     Parameter{"flexibility", "", 1.0, 0, 10,

@@ -100,6 +100,8 @@ enum TextureUnit : GLint {
   kFlameRampUnit,    //
   kBeforeUnit,       // two pictures that cross-fade
   kNowUnit,          //
+  kImpostorUnit,     // the pictures of a far tree, and what their light needs to know
+  kImpostorFacingUnit,
 };
 
 /// Compiles and links. Each stage begins with #version and shaders/common.glsl. On an error throws std::runtime_error

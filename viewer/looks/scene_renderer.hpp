@@ -7,6 +7,7 @@
 
 #include "engine/look/look.hpp"
 #include "engine/wire/wire.hpp"
+#include "viewer/gl/view_buffer.hpp"
 #include "viewer/light/fire_light.hpp"
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/floor.hpp"
@@ -34,6 +35,10 @@ class SceneRenderer {
 
   /// Takes the pose of the next picture, which fits the skeleton. Called before anything is drawn.
   virtual void move_to(const pose::Pose& pose) = 0;
+
+  /// Draws pictures of its own that later ones are made of. Called before anything of a picture is drawn; `views` and
+  /// the framebuffer are set again afterwards, and so are depth test, stencil test and blending.
+  virtual void prepare(const meshes::View&, gl::ViewBuffer&) {}
 
   /// Draws the opaque parts. The View is bound (ViewBuffer::set). The stage has set depth and stencil tests; other
   /// OpenGL state that is changed here, but for bindings, is restored.

@@ -302,6 +302,10 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   move_to(moment);
   view_buffer_.set(light::nearest_fires(fires_, glm::vec3(view.eye_m)));
   mark_pass("kinematics");
+  view_buffer_.set(light_);
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    if (is_seen(moment, scene)) views_[scene]->renderer->prepare(view, view_buffer_);
+  }
   if (has_shadows && shadow_map_) {
     draw_shadows(moment, to_sun, view);
     mark_pass("shadows");

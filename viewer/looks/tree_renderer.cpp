@@ -9,31 +9,43 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-/// Sides of a branch's tube, by level: the trunk is thick, twigs are thin.
-GLsizei sides_of(std::size_t level) {
-  return level == 0 ? 14 : (level == 1 ? 8 : 5);
-}
-
 meshes::SprayDetail detail_of(look::Quality quality) {
   switch (quality) {
     case look::Quality::kLow:
-      return {.leaf_px = 5.0F, .largest = 4.0F, .shaped_leaf_px = 60.0F};
+      return {.leaf_px = 5.5F, .largest = 4.0F, .shaped_leaf_px = 60.0F, .speck_px = 6.0F, .hidden_share = 0.3F};
     case look::Quality::kMedium:
-      return {.leaf_px = 4.5F, .largest = 3.5F, .shaped_leaf_px = 40.0F};
+      return {.leaf_px = 4.5F, .largest = 3.5F, .shaped_leaf_px = 40.0F, .speck_px = 6.0F, .hidden_share = 0.4F};
     case look::Quality::kHigh:
     case look::Quality::kAuto:
       break;
   }
-  return {.leaf_px = 3.5F, .largest = 3.0F, .shaped_leaf_px = 30.0F};
+  return {.leaf_px = 3.5F, .largest = 3.0F, .shaped_leaf_px = 30.0F, .speck_px = 4.0F, .hidden_share = 0.5F};
 }
+
+/// A ring of a branch for so many pixels of its length.
+float ring_px_of(look::Quality quality) {
+  return quality == look::Quality::kLow ? 10.0F : 6.0F;
+}
+
+/// Trees that are no higher in the picture, in pixels, are impostors, and no higher than this against their distance:
+/// nobody looks at one so far away.
+float impostor_px_of(look::Quality quality) {
+  return quality == look::Quality::kLow ? 240.0F : 160.0F;
+}
+constexpr float kImpostorHeight = 0.3F;
+
+/// Of the pictures for impostors.
+constexpr meshes::SprayDetail kPictureDetail{
+    .leaf_px = 3.0F, .largest = 3.0F, .shaped_leaf_px = 1e6F, .speck_px = 4.0F, .hidden_share = 0.4F};
+constexpr float kPictureRing_px = 12.0F;
 
 /// Shadows are soft, and hide what a leaf is like.
 meshes::SprayDetail shadow_detail_of(const meshes::SprayDetail& detail) {
-  return {.leaf_px = 2.0F * detail.leaf_px, .largest = 1.3F * detail.largest, .shaped_leaf_px = 1e6F};
+  return {.leaf_px = 2.0F * detail.leaf_px, .largest = 1.3F * detail.largest, .shaped_leaf_px = 1e6F, .speck_px = 1e6F};
 }
 
 /// The triangles of a tube; vertex (ring, side) is ring * (sides + 1) + side, the last side at the seam again.
-std::vector<std::uint32_t> tube_triangles(std::size_t rings, GLsizei sides) {
+std::vector<std::uint32_t> tube_triangles(std::size_t rings, std::size_t sides) {
   std::vector<std::uint32_t> indices;
   const auto across = static_cast<std::uint32_t>(sides);
   for (std::uint32_t ring = 0; ring < rings; ++ring) {
@@ -95,6 +107,13 @@ meshes::Bounds crown_bounds(const pose::TreeSkeleton& tree) {
   return meshes::bounds_of(tree);
 }
 
+/// Of the streamed tree alone.
+meshes::Bounds bounds_without_grove(const pose::TreeSkeleton& tree) {
+  pose::TreeSkeleton alone;
+  alone.levels = tree.levels;
+  return meshes::bounds_of(alone);
+}
+
 /// Where the trees of a skeleton stand: the streamed one, and its copies.
 std::vector<meshes::TreePlace> places_of(const pose::TreeSkeleton& tree) {
   meshes::TreePlace own;
@@ -141,6 +160,8 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
     : tree_(&tree),
       crown_bounds_(crown_bounds(tree)),
       detail_(detail_of(quality)),
+      ring_px_(ring_px_of(quality)),
+      impostor_px_(impostor_px_of(quality)),
       bark_(gl::link_program("bark", gl::shaders::kBarkVert, gl::shaders::kBarkFrag)),
       leaf_(gl::link_program("leaf", gl::shaders::kLeafVert, gl::shaders::kShadeFrag)),
       contact_(gl::link_program("contact", gl::shaders::kContactVert, gl::shaders::kContactFrag)) {
@@ -149,21 +170,31 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
       Foliage& foliage = *foliages_.emplace_back(std::make_unique<Foliage>());
       foliage.level = i;
       foliage.shape = meshes::spray_shape(tree);
-      make_spray(foliage.near_spray, meshes::near_spray(foliage.shape));
-      make_spray(foliage.far_spray, meshes::far_spray(foliage.shape));
+      make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kSpeck)),
+                 meshes::speck_spray(foliage.shape));
+      make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kFar)),
+                 meshes::far_spray(foliage.shape));
+      make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kNear)),
+                 meshes::near_spray(foliage.shape));
       continue;
     }
     Wood& wood = *woods_.emplace_back(std::make_unique<Wood>());
     wood.level = i;
-    wood.sides = sides_of(i);
     glBindVertexArray(wood.array.name());
     glBindBuffer(GL_ARRAY_BUFFER, wood.part_buffer.name());
     enable_instances(5);
-    fill(GL_ELEMENT_ARRAY_BUFFER, wood.index_buffer,
-         tube_triangles(tree.levels[i].strands.links_per_strand, wood.sides));
+    for (std::size_t tube = 0; tube < wood.tubes.size(); ++tube) {
+      fill(GL_ELEMENT_ARRAY_BUFFER, wood.tubes.at(tube),
+           tube_triangles(tree.levels[i].strands.links_per_strand, meshes::Branches::kSides.at(tube)));
+    }
   }
   gl::set_sampler(bark_, "joints", 0);
   for (const meshes::TreePlace& place : places_of(tree)) add_place(place);
+  box_ = meshes::impostor_box(bounds_without_grove(tree));
+  far_trees_.reserve(1 + tree.copies.x_m.size());
+  if (woods_.empty()) impostor_px_ = 0.0F;
+  move(*trees_.front());
+  middle_at_rest_m_ = middle_m(*trees_.front());
 }
 
 void TreeRenderer::add_place(const meshes::TreePlace& place) {
@@ -176,25 +207,31 @@ void TreeRenderer::add_place(const meshes::TreePlace& place) {
     (*same)->places.push_back(place);
     return;
   }
-  Alike& alike = *trees_.emplace_back(std::make_unique<Alike>(Alike{.cosine = place.cosine,
-                                                                    .sine = place.sine,
-                                                                    .places = {place},
-                                                                    .bends = {},
-                                                                    .joints = pose::TreeJoints(*tree_),
-                                                                    .branches = {},
-                                                                    .crowns = {}}));
+  trees_.push_back(tree_at(place));
+}
+
+/// A tree at rest.
+std::unique_ptr<TreeRenderer::Alike> TreeRenderer::tree_at(const meshes::TreePlace& place) const {
+  auto tree = std::make_unique<Alike>(Alike{.cosine = place.cosine,
+                                            .sine = place.sine,
+                                            .places = {place},
+                                            .bends = {},
+                                            .joints = pose::TreeJoints(*tree_),
+                                            .branches = {},
+                                            .crowns = {}});
   for (const pose::TreeLevel& level : tree_->levels) {
     const std::vector<float> rest(level.strands.padded_count(), 0.0F);
-    alike.bends.levels.push_back({.bend_east_rad = rest, .bend_south_rad = rest});
+    tree->bends.levels.push_back({.bend_east_rad = rest, .bend_south_rad = rest});
   }
-  const Alike& first = *trees_.front();
+  const Alike* const first = trees_.empty() ? nullptr : trees_.front().get();
   for (std::size_t i = 0; i < woods_.size(); ++i) {
-    alike.branches.push_back(&first == &alike ? meshes::Branches(*tree_, woods_[i]->level) : first.branches[i]);
+    tree->branches.push_back(first == nullptr ? meshes::Branches(*tree_, woods_[i]->level) : first->branches[i]);
   }
   for (std::size_t i = 0; i < foliages_.size(); ++i) {
-    alike.crowns.push_back(&first == &alike ? meshes::Crown(*tree_, foliages_[i]->level) : first.crowns[i]);
+    tree->crowns.push_back(first == nullptr ? meshes::Crown(*tree_, foliages_[i]->level) : first->crowns[i]);
   }
-  glBindBuffer(GL_TEXTURE_BUFFER, alike.joint_buffer.name());  // creates the buffer, even if no pose is ever taken
+  glBindBuffer(GL_TEXTURE_BUFFER, tree->joint_buffer.name());  // creates the buffer, even if no pose is ever taken
+  return tree;
 }
 
 void TreeRenderer::make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh) {
@@ -214,10 +251,13 @@ void TreeRenderer::make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh) 
 void TreeRenderer::move_to(const pose::Pose& pose) {
   const auto* const bends = std::get_if<pose::TreePose>(&pose);
   if (bends == nullptr || !fits(*bends, *tree_)) return;
-  for (const auto& alike : trees_) move(*alike, *bends);
+  for (const auto& alike : trees_) turn_back(*alike, *bends);
+  move(*trees_.front());
+  const glm::vec3 sway_m = middle_m(*trees_.front()) - middle_at_rest_m_;
+  sway_.add(moment_.time_s, {sway_m.x, sway_m.z}, moment_.wind_m_s);
 }
 
-void TreeRenderer::move(Alike& alike, const pose::TreePose& bends) {
+void TreeRenderer::turn_back(Alike& alike, const pose::TreePose& bends) {
   // The tree is turned after it is bent: so that it bends to where the wind goes, bends are turned back before.
   for (std::size_t level = 0; level < bends.levels.size(); ++level) {
     const pose::StrandPose& from = bends.levels[level];
@@ -227,6 +267,25 @@ void TreeRenderer::move(Alike& alike, const pose::TreePose& bends) {
       to.bend_south_rad[i] = alike.cosine * from.bend_south_rad[i] - alike.sine * from.bend_east_rad[i];
     }
   }
+  alike.is_moved = false;
+}
+
+/// The middle of the tips of the thinnest wood.
+glm::vec3 TreeRenderer::middle_m(const Alike& alike) const {
+  if (woods_.empty()) return glm::vec3(0.0F);
+  const std::size_t level = woods_.back()->level;
+  const pose::StrandSkeleton& strands = tree_->levels[level].strands;
+  glm::vec3 sum_m(0.0F);
+  for (std::size_t i = 0; i < strands.strand_count; ++i) {
+    const pose::JointPosition tip = std::as_const(alike.joints).level(level).joint(i, strands.links_per_strand - 1);
+    sum_m += glm::vec3(tip.x_m, tip.y_m, tip.z_m);
+  }
+  return sum_m / static_cast<float>(std::max<std::size_t>(strands.strand_count, 1));
+}
+
+/// Gives its joints the bends.
+void TreeRenderer::move(Alike& alike) {
+  alike.is_moved = true;
   const pose::TreeKinematicsJob job{.skeleton = tree_, .pose = &alike.bends, .row = {}, .joints = &alike.joints};
   if (job.run() != pose::TreeKinematicsJob::Problem::kNone) return;
   for (meshes::Crown& crown : alike.crowns) crown.move_to(alike.joints);
@@ -245,29 +304,84 @@ void TreeRenderer::move(Alike& alike, const pose::TreePose& bends) {
   }
 }
 
+float TreeRenderer::impostor_share(const meshes::View& view, const meshes::TreePlace& place) const {
+  const float distance_m = std::max(glm::distance(glm::vec3(view.eye_m), place.moved(box_.middle_m)), 0.1F);
+  const float height = place.scale * 2.0F * box_.half_height_m / distance_m;
+  return std::min(meshes::impostor_share(height / view.eye_m.w, impostor_px_),
+                  meshes::impostor_share(height, kImpostorHeight));
+}
+
+void TreeRenderer::prepare(const meshes::View& view, gl::ViewBuffer& views) {
+  const bool is_far = std::ranges::any_of(trees_, [&](const auto& alike) {
+    return std::ranges::any_of(alike->places, [&](const auto& place) { return impostor_share(view, place) > 0.0F; });
+  });
+  if (!is_far || impostors_) return;
+  const gl::GlProgram bark = gl::link_program("bark's picture", gl::shaders::kBarkVert, gl::shaders::kImpostorLookFrag);
+  const gl::GlProgram leaf = gl::link_program("leaf's picture", gl::shaders::kLeafVert, gl::shaders::kImpostorLookFrag);
+  gl::set_sampler(bark, "joints", 0);
+  const meshes::TreePlace& own = trees_.front()->places.front();
+  const std::unique_ptr<Alike> at_rest = tree_at(own);
+  move(*at_rest);
+  impostors_.emplace(box_, own.from_m,
+                     foliages_.empty() ? meshes::SprayShape::Kind::kTwigs : foliages_.front()->shape.kind);
+  impostors_->make(views, [&](const meshes::View& picture) {
+    draw_tree({bark, leaf}, picture, kPictureDetail, kPictureRing_px, *at_rest, own);
+  });
+}
+
 void TreeRenderer::draw(const meshes::View& view) {
-  draw_all(view, detail_);
+  draw_all(view, detail_, ring_px_, false);
 }
 
 void TreeRenderer::draw_shadow(const meshes::View& view) {
-  draw_all(view, shadow_detail_of(detail_));
+  draw_all(view, shadow_detail_of(detail_), 2.0F * ring_px_, true);
 }
 
-void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail& detail) {
-  glActiveTexture(GL_TEXTURE0);
+void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail& detail, float ring_px,
+                            bool is_shadow) {
+  const auto planes = side_planes(view);
+  const float radius_m = std::hypot(box_.half_width_m, box_.half_height_m);
+  // Gusts come to the one that stands the farthest upwind first.
+  const auto downwind_m = [&](const meshes::TreePlace& place) {
+    return sway_.downwind_m({place.to_m.x - place.from_m.x, place.to_m.z - place.from_m.z});
+  };
+  float first_m = 0.0F;
   for (const auto& alike : trees_) {
-    glBindTexture(GL_TEXTURE_BUFFER, alike->joint_texture.name());
-    glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, alike->joint_buffer.name());
+    for (const meshes::TreePlace& place : alike->places) first_m = std::min(first_m, downwind_m(place));
+  }
+  far_trees_.clear();
+  for (const auto& alike : trees_) {
     for (const meshes::TreePlace& place : alike->places) {
-      for (std::size_t i = 0; i < woods_.size(); ++i) {
-        alike->branches[i].choose(view, place);
-        draw_branches(*woods_[i], alike->branches[i], place);
-      }
-      for (std::size_t i = 0; i < foliages_.size(); ++i) {
-        alike->crowns[i].choose(view, detail, place);
-        draw_sprays(*foliages_[i], alike->crowns[i]);
+      const float share = impostors_ ? impostor_share(view, place) : 0.0F;
+      if (share < 1.0F) draw_tree({bark_, leaf_}, view, detail, ring_px, *alike, place);
+      const glm::vec4 middle_m(place.moved(box_.middle_m), 1.0F);
+      const bool is_seen = std::all_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
+        return glm::dot(plane, middle_m) >= -1.2F * place.scale * radius_m;
+      });
+      if (share > 0.0F && is_seen) {
+        const glm::vec2 sway_m = sway_.sway_m(sway_.delay_s(downwind_m(place) - first_m));
+        far_trees_.push_back({.foot_scale = glm::vec4(place.to_m, place.scale),
+                              .turn_sway = {place.cosine, place.sine, sway_m.x, sway_m.y},
+                              .share = share});
       }
     }
+  }
+  if (impostors_) impostors_->draw(far_trees_, is_shadow);
+}
+
+void TreeRenderer::draw_tree(const Programs& programs, const meshes::View& view, const meshes::SprayDetail& detail,
+                             float ring_px, Alike& alike, const meshes::TreePlace& place) {
+  if (!alike.is_moved) move(alike);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_BUFFER, alike.joint_texture.name());
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, alike.joint_buffer.name());
+  for (std::size_t i = 0; i < woods_.size(); ++i) {
+    alike.branches[i].choose(view, ring_px, place);
+    draw_branches(programs.bark, *woods_[i], alike.branches[i], place);
+  }
+  for (std::size_t i = 0; i < foliages_.size(); ++i) {
+    alike.crowns[i].choose(view, detail, place);
+    draw_sprays(programs.leaf, *foliages_[i], alike.crowns[i]);
   }
 }
 
@@ -292,34 +406,38 @@ void TreeRenderer::draw_light() {
   glDisable(GL_BLEND);
 }
 
-void TreeRenderer::draw_branches(const Wood& wood, const meshes::Branches& branches, const meshes::TreePlace& place) {
+void TreeRenderer::draw_branches(const gl::GlProgram& program, const Wood& wood, const meshes::Branches& branches,
+                                 const meshes::TreePlace& place) {
   if (branches.parts().empty()) return;
-  glUseProgram(bark_.name());
-  set_place(bark_, place);
-  set_vec3(bark_, "crown_middle_m", place.moved((crown_bounds_.low_m + crown_bounds_.high_m) / 2.0F));
-  set_vec3(bark_, "crown_radius_m", place.scale * (crown_bounds_.high_m - crown_bounds_.low_m) / 2.0F + 0.01F);
-  set_int(bark_, "first", meshes::first_joint_at(*tree_, wood.level));
-  set_int(bark_, "links", tree_->levels[wood.level].strands.links_per_strand);
-  set_int(bark_, "sides", static_cast<std::size_t>(wood.sides));
+  glUseProgram(program.name());
+  set_place(program, place);
+  set_vec3(program, "crown_middle_m", place.moved((crown_bounds_.low_m + crown_bounds_.high_m) / 2.0F));
+  set_vec3(program, "crown_radius_m", place.scale * (crown_bounds_.high_m - crown_bounds_.low_m) / 2.0F + 0.01F);
+  set_int(program, "first", meshes::first_joint_at(*tree_, wood.level));
+  set_int(program, "links", tree_->levels[wood.level].strands.links_per_strand);
   glBindVertexArray(wood.array.name());
   gl::stream_to(GL_ARRAY_BUFFER, wood.part_buffer, branches.parts());
   for (const meshes::BranchGroup& group : branches.groups()) {
     if (group.count == 0) continue;
-    set_int(bark_, "rings", group.rings);
+    const std::size_t sides = meshes::Branches::kSides.at(group.tube);
+    set_int(program, "rings", group.rings);
+    set_int(program, "sides", sides);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, wood.tubes.at(group.tube).name());
     describe_parts(group.first);
-    glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * group.rings) * wood.sides, GL_UNSIGNED_INT, nullptr,
+    glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * group.rings * sides), GL_UNSIGNED_INT, nullptr,
                             static_cast<GLsizei>(group.count));
   }
 }
 
-void TreeRenderer::draw_sprays(const Foliage& foliage, const meshes::Crown& crown) {
+void TreeRenderer::draw_sprays(const gl::GlProgram& program, const Foliage& foliage, const meshes::Crown& crown) {
   if (crown.places().empty()) return;
-  glUseProgram(leaf_.name());
-  set_int(leaf_, "kind", static_cast<std::size_t>(foliage.shape.kind));
+  glUseProgram(program.name());
+  set_int(program, "kind", static_cast<std::size_t>(foliage.shape.kind));
+  glUniform1f(glGetUniformLocation(program.name(), "silver"), foliage.shape.silver);
   gl::stream_to(GL_ARRAY_BUFFER, foliage.place_buffer, crown.places());
   for (const meshes::SprayGroup& group : crown.groups()) {
     if (group.count == 0) continue;
-    const SprayOnGpu& spray = group.is_near ? foliage.near_spray : foliage.far_spray;
+    const SprayOnGpu& spray = foliage.sprays.at(static_cast<std::size_t>(group.kind));
     glBindVertexArray(spray.array.name());
     describe_sprays(group.first);
     glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(spray.stalk_indices + group.leaves * spray.leaf_indices),

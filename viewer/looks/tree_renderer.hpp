@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -7,9 +8,11 @@
 #include "engine/pose/tree_kinematics.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/looks/scene_renderer.hpp"
+#include "viewer/looks/tree_impostors.hpp"
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/branches.hpp"
 #include "viewer/meshes/crown.hpp"
+#include "viewer/meshes/sway_history.hpp"
 
 namespace yuragi::viewer::looks {
 
@@ -20,7 +23,10 @@ class TreeRenderer : public SceneRenderer {
   /// `tree` must outlive this.
   TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality);
 
+  void set_moment(const Moment& moment) override { moment_ = moment; }
   void move_to(const pose::Pose& pose) override;
+  /// Makes the pictures of far trees, once.
+  void prepare(const meshes::View& view, gl::ViewBuffer& views) override;
   void draw(const meshes::View& view) override;
   void draw_shadow(const meshes::View& view) override;
   /// Darkens the ground around the foot of a trunk.
@@ -28,12 +34,17 @@ class TreeRenderer : public SceneRenderer {
   bool casts_shadow() const override { return true; }
 
  private:
+  /// The programs that draw a tree: as it is seen, or as its impostors' pictures show it.
+  struct Programs {
+    const gl::GlProgram& bark;
+    const gl::GlProgram& leaf;
+  };
+
   /// A level of wood.
   struct Wood {
     std::size_t level = 0;
-    GLsizei sides = 0;
     gl::GlBuffer part_buffer = {};
-    gl::GlBuffer index_buffer = {};  // the triangles of a tube, ring behind ring
+    std::array<gl::GlBuffer, meshes::Branches::kSides.size()> tubes = {};  // triangles, ring behind ring
     gl::GlVertexArray array = {};
   };
 
@@ -51,8 +62,7 @@ class TreeRenderer : public SceneRenderer {
     std::size_t level = 0;
     meshes::SprayShape shape = {};
     gl::GlBuffer place_buffer = {};
-    SprayOnGpu near_spray = {};
-    SprayOnGpu far_spray = {};
+    std::array<SprayOnGpu, 3> sprays = {};  // by SprayKind
   };
 
   /// The trees that are turned alike: those have the same joints, since the wind bends all toward the same side.
@@ -60,7 +70,8 @@ class TreeRenderer : public SceneRenderer {
     float cosine = 1.0F;
     float sine = 0.0F;
     std::vector<meshes::TreePlace> places;
-    pose::TreePose bends;  // turned back
+    pose::TreePose bends;   // turned back
+    bool is_moved = false;  // what is below has them
     pose::TreeJoints joints;
     std::vector<meshes::Branches> branches;  // of woods_
     std::vector<meshes::Crown> crowns;       // of foliages_
@@ -69,21 +80,36 @@ class TreeRenderer : public SceneRenderer {
   };
 
   void add_place(const meshes::TreePlace& place);
-  void move(Alike& alike, const pose::TreePose& bends);
+  std::unique_ptr<Alike> tree_at(const meshes::TreePlace& place) const;
+  static void turn_back(Alike& alike, const pose::TreePose& bends);
+  void move(Alike& alike);
+  float impostor_share(const meshes::View& view, const meshes::TreePlace& place) const;
+  glm::vec3 middle_m(const Alike& alike) const;
   static void make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh);
-  void draw_all(const meshes::View& view, const meshes::SprayDetail& detail);
-  void draw_branches(const Wood& wood, const meshes::Branches& branches, const meshes::TreePlace& place);
-  void draw_sprays(const Foliage& foliage, const meshes::Crown& crown);
+  void draw_all(const meshes::View& view, const meshes::SprayDetail& detail, float ring_px, bool is_shadow);
+  void draw_tree(const Programs& programs, const meshes::View& view, const meshes::SprayDetail& detail, float ring_px,
+                 Alike& alike, const meshes::TreePlace& place);
+  void draw_branches(const gl::GlProgram& program, const Wood& wood, const meshes::Branches& branches,
+                     const meshes::TreePlace& place);
+  static void draw_sprays(const gl::GlProgram& program, const Foliage& foliage, const meshes::Crown& crown);
 
   const pose::TreeSkeleton* tree_;
   meshes::Bounds crown_bounds_;  // of the leaves, or of all where there are none
   std::vector<std::unique_ptr<Wood>> woods_;
   std::vector<std::unique_ptr<Foliage>> foliages_;
   meshes::SprayDetail detail_;
+  float ring_px_;
+  float impostor_px_;
   gl::GlProgram bark_;
   gl::GlProgram leaf_;
   gl::GlProgram contact_;
   std::vector<std::unique_ptr<Alike>> trees_;  // the streamed one is the first of the first
+  Moment moment_;
+  meshes::ImpostorBox box_;
+  glm::vec3 middle_at_rest_m_{0.0F};  // of the tips of the thinnest wood
+  meshes::SwayHistory sway_;
+  std::optional<TreeImpostors> impostors_;       // made when first needed
+  std::vector<meshes::TreeImpostor> far_trees_;  // of a picture
 };
 
 }  // namespace yuragi::viewer::looks

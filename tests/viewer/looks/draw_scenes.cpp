@@ -7,6 +7,7 @@
 // alone.
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -47,7 +48,9 @@ std::unique_ptr<scenes::Scene> made(const std::string& words) {
     const std::string value = word.substr(equals + 1);
     char* rest = nullptr;
     const double number = std::strtod(value.c_str(), &rest);
-    if (*rest == '\0') {
+    if (*rest == '\0' && value.find('.') == std::string::npos) {
+      given[word.substr(0, equals)] = static_cast<std::int64_t>(number);
+    } else if (*rest == '\0') {
       given[word.substr(0, equals)] = number;
     } else {
       given[word.substr(0, equals)] = value;

@@ -421,6 +421,25 @@ TEST_F(StageTest, ShowsATreesGroveAndItsShadows) {
   }
 }
 
+TEST_F(StageTest, ShowsFarTreesByPicturesInTheirPlaceAndLight) {
+  // The copy is 30 m from the eye: an impostor.
+  wire::SceneModel far = test_model("tree");
+  auto& copies = std::get<pose::TreeSkeleton>(far.skeleton).copies;
+  copies = {.x_m = {60.0F}, .z_m = {0.0F}, .turn_rad = {1.5F}, .scale = {1.0F}};
+  for (const look::Quality quality : {look::Quality::kLow, look::Quality::kHigh}) {
+    stage_->set_quality(quality);
+    show({test_model("tree")});
+    camera_.frame({{60.0, 1.5, 0.0}, 0.0, 5.0, 30.0});
+    const Pixels without = draw(0.0, 1.0F);
+    show({far});
+    camera_.frame({{60.0, 1.5, 0.0}, 0.0, 5.0, 30.0});
+    const Pixels with = draw(0.0, 1.0F);
+    EXPECT_GT(changed(without, with), 20U) << name_of(quality);
+    EXPECT_LT(changed(without, with), 5000U) << "a tree, not its sheet";
+    EXPECT_EQ(changed(with, draw(0.0, 1.0F)), 0U) << "the second picture is as the first";
+  }
+}
+
 TEST_F(StageTest, IsDarkerByNightThanAtNoonAndShowsBoth) {
   show({test_model("tree")});
   const auto brightness = [&](double sun_height_deg) {

@@ -18,6 +18,10 @@ out vec3 normal;
 out vec3 tint;
 out vec2 bark_m;  // position around the branch and along it
 out float above_foot_m;
+// For the pictures of impostors (impostor_look.frag.glsl).
+out vec3 own_color;
+out vec3 own_normal;
+out float own_open;
 
 vec3 turned(vec3 v) { return vec3(place_turn.x * v.x - place_turn.y * v.z, v.y, place_turn.y * v.x + place_turn.x * v.z); }
 
@@ -51,5 +55,8 @@ void main() {
   normal = turned(normal);
   radius = max(place_to_m.w * radius, 0.35 * eye_m.w * distance(eye_m.xyz, middle));
   place_m = middle + radius * normal;
+  own_color = 0.7 * tint;
+  own_normal = dot(normal, eye_m.xyz - place_m) < 0.0 ? -normal : normal;
+  own_open = 0.25;
   gl_Position = to_clip * vec4(place_m, 1.0);
 }

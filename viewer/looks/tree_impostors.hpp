@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "viewer/gl/gl.hpp"
+#include "viewer/gl/view_buffer.hpp"
+#include "viewer/meshes/sprays.hpp"
+#include "viewer/meshes/tree_impostor.hpp"
+
+namespace yuragi::viewer::looks {
+
+/// The pictures of a tree from all sides, and the sheets far away that show them: one draw call for a whole grove. The
+/// pictures hold colors and normals, so that the sheets are in the light of each moment. Needs a current context.
+class TreeImpostors {
+ public:
+  /// `box` and `foot_m`: of the tree where it stands.
+  TreeImpostors(const meshes::ImpostorBox& box, const glm::vec3& foot_m, meshes::SprayShape::Kind kind);
+
+  /// Makes all pictures: draw(view) is called for each, with a framebuffer of color and normal bound.
+  template <class Draw>
+  void make(gl::ViewBuffer& views, Draw&& draw) {
+    begin();
+    for (std::size_t row = 0; row < meshes::kImpostorRows; ++row) {
+      for (std::size_t side = 0; side < meshes::kImpostorSides; ++side) draw(begin_picture(views, side, row));
+    }
+    end();
+  }
+
+  /// Draws sheets, which face the eye or, for their shadows, the sun.
+  void draw(std::span<const meshes::TreeImpostor> trees, bool is_by_sun);
+
+ private:
+  void begin();
+  meshes::View begin_picture(gl::ViewBuffer& views, std::size_t side, std::size_t row);
+  void end();
+
+  meshes::ImpostorBox box_;
+  glm::vec3 to_middle_m_;
+  meshes::SprayShape::Kind kind_;
+  gl::GlTexture looks_, facing_;
+  /// What the pictures are drawn into, besides these two.
+  struct Canvas {
+    gl::GlRenderbuffer depth;
+    gl::GlFramebuffer framebuffer;
+  };
+  std::optional<Canvas> canvas_;  // while they are made
+  gl::GlBuffer trees_;
+  gl::GlVertexArray array_;
+  gl::GlProgram program_;
+};
+
+}  // namespace yuragi::viewer::looks
