@@ -96,6 +96,7 @@ enum TextureUnit : GLint {
   kFlameRowsUnit,    //
   kFlameNoiseUnit,   //
   kFlameRampUnit,    //
+  kStripsUnit,       // of those that are drawn (StripIndices), for a moment
   kBeforeUnit,       // two pictures that cross-fade
   kNowUnit,          //
 };

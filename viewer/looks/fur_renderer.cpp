@@ -27,6 +27,7 @@ FurRenderer::FurRenderer(const pose::StrandSkeleton& strands, look::Quality qual
       skin_(gl::link_program("skin", gl::shaders::kSkinVert, gl::shaders::kSkinFrag)),
       noise_(gl::make_noise_texture()) {
   gl::set_sampler(hair_, "joints", 0);
+  gl::set_sampler(hair_, "blades", gl::kStripsUnit);
   gl::set_sampler(skin_, "noise_tile", 0);
   const meshes::Body body = meshes::body_of(strands);
   set_body(hair_, body);

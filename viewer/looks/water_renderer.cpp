@@ -15,7 +15,8 @@ namespace yuragi::viewer::looks {
 namespace {
 
 // Behind the units of the shadows and of the mirror.
-constexpr GLsizei kReedRings = 6;
+constexpr GLint kReedRings = 6;
+constexpr GLint kMirroredReedRings = 3;
 constexpr float kUnderBank_m = 0.15F;  // so far the sheet goes on where the bank hides it
 
 void describe(GLuint attribute, GLint numbers, GLsizei stride, std::size_t offset) {
@@ -42,6 +43,8 @@ WaterRenderer::WaterRenderer(const pose::SurfaceSkeleton& surface)
       bank_(gl::link_program("bank", gl::shaders::kBankVert, gl::shaders::kBankFrag)),
       hole_(gl::link_program("hole", gl::shaders::kHoleVert, gl::shaders::kHoleFrag)),
       reed_(gl::link_program("reed", gl::shaders::kReedVert, gl::shaders::kShadeFrag)),
+      reed_rings_place_(glGetUniformLocation(reed_.name(), "rings")),
+      mirror_share_place_(glGetUniformLocation(water_.name(), "mirror_share")),
       ripples_(gl::make_ripple_texture()) {
   for (const gl::GlProgram* program : {&water_, &bank_, &hole_, &reed_}) GroundMaps::set_samplers(*program);
   if (!shore_.is_pond()) return;
@@ -114,14 +117,9 @@ void WaterRenderer::make_shore() {
   glUniform1f(glGetUniformLocation(bank_.name(), "water_m"), *mirror_m());
 
   const std::vector<meshes::Reed> reeds = meshes::reeds_of(shore_);
-  reed_count_ = static_cast<GLsizei>(reeds.size());
-  glBindVertexArray(reed_array_.name());
-  fill(GL_ARRAY_BUFFER, reed_buffer_, reeds);
-  describe(0, 4, sizeof(meshes::Reed), offsetof(meshes::Reed, root_m));
-  describe(1, 4, sizeof(meshes::Reed), offsetof(meshes::Reed, heading_rad));
-  for (const GLuint attribute : {0U, 1U}) glVertexAttribDivisor(attribute, 1);
-  glUseProgram(reed_.name());
-  glUniform1i(glGetUniformLocation(reed_.name(), "rings"), kReedRings);
+  reed_count_ = reeds.size();
+  fill(GL_TEXTURE_BUFFER, reed_buffer_, reeds);
+  gl::set_sampler(reed_, "reeds", gl::kStripsUnit);
 }
 
 std::optional<float> WaterRenderer::mirror_m() const {
@@ -146,20 +144,25 @@ void WaterRenderer::move_to(const pose::Pose& pose) {
   glActiveTexture(GL_TEXTURE0);
 }
 
-void WaterRenderer::draw_reeds() const {
+void WaterRenderer::draw_reeds(GLint rings) {
   glUseProgram(reed_.name());
-  glBindVertexArray(reed_array_.name());
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kReedRings + 1), reed_count_);
+  glUniform1i(reed_rings_place_, rings);
+  glActiveTexture(GL_TEXTURE0 + gl::kStripsUnit);
+  glBindTexture(GL_TEXTURE_BUFFER, reed_texture_.name());
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, reed_buffer_.name());
+  glActiveTexture(GL_TEXTURE0);
+  reed_strips_.draw(2 * (static_cast<std::size_t>(rings) + 1), reed_count_);
 }
 
 void WaterRenderer::draw(const meshes::View&) {
   if (!shore_.is_pond()) return;
-  draw_reeds();
+  draw_reeds(kReedRings);
   glUseProgram(bank_.name());
   glBindVertexArray(bank_array_.name());
   glDrawElements(GL_TRIANGLES, bank_count_, GL_UNSIGNED_INT, nullptr);
 
   glUseProgram(water_.name());
+  glUniform1f(mirror_share_place_, mirror_share_);
   glActiveTexture(GL_TEXTURE0 + gl::kSlopesUnit);
   glBindTexture(GL_TEXTURE_2D, slopes_.name());
   glActiveTexture(GL_TEXTURE0 + gl::kRipplesUnit);
@@ -170,7 +173,7 @@ void WaterRenderer::draw(const meshes::View&) {
 }
 
 void WaterRenderer::draw_mirrored(const meshes::View&) {
-  if (shore_.is_pond()) draw_reeds();
+  if (shore_.is_pond()) draw_reeds(kMirroredReedRings);
 }
 
 void WaterRenderer::draw_hole() {

@@ -49,7 +49,7 @@ std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton) {
     const auto [third, fourth] = chance.uniform_pair(2 * i + 1);
     Blade& blade = blades[i];
     blade.root_m = {skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]};
-    blade.strand = static_cast<std::uint32_t>(i);
+    blade.strand = static_cast<float>(i);
 
     blade.facing_rad = static_cast<float>(first * 2.0 * kPi);
     blade.length_m = skeleton.link_length_m[i] * static_cast<float>(skeleton.links_per_strand);

@@ -14,14 +14,15 @@
 
 namespace yuragi::viewer::meshes {
 
-/// An instance for a strand, in the layout that the shaders of hair read.
+/// What is drawn for a strand, in the layout that the shader of hair reads: three texels.
 struct Blade {
   std::array<float, 3> root_m{};
   float width_m = 0.0F;
   std::array<float, 3> tint{};  ///< of its tip, linear light
   float facing_rad = 0.0F;      ///< bearing of its flat side
-  std::uint32_t strand = 0;
+  float strand = 0.0F;          ///< its number; a whole one
   float length_m = 0.0F;
+  std::array<float, 2> unused{};
 };
 
 /// A blade (or hair) for each strand: wide enough for the strands' spacing to cover the ground, tinted as a coat is, by

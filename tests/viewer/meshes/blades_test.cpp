@@ -27,7 +27,7 @@ TEST_F(BladesTest, HaveARootAWidthAndATintEach) {
   const std::vector<Blade> blades = blades_of(strands_);
   ASSERT_EQ(blades.size(), strands_.strand_count);
   for (std::size_t i = 0; i < blades.size(); ++i) {
-    EXPECT_EQ(blades[i].strand, i);
+    EXPECT_EQ(blades[i].strand, static_cast<float>(i));
     EXPECT_EQ(blades[i].root_m[2], strands_.root_z_m[i]);
     EXPECT_GT(blades[i].width_m, 0.0F);
     EXPECT_LT(blades[i].width_m, 0.1F);
@@ -46,7 +46,7 @@ TEST_F(BladesTest, AreBoundedByRootsAndHeights) {
 
 TEST_F(BladesTest, AreAllDrawnOnceWhenAllAreInView) {
   sorter_.sort(view({{0.0, 0.0, 0.0}, 0.0, 60.0, 25.0}));
-  std::set<std::uint32_t> seen;
+  std::set<float> seen;
   for (const DetailLevel& level : sorter_.levels()) {
     for (const Blade& blade : level.blades) EXPECT_TRUE(seen.insert(blade.strand).second);
   }
