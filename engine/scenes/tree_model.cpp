@@ -17,6 +17,9 @@ constexpr double kGoldenAngle_rad = kPi * (3.0 - 2.23606797749979);  // 137.5 de
 constexpr double kTwigRadiusPerHeight = 0.008 / 8.0;
 constexpr double kTipRadiusShare = 0.3;  ///< of the radius at the foot, for a twig
 
+/// No branch is longer than this times what the habit says.
+constexpr double kLargestVigour = 1.06;
+
 /// Leaves stand at nodes, this many from a twig's foot to its tip, a spray at 16 that follow one another. (So the
 /// joints that they grow from are few, and lie in the cache.)
 constexpr std::size_t kNodesOfATwig = 36;
@@ -158,8 +161,9 @@ class Grower {
         const TreeVector rest = std::cos(angle_rad) * course.direction[link] +
                                 std::sin(angle_rad) * across(course.direction[link], around_rad);
         const double rank = i % 2 == 0 ? 1.0 : habit.minor_share;
-        const double length_m =
-            rank * interpolated(habit.length_share, part) * height_m_ * random_factor(random, index + 4, 0.15);
+        // None outgrows its neighbours by much: what stands out of a crown is in the wind, and light is everywhere.
+        const double vigour = std::min(random_factor(random, index + 4, 0.15), kLargestVigour);
+        const double length_m = rank * interpolated(habit.length_share, part) * height_m_ * vigour;
         const double lift_rad = habit.lift_deg * kRadPerDeg * random_factor(random, index + 6, 0.3);
         Shoot& branch = branches.emplace_back(shoot(course.joint[link], rest, {0.0, lift_rad < 0.0 ? -1.0 : 1.0, 0.0},
                                                     std::abs(lift_rad), length_m, spec_.branch_links));

@@ -9,31 +9,31 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-/// Sides of a branch's tube, by level: the trunk is thick, twigs are thin.
-GLsizei sides_of(std::size_t level) {
-  return level == 0 ? 14 : (level == 1 ? 8 : 5);
-}
-
 meshes::SprayDetail detail_of(look::Quality quality) {
   switch (quality) {
     case look::Quality::kLow:
-      return {.leaf_px = 5.0F, .largest = 4.0F, .shaped_leaf_px = 60.0F};
+      return {.leaf_px = 5.5F, .largest = 4.0F, .shaped_leaf_px = 60.0F, .speck_px = 6.0F, .hidden_share = 0.3F};
     case look::Quality::kMedium:
-      return {.leaf_px = 4.5F, .largest = 3.5F, .shaped_leaf_px = 40.0F};
+      return {.leaf_px = 4.5F, .largest = 3.5F, .shaped_leaf_px = 40.0F, .speck_px = 6.0F, .hidden_share = 0.4F};
     case look::Quality::kHigh:
     case look::Quality::kAuto:
       break;
   }
-  return {.leaf_px = 3.5F, .largest = 3.0F, .shaped_leaf_px = 30.0F};
+  return {.leaf_px = 3.5F, .largest = 3.0F, .shaped_leaf_px = 30.0F, .speck_px = 4.0F, .hidden_share = 0.5F};
+}
+
+/// A ring of a branch for so many pixels of its length.
+float ring_px_of(look::Quality quality) {
+  return quality == look::Quality::kLow ? 10.0F : 6.0F;
 }
 
 /// Shadows are soft, and hide what a leaf is like.
 meshes::SprayDetail shadow_detail_of(const meshes::SprayDetail& detail) {
-  return {.leaf_px = 2.0F * detail.leaf_px, .largest = 1.3F * detail.largest, .shaped_leaf_px = 1e6F};
+  return {.leaf_px = 2.0F * detail.leaf_px, .largest = 1.3F * detail.largest, .shaped_leaf_px = 1e6F, .speck_px = 1e6F};
 }
 
 /// The triangles of a tube; vertex (ring, side) is ring * (sides + 1) + side, the last side at the seam again.
-std::vector<std::uint32_t> tube_triangles(std::size_t rings, GLsizei sides) {
+std::vector<std::uint32_t> tube_triangles(std::size_t rings, std::size_t sides) {
   std::vector<std::uint32_t> indices;
   const auto across = static_cast<std::uint32_t>(sides);
   for (std::uint32_t ring = 0; ring < rings; ++ring) {
@@ -141,6 +141,7 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
     : tree_(&tree),
       crown_bounds_(crown_bounds(tree)),
       detail_(detail_of(quality)),
+      ring_px_(ring_px_of(quality)),
       bark_(gl::link_program("bark", gl::shaders::kBarkVert, gl::shaders::kBarkFrag)),
       leaf_(gl::link_program("leaf", gl::shaders::kLeafVert, gl::shaders::kShadeFrag)),
       contact_(gl::link_program("contact", gl::shaders::kContactVert, gl::shaders::kContactFrag)) {
@@ -149,18 +150,23 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
       Foliage& foliage = *foliages_.emplace_back(std::make_unique<Foliage>());
       foliage.level = i;
       foliage.shape = meshes::spray_shape(tree);
-      make_spray(foliage.near_spray, meshes::near_spray(foliage.shape));
-      make_spray(foliage.far_spray, meshes::far_spray(foliage.shape));
+      make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kSpeck)),
+                 meshes::speck_spray(foliage.shape));
+      make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kFar)),
+                 meshes::far_spray(foliage.shape));
+      make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kNear)),
+                 meshes::near_spray(foliage.shape));
       continue;
     }
     Wood& wood = *woods_.emplace_back(std::make_unique<Wood>());
     wood.level = i;
-    wood.sides = sides_of(i);
     glBindVertexArray(wood.array.name());
     glBindBuffer(GL_ARRAY_BUFFER, wood.part_buffer.name());
     enable_instances(5);
-    fill(GL_ELEMENT_ARRAY_BUFFER, wood.index_buffer,
-         tube_triangles(tree.levels[i].strands.links_per_strand, wood.sides));
+    for (std::size_t tube = 0; tube < wood.tubes.size(); ++tube) {
+      fill(GL_ELEMENT_ARRAY_BUFFER, wood.tubes.at(tube),
+           tube_triangles(tree.levels[i].strands.links_per_strand, meshes::Branches::kSides.at(tube)));
+    }
   }
   gl::set_sampler(bark_, "joints", 0);
   for (const meshes::TreePlace& place : places_of(tree)) add_place(place);
@@ -246,21 +252,21 @@ void TreeRenderer::move(Alike& alike, const pose::TreePose& bends) {
 }
 
 void TreeRenderer::draw(const meshes::View& view) {
-  draw_all(view, detail_);
+  draw_all(view, detail_, ring_px_);
 }
 
 void TreeRenderer::draw_shadow(const meshes::View& view) {
-  draw_all(view, shadow_detail_of(detail_));
+  draw_all(view, shadow_detail_of(detail_), 2.0F * ring_px_);
 }
 
-void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail& detail) {
+void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail& detail, float ring_px) {
   glActiveTexture(GL_TEXTURE0);
   for (const auto& alike : trees_) {
     glBindTexture(GL_TEXTURE_BUFFER, alike->joint_texture.name());
     glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, alike->joint_buffer.name());
     for (const meshes::TreePlace& place : alike->places) {
       for (std::size_t i = 0; i < woods_.size(); ++i) {
-        alike->branches[i].choose(view, place);
+        alike->branches[i].choose(view, ring_px, place);
         draw_branches(*woods_[i], alike->branches[i], place);
       }
       for (std::size_t i = 0; i < foliages_.size(); ++i) {
@@ -300,14 +306,16 @@ void TreeRenderer::draw_branches(const Wood& wood, const meshes::Branches& branc
   set_vec3(bark_, "crown_radius_m", place.scale * (crown_bounds_.high_m - crown_bounds_.low_m) / 2.0F + 0.01F);
   set_int(bark_, "first", meshes::first_joint_at(*tree_, wood.level));
   set_int(bark_, "links", tree_->levels[wood.level].strands.links_per_strand);
-  set_int(bark_, "sides", static_cast<std::size_t>(wood.sides));
   glBindVertexArray(wood.array.name());
   gl::stream_to(GL_ARRAY_BUFFER, wood.part_buffer, branches.parts());
   for (const meshes::BranchGroup& group : branches.groups()) {
     if (group.count == 0) continue;
+    const std::size_t sides = meshes::Branches::kSides.at(group.tube);
     set_int(bark_, "rings", group.rings);
+    set_int(bark_, "sides", sides);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, wood.tubes.at(group.tube).name());
     describe_parts(group.first);
-    glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * group.rings) * wood.sides, GL_UNSIGNED_INT, nullptr,
+    glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(6 * group.rings * sides), GL_UNSIGNED_INT, nullptr,
                             static_cast<GLsizei>(group.count));
   }
 }
@@ -316,10 +324,11 @@ void TreeRenderer::draw_sprays(const Foliage& foliage, const meshes::Crown& crow
   if (crown.places().empty()) return;
   glUseProgram(leaf_.name());
   set_int(leaf_, "kind", static_cast<std::size_t>(foliage.shape.kind));
+  glUniform1f(glGetUniformLocation(leaf_.name(), "silver"), foliage.shape.silver);
   gl::stream_to(GL_ARRAY_BUFFER, foliage.place_buffer, crown.places());
   for (const meshes::SprayGroup& group : crown.groups()) {
     if (group.count == 0) continue;
-    const SprayOnGpu& spray = group.is_near ? foliage.near_spray : foliage.far_spray;
+    const SprayOnGpu& spray = foliage.sprays.at(static_cast<std::size_t>(group.kind));
     glBindVertexArray(spray.array.name());
     describe_sprays(group.first);
     glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(spray.stalk_indices + group.leaves * spray.leaf_indices),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -31,9 +32,8 @@ class TreeRenderer : public SceneRenderer {
   /// A level of wood.
   struct Wood {
     std::size_t level = 0;
-    GLsizei sides = 0;
     gl::GlBuffer part_buffer = {};
-    gl::GlBuffer index_buffer = {};  // the triangles of a tube, ring behind ring
+    std::array<gl::GlBuffer, meshes::Branches::kSides.size()> tubes = {};  // triangles, ring behind ring
     gl::GlVertexArray array = {};
   };
 
@@ -51,8 +51,7 @@ class TreeRenderer : public SceneRenderer {
     std::size_t level = 0;
     meshes::SprayShape shape = {};
     gl::GlBuffer place_buffer = {};
-    SprayOnGpu near_spray = {};
-    SprayOnGpu far_spray = {};
+    std::array<SprayOnGpu, 3> sprays = {};  // by SprayKind
   };
 
   /// The trees that are turned alike: those have the same joints, since the wind bends all toward the same side.
@@ -71,7 +70,7 @@ class TreeRenderer : public SceneRenderer {
   void add_place(const meshes::TreePlace& place);
   void move(Alike& alike, const pose::TreePose& bends);
   static void make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh);
-  void draw_all(const meshes::View& view, const meshes::SprayDetail& detail);
+  void draw_all(const meshes::View& view, const meshes::SprayDetail& detail, float ring_px);
   void draw_branches(const Wood& wood, const meshes::Branches& branches, const meshes::TreePlace& place);
   void draw_sprays(const Foliage& foliage, const meshes::Crown& crown);
 
@@ -80,6 +79,7 @@ class TreeRenderer : public SceneRenderer {
   std::vector<std::unique_ptr<Wood>> woods_;
   std::vector<std::unique_ptr<Foliage>> foliages_;
   meshes::SprayDetail detail_;
+  float ring_px_;
   gl::GlProgram bark_;
   gl::GlProgram leaf_;
   gl::GlProgram contact_;

@@ -9,6 +9,9 @@ namespace {
 
 constexpr float kNearestBranch_m = 0.3F;
 
+/// How thick a branch is in the picture, pixels across, from which on it has more sides than the fewest.
+constexpr std::array<float, Branches::kSides.size() - 1> kThick_px = {3.0F, 24.0F};
+
 }  // namespace
 
 Branches::Branches(const pose::TreeSkeleton& tree, std::size_t level)
@@ -22,9 +25,11 @@ Branches::Branches(const pose::TreeSkeleton& tree, std::size_t level)
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     lengths_m_.push_back(strands.link_length_m[i] * static_cast<float>(strands.links_per_strand));
   }
-  std::size_t rings = std::min(kFewestRings, strands.links_per_strand);
-  for (; rings < strands.links_per_strand; rings *= 2) groups_.push_back({.rings = rings});
-  groups_.push_back({.rings = strands.links_per_strand});
+  for (std::size_t tube = 0; tube < kSides.size(); ++tube) {
+    std::size_t rings = std::min(kFewestRings, strands.links_per_strand);
+    for (; rings < strands.links_per_strand; rings *= 2) groups_.push_back({.rings = rings, .tube = tube});
+    groups_.push_back({.rings = strands.links_per_strand, .tube = tube});
+  }
 }
 
 void Branches::move_to(const pose::TreeJoints& joints) {
@@ -36,7 +41,7 @@ void Branches::move_to(const pose::TreeJoints& joints) {
   }
 }
 
-void Branches::choose(const View& view, const TreePlace& place) {
+void Branches::choose(const View& view, float ring_px, const TreePlace& place) {
   const auto planes = side_planes(view);
   const glm::vec3 eye_m(view.eye_m);
   for (BranchGroup& group : groups_) group.count = 0;
@@ -50,9 +55,15 @@ void Branches::choose(const View& view, const TreePlace& place) {
     group_of_[i] = kNotSeen;
     if (!is_seen) continue;
     const float distance_m = std::max(glm::distance(eye_m, middle_m) - 0.5F * length_m, kNearestBranch_m);
-    const float wanted = length_m / (view.eye_m.w * distance_m * kRingPx);
-    const auto suffices = [&](const BranchGroup& group) { return static_cast<float>(group.rings) >= wanted; };
-    const auto group = std::min(std::find_if(groups_.begin(), groups_.end(), suffices), groups_.end() - 1);
+    const float pixel_m = view.eye_m.w * distance_m;
+    const float wanted = length_m / (pixel_m * ring_px);
+    const float thick_px = 2.0F * place.scale * parts_[i].base_radius_m / pixel_m;
+    const auto tube =
+        static_cast<std::size_t>(std::upper_bound(kThick_px.begin(), kThick_px.end(), thick_px) - kThick_px.begin());
+    const auto first = groups_.begin() + static_cast<std::ptrdiff_t>(tube * groups_.size() / kSides.size());
+    const auto last = first + static_cast<std::ptrdiff_t>(groups_.size() / kSides.size()) - 1;
+    const auto group =
+        std::find_if(first, last, [&](const BranchGroup& g) { return static_cast<float>(g.rings) >= wanted; });
     group_of_[i] = static_cast<std::size_t>(group - groups_.begin());
     ++group->count;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -13,27 +14,28 @@
 
 namespace yuragi::viewer::meshes {
 
-/// Branches that are drawn with as many rings of vertices.
+/// Branches that are drawn as tubes with as many rings of vertices and as many sides.
 struct BranchGroup {
   std::size_t rings = 1;  ///< at most one a link
+  std::size_t tube = 0;   ///< of Branches::kSides
   std::size_t first = 0;  ///< of Branches::parts()
   std::size_t count = 0;
 };
 
 /// All branches of a level of wood, and which of them a picture needs, how finely: those in view, with more rings the
-/// longer they are in it. Allocates when it is made, never afterwards.
+/// longer and more sides the thicker they are in it. Allocates when it is made, never afterwards.
 class Branches {
  public:
   static constexpr std::size_t kFewestRings = 4;  ///< where there are as many links
-  static constexpr float kRingPx = 5.0F;          ///< a ring for so many pixels of a branch's length, at least
+  static constexpr std::array<std::size_t, 3> kSides = {3, 6, 14};
 
   /// `tree` must outlive this.
   Branches(const pose::TreeSkeleton& tree, std::size_t level);
 
   void move_to(const pose::TreeJoints& joints);
 
-  /// Those in view of the tree, or of a copy of it.
-  void choose(const View& view, const TreePlace& place = {});
+  /// Those in view of the tree, or of a copy of it, with a ring at least for each `ring_px` pixels of their length.
+  void choose(const View& view, float ring_px, const TreePlace& place = {});
   std::span<const TreePart> parts() const { return std::span(chosen_).first(chosen_count_); }
   std::span<const BranchGroup> groups() const { return groups_; }
 

@@ -12,6 +12,11 @@ namespace {
 
 constexpr float kNearest_m = 0.3F;
 
+/// A spray of which this share is seen through the others has all of its leaves; one that is hidden, fewer, at most so
+/// many times as large.
+constexpr float kHardlySeen = 0.35F;
+constexpr float kLargestHidden = 1.4F;
+
 /// Meshes with so many leaves are told apart; a spray is drawn with the smallest that suffices.
 constexpr std::array<std::size_t, 9> kLeafCounts = {1, 2, 3, 4, 6, 9, 13, 18, 26};
 
@@ -138,10 +143,17 @@ Crown::Crown(const pose::TreeSkeleton& tree, std::size_t level)
     spray.open = open[i];
   }
   for (const std::size_t count : kLeafCounts) {
-    if (count < shape_.leaves) groups_.push_back({.leaves = count});
+    if (count >= shape_.leaves) continue;
+    groups_.push_back({.kind = SprayKind::kSpeck, .leaves = count});
+    groups_.push_back({.kind = SprayKind::kFar, .leaves = count});
   }
-  groups_.push_back({.leaves = shape_.leaves});
-  groups_.push_back({.is_near = true, .leaves = shape_.leaves});
+  groups_.push_back({.kind = SprayKind::kSpeck, .leaves = shape_.leaves});
+  groups_.push_back({.kind = SprayKind::kFar, .leaves = shape_.leaves});
+  groups_.push_back({.kind = SprayKind::kNear, .leaves = shape_.leaves});
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const std::size_t block = i / pose::kStrandsPerBlock;
+    balls_[block].open += open[i] / static_cast<float>(strands_in(block));
+  }
 }
 
 std::size_t Crown::strands_in(std::size_t block) const {
@@ -200,13 +212,19 @@ void Crown::choose(const View& view, const SprayDetail& detail, const TreePlace&
     if (!choice.is_seen) continue;
     const float distance_m = std::max(glm::distance(eye_m, glm::vec3(middle_m)), kNearest_m);
     choice.level = spray_level(shape_, place.scale * leaf_m_ / (view.eye_m.w * distance_m), detail);
-    choice.group = groups_.size() - 1;
-    if (!choice.level.is_near) {
-      const auto suffices = [&](const SprayGroup& group) {
-        return static_cast<float>(group.leaves) >= choice.level.leaves;
-      };
-      choice.group = static_cast<std::size_t>(std::find_if(groups_.begin(), groups_.end(), suffices) - groups_.begin());
+    if (choice.level.kind != SprayKind::kNear) {
+      // As much as light comes from the eye, so much is seen from there.
+      const glm::vec4& open = balls_[block].open;
+      const glm::vec3 to_eye = (eye_m - glm::vec3(middle_m)) / distance_m;
+      const float seen = open.w + glm::dot(place.turned(glm::vec3(open)), to_eye);
+      const float share = glm::mix(detail.hidden_share, 1.0F, glm::smoothstep(0.0F, kHardlySeen, seen));
+      choice.level.leaves *= share;
+      choice.level.size *= std::min(1.0F / std::sqrt(share), kLargestHidden);
     }
+    const auto suffices = [&](const SprayGroup& group) {
+      return group.kind == choice.level.kind && static_cast<float>(group.leaves) >= choice.level.leaves;
+    };
+    choice.group = static_cast<std::size_t>(std::find_if(groups_.begin(), groups_.end(), suffices) - groups_.begin());
     // Of less than a leaf each, some sprays have one.
     const std::size_t strands = strands_in(block);
     for (std::size_t i = 0; i < strands; ++i) {

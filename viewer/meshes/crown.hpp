@@ -33,7 +33,7 @@ struct SprayPlace {
 
 /// Sprays that are drawn with one mesh.
 struct SprayGroup {
-  bool is_near = false;
+  SprayKind kind = SprayKind::kFar;
   std::size_t leaves = 0;  ///< of the mesh
   std::size_t first = 0;   ///< of Crown::places()
   std::size_t count = 0;
@@ -42,7 +42,8 @@ struct SprayGroup {
 /// All sprays of a level of leaves: where they are, and which of them a picture needs, how finely.
 ///
 /// Sprays are judged 16 by 16, as they stand together on a twig: those out of view are left out, those farther away get
-/// fewer, larger leaves, and then there are fewer sprays. Nothing comes or goes but by growing. Allocates when it is
+/// fewer, larger leaves, and so do those that others hide from the eye; then there are fewer sprays. Nothing comes or
+/// goes but by growing. Allocates when it is
 /// made, never afterwards.
 class Crown {
  public:
@@ -67,6 +68,7 @@ class Crown {
   struct Ball {
     glm::vec3 middle_m{0.0F};
     float radius_m = 0.0F;
+    glm::vec4 open{0.0F};  // the mean of its sprays'
   };
 
   std::size_t strands_in(std::size_t block) const;

@@ -125,6 +125,28 @@ void add_pentagon(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& f
   }
 }
 
+/// A triangle that covers as much as a kite.
+void add_leaf_speck(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& foot) {
+  const auto first = static_cast<std::uint32_t>(mesh.corners.size());
+  const float length = shape.leaf_length;
+  const float blade_foot = kPetiole * length;
+  const float half = 0.58F * shape.leaf_width * length;
+  mesh.corners.insert(mesh.corners.end(), {moved(foot, blade_foot, -half, 1.0F), moved(foot, blade_foot, half, 1.0F),
+                                           moved(foot, blade_foot + length, 0.0F, 0.0F)});
+  mesh.triangles.insert(mesh.triangles.end(), {first, first + 1, first + 2});
+}
+
+/// A triangle that covers as much as a pentagon, in the mean of its colors.
+void add_flower_speck(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& foot) {
+  const auto first = static_cast<std::uint32_t>(mesh.corners.size());
+  const float radius = 0.63F * shape.leaf_length;
+  for (std::uint32_t corner = 0; corner < 3; ++corner) {
+    const float angle_rad = static_cast<float>(2.0 * kPi) * static_cast<float>(corner) / 3.0F;
+    mesh.corners.push_back(moved(foot, radius * std::cos(angle_rad), radius * std::sin(angle_rad), 0.6F));
+  }
+  mesh.triangles.insert(mesh.triangles.end(), {first, first + 1, first + 2});
+}
+
 /// The spray's own axis is the first; the others leave it, and grow thin toward their tips.
 void add_twig(SprayMesh& mesh, const SprayShape& shape, const SprayCorner& foot) {
   const auto first = static_cast<std::uint32_t>(mesh.corners.size());
@@ -207,13 +229,13 @@ SprayShape spray_shape(const pose::TreeSkeleton& tree) {
   }
   switch (leaf_species(tree)) {
     case LeafSpecies::kZelkova:  // 7 cm
-      return {.leaves = kSmallLeaves, .leaf_length = 0.24F, .leaf_width = 0.44F, .widest_at = 0.38F};
+      return {.leaves = kSmallLeaves, .leaf_length = 0.24F, .leaf_width = 0.44F, .widest_at = 0.38F, .silver = 0.1F};
     case LeafSpecies::kCherry:  // 8 cm
-      return {.leaves = kLeaves, .leaf_length = 0.29F, .leaf_width = 0.52F, .widest_at = 0.42F};
+      return {.leaves = kLeaves, .leaf_length = 0.29F, .leaf_width = 0.52F, .widest_at = 0.42F, .silver = 0.2F};
     case LeafSpecies::kPoplar:  // 6 cm, wider than long, widest near its foot
       break;
   }
-  return {.leaves = kLeaves, .leaf_length = 0.24F, .leaf_width = 1.10F, .widest_at = 0.22F};
+  return {.leaves = kLeaves, .leaf_length = 0.24F, .leaf_width = 1.10F, .widest_at = 0.22F, .silver = 1.0F};
 }
 
 SprayMesh near_spray(const SprayShape& shape) {
@@ -226,10 +248,19 @@ SprayMesh far_spray(const SprayShape& shape) {
   return spray_of(shape, false, shape.has_flowers() ? add_pentagon : add_kite);
 }
 
+SprayMesh speck_spray(const SprayShape& shape) {
+  if (shape.kind == SprayShape::Kind::kTwigs) return spray_of(shape, false, add_twig);
+  return spray_of(shape, false, shape.has_flowers() ? add_flower_speck : add_leaf_speck);
+}
+
 SprayLevel spray_level(const SprayShape& shape, float leaf_px, const SprayDetail& detail) {
   const auto all = static_cast<float>(shape.leaves);
   const float share = std::clamp(std::min(leaf_px / detail.leaf_px, 1e3F), 1.0F / detail.largest, 1.0F);
-  return {.leaves = all * share * share, .size = 1.0F / share, .is_near = leaf_px > detail.shaped_leaf_px};
+  const bool is_near = leaf_px > detail.shaped_leaf_px;
+  const bool is_speck = leaf_px / share <= detail.speck_px;
+  return {.leaves = all * share * share,
+          .size = 1.0F / share,
+          .kind = is_near ? SprayKind::kNear : (is_speck ? SprayKind::kSpeck : SprayKind::kFar)};
 }
 
 }  // namespace yuragi::viewer::meshes

@@ -23,6 +23,7 @@ struct SprayShape {
   float widest_at = 0.0F;    ///< from a blade's foot (0) to its tip (1)
   enum class Kind : std::uint8_t { kLeaves, kFlowers, kTwigs };
   Kind kind = Kind::kLeaves;  ///< twigs: what a bare tree has; their length is that of a leaf
+  float silver = 0.0F;        ///< how pale the lower faces of its leaves are, 0 to 1
 
   bool has_flowers() const { return kind == Kind::kFlowers; }
 };
@@ -50,15 +51,22 @@ struct SprayMesh {
 
 /// For the eye near by: curved outlines, and a stalk.
 SprayMesh near_spray(const SprayShape& shape);
-/// For all others: two triangles a leaf, folded along its midrib; a flower is a pentagon.
+/// For others: two triangles a leaf, folded along its midrib; a flower is a pentagon.
 SprayMesh far_spray(const SprayShape& shape);
+/// For leaves of a few pixels: a triangle each.
+SprayMesh speck_spray(const SprayShape& shape);
 
 /// How finely sprays are drawn.
 struct SprayDetail {
   float leaf_px = 5.5F;          ///< leaves smaller than this give way to fewer, larger ones
   float largest = 4.0F;          ///< which are at most so many times as large
   float shaped_leaf_px = 40.0F;  ///< those larger than this have a curved outline
+  float speck_px = 0.0F;         ///< those no larger than this, as drawn, are a triangle each
+  float hidden_share = 1.0F;     ///< of its leaves, that a spray has which other leaves hide from the eye
 };
+
+/// The meshes of a spray.
+enum class SprayKind : std::uint8_t { kSpeck, kFar, kNear };
 
 /// How many leaves of a spray are drawn (below 1: of some sprays one), and how much larger each is, so that together
 /// they cover as much as all of them. The count is not a whole number: the last leaf is drawn that much smaller, so
@@ -66,7 +74,7 @@ struct SprayDetail {
 struct SprayLevel {
   float leaves = 0.0F;
   float size = 1.0F;
-  bool is_near = false;
+  SprayKind kind = SprayKind::kFar;
 };
 /// For a spray whose leaves are as long in the picture as `leaf_px`, in pixels.
 SprayLevel spray_level(const SprayShape& shape, float leaf_px, const SprayDetail& detail = {});

@@ -143,6 +143,22 @@ TEST_F(CrownTest, LightComesFromOutsideOfTheCrownAndLessToItsMiddle) {
   EXPECT_GT(outward, 0.0F);
 }
 
+TEST_F(CrownTest, SpraysThatOthersHideFromTheEyeHaveFewerLeaves) {
+  pose::TreeSkeleton dense = tree_;
+  for (float& length_m : dense.levels[kLeafLevel].strands.link_length_m) length_m *= 6.0F;
+  Crown crown(dense, kLeafLevel);
+  crown.move_to(joints_);
+  const auto leaves = [&](float hidden_share) {
+    crown.choose(view_at(middle_m(), 15.0), {.shaped_leaf_px = 1e3F, .hidden_share = hidden_share});
+    float sum = 0.0F;
+    for (const SprayPlace& spray : crown.places()) sum += spray.leaves;
+    return sum;
+  };
+  const float all = leaves(1.0F);
+  EXPECT_LT(leaves(0.3F), 0.95F * all);
+  EXPECT_GT(leaves(0.3F), 0.3F * all) << "those in front have all of theirs";
+}
+
 TEST_F(CrownTest, BranchesHaveMoreRingsTheNearerTheyAreAndNoMoreThanLinks) {
   for (std::size_t level = 0; level < kLeafLevel; ++level) {
     Branches branches(tree_, level);
@@ -150,7 +166,7 @@ TEST_F(CrownTest, BranchesHaveMoreRingsTheNearerTheyAreAndNoMoreThanLinks) {
     const std::size_t links = tree_.levels[level].strands.links_per_strand;
     std::size_t before = links;
     for (const double distance_m : {0.5, 5.0, 20.0, 80.0, 200.0}) {
-      branches.choose(view_at(middle_m(), distance_m));
+      branches.choose(view_at(middle_m(), distance_m), 5.0F);
       std::size_t most = 0;
       std::size_t next = 0;
       for (const BranchGroup& group : branches.groups()) {
@@ -164,7 +180,7 @@ TEST_F(CrownTest, BranchesHaveMoreRingsTheNearerTheyAreAndNoMoreThanLinks) {
       before = most;
     }
     EXPECT_LE(before, std::min(2 * Branches::kFewestRings, links));
-    branches.choose(view_at(middle_m() + glm::dvec3(0.0, 0.0, -60.0), 10.0));
+    branches.choose(view_at(middle_m() + glm::dvec3(0.0, 0.0, -60.0), 10.0), 5.0F);
     EXPECT_TRUE(branches.parts().empty()) << "behind the camera";
   }
 }

@@ -62,7 +62,8 @@ TEST_F(SpraysTest, MeshesAreWholeAndCoverTheSameNearAndFar) {
       const SprayShape shape = spray_shape(tree);
       const SprayMesh near = near_spray(shape);
       const SprayMesh far = far_spray(shape);
-      for (const SprayMesh* mesh : {&near, &far}) {
+      const SprayMesh speck = speck_spray(shape);
+      for (const SprayMesh* mesh : {&near, &far, &speck}) {
         EXPECT_EQ(mesh->triangles.size(), mesh->stalk_indices + shape.leaves * mesh->leaf_indices);
         for (const std::uint32_t corner : mesh->triangles) ASSERT_LT(corner, mesh->corners.size());
         for (std::size_t i = mesh->stalk_indices; i < mesh->triangles.size(); ++i) {
@@ -71,7 +72,9 @@ TEST_F(SpraysTest, MeshesAreWholeAndCoverTheSameNearAndFar) {
         }
       }
       EXPECT_NEAR(area(far) / area(near), 1.0F, 0.2F) << width_m;
+      EXPECT_NEAR(area(speck) / area(far), 1.0F, 0.05F) << width_m;
       EXPECT_LT(far.triangles.size(), near.triangles.size());
+      EXPECT_EQ(speck.triangles.size(), 3 * shape.leaves);
     }
   }
 }
@@ -100,7 +103,7 @@ TEST_F(SpraysTest, FartherOnesAreFewerAndLargerLeavesThatCoverTheSame) {
     EXPECT_LE(level.leaves, before);
     EXPECT_GT(level.leaves, before - 0.05F * all) << "they go smoothly";
     EXPECT_NEAR(level.leaves * level.size * level.size, all, 0.01F);
-    EXPECT_EQ(level.is_near, leaf_px > detail.shaped_leaf_px);
+    EXPECT_EQ(level.kind == SprayKind::kNear, leaf_px > detail.shaped_leaf_px);
     before = level.leaves;
   }
   EXPECT_EQ(spray_level(shape, 60.0F, detail).leaves, all);

@@ -4,7 +4,8 @@
 //
 // Of light a green leaf reflects some 5 % of blue, 12 % of green and 6 % of red, and lets through as much of green and
 // red but hardly any blue (S. Jacquemoud and F. Baret 1990, "PROSPECT: a model of leaf optical properties spectra").
-uniform int kind;  // SprayShape::Kind: 0 leaves, 1 flowers, 2 twigs
+uniform int kind;      // SprayShape::Kind: 0 leaves, 1 flowers, 2 twigs
+uniform float silver;  // how pale the lower faces of its leaves are: 0 hardly, 1 like a poplar's
 
 // SprayPlace (viewer/meshes/crown.hpp).
 layout(location = 0) in vec4 root_length;  // metres
@@ -22,10 +23,11 @@ const float kStalkRadius_m = 0.0011;
 const float kTwigRadius_m = 0.0022;
 const float kPedicel_m = 0.030;
 
-// The lower face's color: up to twice as bright as the upper one's, and greyer, because of hairs and wax.
+// The lower face's color: brighter than the upper one's, and greyer, because of hairs and wax.
 vec3 lower_face(vec3 upper_face) {
-  vec3 greyer = mix(vec3(dot(upper_face, vec3(0.21, 0.72, 0.07))), upper_face, 0.55);
-  return greyer * (2.0 - greyer);
+  float grey = dot(upper_face, vec3(0.21, 0.72, 0.07));
+  vec3 pale = mix(upper_face, grey * vec3(0.98, 1.0, 0.92), 0.30 + 0.45 * silver) * (1.6 + 1.3 * silver);
+  return min(pale, vec3(0.55));
 }
 
 // Three numbers from 0 to 1 that stay with a leaf (after M. Jarzynski and M. Olano 2020, "Hash functions for GPU
@@ -84,7 +86,9 @@ void main() {
     vec3 to = normalize(cos(turn) * along + sin(turn) * across + (0.9 * chance.y - 0.65 + 0.7 * (chance.z - 0.5) * blown) * upper);
     vec3 leaf_across = normalize(cross(to, upper));
     vec3 leaf_up = cross(leaf_across, to);
-    float roll = 1.7 * (chance.z - 0.5) + 2.0 * (chance.y - 0.5) * blown;
+    // The harder it blows, the more of them are turned over, so that their lower faces stream in the gust.
+    float over = smoothstep(0.0, 0.25, smoothstep(0.04, 0.75, blown) - chance.y);
+    float roll = 1.7 * (chance.z - 0.5) + 2.0 * (chance.y - 0.5) * blown + (chance.x < 0.5 ? -2.5 : 2.5) * over;
     normal = cos(roll) * leaf_up + sin(roll) * leaf_across;
     leaf_across = cross(to, normal);
     // Folded along the midrib, and bent down toward the tip.
@@ -103,9 +107,9 @@ void main() {
   // What the crown lets through to here. With a map of shadows that knows the leaves as they are now.
   float sun_seen = clamp(open.w + dot(open.xyz, to_sun.xyz), 0.02, 1.0);
   if (shadow.x > 0.0) sun_seen = mix(sun_seen, sunlight_near(place + 0.12 * to_sun.xyz), 0.6);
-  float sky_seen = clamp(open.w + 0.45 * dot(open.xyz, normal + vec3(0.0, 0.6, 0.0)), 0.20, 1.0);
+  float sky_seen = clamp(open.w + 0.45 * dot(open.xyz, normal + vec3(0.0, 0.3, 0.0)), 0.32, 1.0);
   vec3 sum = face * soft_light(normal) * sky_seen;
-  sum += face * (fire_light(place, normal) + 0.4 * fire_light(place, -normal));
+  if (fire_count.x > 0.0) sum += face * (fire_light(place, normal) + 0.4 * fire_light(place, -normal));
 
   float facing = dot(normal, to_sun.xyz);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
@@ -113,8 +117,10 @@ void main() {
   // Through a leaf light goes on a little more straight than to all sides.
   vec3 sunlit = facing > 0.0 ? face * facing : through_leaf * (thin * -facing * (0.95 + 1.1 * against * against * against));
   sum += sun_light.rgb * sun_seen * sunlit;
-  // And light that other leaves, which the sun reaches, have reflected and let through.
-  sum += sun_light.rgb * tint * through_leaf * (0.9 * (0.35 + 0.65 * sun_seen) * (1.0 - 0.5 * open.w) * thin);
+  // And light that other leaves, which the sun reaches, have reflected and let through: it comes from all around, the
+  // more the nearer the sun, and fades with the depth in the crown.
+  float from_others = (0.10 + 0.30 * sun_seen) * (0.35 + 0.65 * min(2.5 * open.w, 1.0)) * (1.0 - 0.5 * open.w);
+  sum += sun_light.rgb * (0.35 * tint + 0.65 * through_leaf) * (0.42 * from_others * thin);
 
   float shine = max(dot(normal, normalize(to_sun.xyz + to_eye)), 0.0);
   shine *= shine;
