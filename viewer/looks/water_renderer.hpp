@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "engine/pose/point_kinematics.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/gl/strip_indices.hpp"
@@ -23,7 +25,16 @@ class WaterRenderer : public SceneRenderer {
   void draw_mirrored(const meshes::View& view) override;
 
  private:
+  /// The water's surface at one level of detail: triangles of its points.
+  struct Sheet {
+    gl::GlBuffer indices = {};
+    gl::GlVertexArray array = {};
+    GLsizei index_count = 0;
+  };
+  static constexpr std::array<std::size_t, 4> kSteps = {1, 2, 4, 8};  // of the points along each side
+
   void make_sheet();
+  const Sheet& sheet_in(const meshes::View& view);
   void make_shore();
   void draw_reeds(GLint rings);
 
@@ -32,13 +43,16 @@ class WaterRenderer : public SceneRenderer {
   pose::PointPositions points_;
   meshes::WaveSlopes waves_;
   float mirror_share_ = 0.0F;
-  GLsizei sheet_count_ = 0, hole_count_ = 0, bank_count_ = 0;
+  GLsizei hole_count_ = 0, bank_count_ = 0;
   std::size_t reed_count_ = 0;
   gl::GlProgram water_, bank_, hole_, reed_;
   GLint reed_rings_place_, mirror_share_place_;
   gl::GlTexture slopes_, ripples_, reed_texture_;
-  gl::GlVertexArray sheet_array_, hole_array_, bank_array_;
-  gl::GlBuffer sheet_indices_, rest_buffer_, height_buffer_;
+  gl::GlVertexArray hole_array_, bank_array_;
+  std::array<Sheet, kSteps.size()> sheets_;
+  std::size_t level_ = 0;  // of sheets_, in the last picture
+  float cell_m_ = 0.0F;
+  gl::GlBuffer rest_buffer_, height_buffer_;
   gl::GlBuffer bank_buffer_, hole_indices_, bank_indices_, reed_buffer_;
   gl::StripIndices reed_strips_;
 };
