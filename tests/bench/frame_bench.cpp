@@ -185,10 +185,11 @@ int main(int argc, char** argv) {
     gl::RenderTarget target(options.width_px, options.height_px, options.samples);
     const DrawnPart part = PaceKeeper::kSteps[options.step];
     stage.set_blade_share(part.blades);
+    stage.set_coarseness(part.coarseness);
     target.set_drawn_side(part.side);
     fmt::print("{}, {} samples a pixel, {}, medians of {} pictures\n",
-               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(),
-               quality_text(quality, part.side), options.pictures);
+               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(), quality_text(quality, part),
+               options.pictures);
     fmt::print("{:>10} {:>10} {:>9} {:>11} {:>10} {:>8} {:>11} {:>10}\n", "blades", "size", "frame ms", "pictures/s",
                "thread ms", "share", "process ms", "upload MB");
     for (const Row& row : rows()) {

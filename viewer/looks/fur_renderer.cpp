@@ -54,6 +54,17 @@ void FurRenderer::move_to(const pose::Pose& pose) {
 
 void FurRenderer::draw(const meshes::View& view) {
   ribbons_.draw(hair_, view);
+  draw_skin();
+}
+
+void FurRenderer::draw_shadow(const meshes::View& view) {
+  // A body's shadow on the ground does as well without its hairs; in a map they shade each other.
+  const bool is_map = view.to_clip[0][3] == 0.0F && view.to_clip[1][3] == 0.0F && view.to_clip[2][3] == 0.0F;
+  if (is_map) ribbons_.draw(hair_, view);
+  draw_skin();
+}
+
+void FurRenderer::draw_skin() const {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, noise_.name());
   glUseProgram(skin_.name());

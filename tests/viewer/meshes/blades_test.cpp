@@ -1,5 +1,6 @@
 #include "viewer/meshes/blades.hpp"
 
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -76,7 +77,13 @@ TEST_F(BladesTest, AreDrawnMoreFinelyTheNearerTheyAre) {
   // From afar, all with few.
   sorter_.sort(view({{0.0, 0.5, 0.0}, 0.0, 30.0, 150.0}));
   EXPECT_TRUE(sorter_.levels().front().blades.empty());
-  EXPECT_EQ(sorter_.levels().back().blades.size(), (strands_.strand_count + 1) / 2);
+  // The fewer the smaller, and so much wider that together they cover as much.
+  const std::vector<Blade>& far_ones = sorter_.levels().back().blades;
+  EXPECT_LT(far_ones.size(), strands_.strand_count / 4);
+  EXPECT_GT(far_ones.size(), strands_.strand_count / 32);
+  const Blade whole = blades_of(strands_)[static_cast<std::size_t>(far_ones[0].strand)];
+  const float share = static_cast<float>(far_ones.size()) / static_cast<float>(strands_.strand_count);
+  EXPECT_NEAR(far_ones[0].width_m, whole.width_m / std::sqrt(share), 0.25F * far_ones[0].width_m);
   for (std::size_t i = 0; i + 1 < sorter_.levels().size(); ++i) EXPECT_TRUE(sorter_.levels()[i].blades.empty());
 }
 
