@@ -172,7 +172,7 @@ void write_look(const OverlayFacts& facts) {
                                        nearest_compass_point(sun.azimuth_deg));
   text += fmt::format(", clouds {:.0f} %, haze {:.0f} %", 100.0 * facts.sky->clouds, 100.0 * facts.sky->haze);
   write(kQuiet, text);
-  write(kQuiet, quality_text(facts.quality, facts.drawn_side));
+  write(kQuiet, quality_text(facts.quality, facts.drawn));
 }
 
 void write_stream(const OverlayFacts& facts) {

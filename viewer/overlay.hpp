@@ -6,6 +6,7 @@
 
 #include "engine/look/look.hpp"
 #include "viewer/light/daylight.hpp"
+#include "viewer/pace_keeper.hpp"
 #include "viewer/stream/pose_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
 #include "viewer/window.hpp"
@@ -26,7 +27,7 @@ struct OverlayFacts {
   std::span<const float> opacities;              ///< one a scene
   const light::Sky* sky = nullptr;               ///< null: not known
   look::Quality quality = look::Quality::kHigh;  ///< in which it is drawn
-  float drawn_side = 1.0F;                       ///< the part of the picture's width and height that is
+  DrawnPart drawn;                               ///< how much of it
   double heading_deg = 0.0;                      ///< of the camera: up on the compass
   std::string camera;                            ///< which it is, for a person; empty: there is but one
   bool has_texts = true;                         ///< otherwise nothing of the above is shown

@@ -12,7 +12,7 @@ constexpr double kTooLong = 1.05;          // of the target
 constexpr double kMuchTooLong = 1.6;       // likewise: two steps at once
 constexpr double kRoom = 0.62;             // below, the next step fits in
 constexpr double kTrial_s = 60.0;          // what lasts so long was not too much
-constexpr double kBladesPerSecond = 0.08;  // of all
+constexpr double kBladesPerSecond = 0.08;  // of all; of the coarseness, as much
 
 }  // namespace
 
@@ -31,6 +31,7 @@ void PaceKeeper::advance(double passed_s, double work_s) {
   drawn_.side = kSteps[step_].side;
   const auto most = static_cast<float>(kBladesPerSecond * passed_s);
   drawn_.blades += std::clamp(kSteps[step_].blades - drawn_.blades, -most, most);
+  drawn_.coarseness += std::clamp(kSteps[step_].coarseness - drawn_.coarseness, -most, most);
 }
 
 void PaceKeeper::judge(double median_s) {

@@ -9,11 +9,16 @@ look::Quality quality_for(look::Quality wanted, bool is_software_renderer) {
   return is_software_renderer ? look::Quality::kLow : look::Quality::kHigh;
 }
 
-std::string quality_text(look::Quality quality, float drawn_side) {
+std::string quality_text(look::Quality quality, const DrawnPart& drawn) {
   std::string text = "quality " + std::string(name_of(quality));
   if (quality == look::Quality::kLow) text += ": hard shadows, on the ground only; fewer, wider blades";
   if (quality == look::Quality::kMedium) text += ": coarser shadows, fewer blades";
-  if (drawn_side < 1.0F) text += fmt::format("; {:.0f} % as wide and high, for the pace", 100.0F * drawn_side);
+  if (drawn != DrawnPart{}) {
+    text += fmt::format(
+        "; for the pace {:.0f} % as wide and high, {:.0f} % of the blades, trees, cloth, water and shadows {:.1f} "
+        "times as coarse",
+        100.0F * drawn.side, 100.0F * drawn.blades, drawn.coarseness);
+  }
   return text;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "engine/look/look.hpp"
+#include "viewer/pace_keeper.hpp"
 
 namespace yuragi::viewer {
 
@@ -10,8 +11,7 @@ namespace yuragi::viewer {
 /// high with it.
 look::Quality quality_for(look::Quality wanted, bool is_software_renderer);
 
-/// For a person: "quality low: hard shadows, on the ground only; ...". Says what is left out. `drawn_side`: the part of
-/// the picture's width and height that is drawn (DrawnPart).
-std::string quality_text(look::Quality quality, float drawn_side = 1.0F);
+/// For a person: "quality low: hard shadows, on the ground only; ...". Says what is left out, for the pace besides.
+std::string quality_text(look::Quality quality, const DrawnPart& drawn = {});
 
 }  // namespace yuragi::viewer

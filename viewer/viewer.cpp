@@ -353,6 +353,7 @@ class Viewer::Show {
     aspect_ = static_cast<double>(size.width_px) / size.height_px;
     const DrawnPart part = is_drawn_for_pace() ? pace_.drawn() : DrawnPart{};
     stage_->set_blade_share(part.blades * static_cast<float>(sky_.look().density));
+    stage_->set_coarseness(part.coarseness);
     target_->set_drawn_side(part.side);
     if (cameras_.is_fading()) {
       stage_->draw(*moment_, camera_of(cameras_.before(), aspect_), *target_);
@@ -374,7 +375,7 @@ class Viewer::Show {
                           .opacities = moment_->opacities,
                           .sky = &sky,
                           .quality = quality_,
-                          .drawn_side = part.side,
+                          .drawn = part,
                           .heading_deg = camera.place().heading_deg,
                           .camera = camera_text(),
                           .has_texts = has_overlay_,

@@ -1,13 +1,13 @@
-// yuragi-frame-bench: what a picture of the viewer costs, for meadows of 10,000, 100,000 and 1,000,000 blades, a grove
-// of 200 trees and the garden, drawn without a display on what graphics this machine has. It prints a table: the time
-// to the last pixel, the processor time of this thread (with its part of the former) and of all threads, which draw
-// where there is no graphics hardware, what is uploaded, and the time of each pass: of the graphics hardware, or of all
-// threads where there is none. Poses are made before, and so is the moment between two frames of the stream: what that
-// costs this thread is the first of the passes, but in no sum. All are medians. Of other programs at work, the
-// processor times feel least.
+// yuragi-frame-bench: what a picture of the viewer costs, for meadows of 10,000, 100,000 and 1,000,000 blades, a grove of
+// 200 trees and the garden, drawn without a display on what graphics this machine has. It prints a table: the time to the last pixel, the
+// processor time of this thread (with its part of the former) and of all threads, which draw where there is no graphics
+// hardware, what is uploaded, and the same of each pass, whose time is that of the graphics hardware, or of all threads
+// where there is none, with the triangles that it is given: their corners are this thread's work where the processor
+// draws. Poses are made before, and so is the moment between two frames of the stream: what that costs this thread is
+// the first of the passes, but in no sum. All are medians. Of other programs at work, the processor times feel least.
 //
 //   yuragi-frame-bench [--size 1280x720] [--pictures 30] [--samples 1] [--quality low] [--step 0] [--software]
-//                      [--only 100,000]
+//                      [--only 100,000] [--hour 12]
 
 #include <algorithm>
 #include <chrono>
@@ -42,6 +42,7 @@ struct BenchOptions {
   std::string quality = "auto";
   std::size_t step = 0;
   std::string only;
+  double hour = 12.0;
 };
 
 struct Row {
@@ -91,7 +92,7 @@ void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, g
   }
   stage.set_scenes(scenes.models());
   meshes::OrbitCamera camera;
-  camera.frame(scenes.home(stage, static_cast<double>(options.width_px) / options.height_px));
+  camera.frame(scenes.home(stage, static_cast<double>(options.width_px) / options.height_px, options.hour));
 
   std::vector<double> times_ms, thread_ms, process_ms, uploads_mb;
   const auto draw = [&](int picture) {
@@ -115,14 +116,20 @@ void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, g
   // Pictures of their own for the passes: their clock waits.
   gl::PassClock clock(gl::is_software_renderer() ? gl::PassClock::By::kProcessor : gl::PassClock::By::kGpu);
   stage.time_passes_with(&clock);
-  std::map<std::string, std::vector<double>> passes_ms;
+  struct PassCosts {
+    std::vector<double> times_ms, thread_ms, uploads_mb, triangles;
+  };
+  std::map<std::string, PassCosts> passes;
   std::vector<std::string> pass_names;
   for (int picture = 0; picture < options.pictures; ++picture) {
     draw(picture);
-    for (const gl::PassClock::Pass& pass : clock.passes()) {
-      std::vector<double>& of_pass = passes_ms[pass.name];
-      if (of_pass.empty()) pass_names.push_back(pass.name);
-      of_pass.push_back(pass.time_ms);
+    for (const gl::PassClock::Pass& pass : clock.end()) {
+      PassCosts& costs = passes[pass.name];
+      if (costs.times_ms.empty()) pass_names.push_back(pass.name);
+      costs.times_ms.push_back(pass.time_ms);
+      costs.thread_ms.push_back(pass.thread_ms);
+      costs.uploads_mb.push_back(1e-6 * static_cast<double>(pass.uploaded_bytes));
+      costs.triangles.push_back(static_cast<double>(pass.triangles));
     }
   }
   stage.time_passes_with(nullptr);
@@ -140,8 +147,13 @@ void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, g
   fmt::print("{:>10} {:>10} {:>9.2f} {:>11.1f} {:>10.2f} {:>6.0f} % {:>11.2f} {:>10.2f}\n", row.name, options.size,
              time_ms, 1e3 / time_ms, median(thread_ms), 100.0 * median(thread_ms) / time_ms, median(process_ms),
              median(uploads_mb));
-  fmt::print("{:>31} {:>7.3f} ms\n", "between two frames", median(blends_ms));
-  for (const std::string& name : pass_names) fmt::print("{:>31} {:>7.3f} ms\n", name, median(passes_ms[name]));
+  fmt::print("{:>31} {:>9} {:>10} {:>10} {:>10}\n", "pass", "ms", "thread ms", "upload MB", "triangles");
+  fmt::print("{:>31} {:>9.3f} {:>10.3f}\n", "between two frames", median(blends_ms), median(blends_ms));
+  for (const std::string& name : pass_names) {
+    const PassCosts& costs = passes[name];
+    fmt::print("{:>31} {:>9.3f} {:>10.3f} {:>10.3f} {:>10.0f}\n", name, median(costs.times_ms), median(costs.thread_ms),
+               median(costs.uploads_mb), median(costs.triangles));
+  }
   std::fflush(stdout);
 }
 
@@ -162,6 +174,9 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     app.add_flag("--software", options.is_software, "by the processor, even where there is graphics hardware");
     app.add_option("--only", options.only, "one row: 10,000 or 100,000 or 1,000,000 or grove or garden");
+    app.add_option("--hour", options.hour, "whose camera the garden is seen by")
+        ->check(CLI::Range(0.0, 24.0))
+        ->capture_default_str();
     CLI11_PARSE(app, argc, argv);
     if (std::sscanf(options.size.c_str(), "%dx%d", &options.width_px, &options.height_px) != 2) return 64;
 
@@ -173,10 +188,11 @@ int main(int argc, char** argv) {
     gl::RenderTarget target(options.width_px, options.height_px, options.samples);
     const DrawnPart part = PaceKeeper::kSteps[options.step];
     stage.set_blade_share(part.blades);
+    stage.set_coarseness(part.coarseness);
     target.set_drawn_side(part.side);
     fmt::print("{}, {} samples a pixel, {}, medians of {} pictures\n",
-               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(),
-               quality_text(quality, part.side), options.pictures);
+               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(), quality_text(quality, part),
+               options.pictures);
     fmt::print("{:>10} {:>10} {:>9} {:>11} {:>10} {:>8} {:>11} {:>10}\n", "blades", "size", "frame ms", "pictures/s",
                "thread ms", "share", "process ms", "upload MB");
     for (const Row& row : rows()) {

@@ -89,12 +89,15 @@ TEST(PaceKeeperTest, TriesMoreEverMoreSeldomWhereThatIsTooMuch) {
   EXPECT_LE(later.changes, 20);
 }
 
-TEST(PaceKeeperTest, TheGrassChangesSlowly) {
+TEST(PaceKeeperTest, TheGrassAndTheMeshesChangeSlowly) {
   PaceKeeper keeper;
   float before = 1.0F;
+  float coarseness_before = 1.0F;
   run_for(keeper, 100.0, [&](double, const DrawnPart& part) {
     EXPECT_LE(std::abs(part.blades - before), 0.08F * 0.1F + 1e-6F);
+    EXPECT_LE(std::abs(part.coarseness - coarseness_before), 0.08F * 0.1F + 1e-6F);
     before = part.blades;
+    coarseness_before = part.coarseness;
     return Machine{0.09}.work_s(part);
   });
   EXPECT_LT(before, 0.6F);

@@ -14,8 +14,10 @@ TEST(Quality, IsLowByItselfOnlyWithoutGraphicsHardware) {
 TEST(Quality, SaysWhatItLeavesOut) {
   EXPECT_EQ(quality_text(look::Quality::kHigh), "quality high");
   EXPECT_EQ(quality_text(look::Quality::kLow), "quality low: hard shadows, on the ground only; fewer, wider blades");
-  EXPECT_EQ(quality_text(look::Quality::kLow, 0.72F),
-            "quality low: hard shadows, on the ground only; fewer, wider blades; 72 % as wide and high, for the pace");
+  EXPECT_EQ(
+      quality_text(look::Quality::kLow, PaceKeeper::kSteps[2]),
+      "quality low: hard shadows, on the ground only; fewer, wider blades; for the pace 72 % as wide and high, 70 % of "
+      "the blades, trees, cloth, water and shadows 1.2 times as coarse");
 }
 
 }  // namespace

@@ -98,6 +98,7 @@ enum TextureUnit : GLint {
   kFlameRowsUnit,    //
   kFlameNoiseUnit,   //
   kFlameRampUnit,    //
+  kStripsUnit,       // of those that are drawn (StripIndices), for a moment
   kBeforeUnit,       // two pictures that cross-fade
   kNowUnit,          //
   kImpostorUnit,     // the pictures of a far tree, and what their light needs to know

@@ -3,51 +3,76 @@
 #include <algorithm>
 #include <ctime>
 
+#include "viewer/gl/gl.hpp"
+
 namespace yuragi::viewer::gl {
 namespace {
 
-GLuint64 time_of(GLuint query) {
-  GLuint64 time_ns = 0;
-  glGetQueryObjectui64v(query, GL_QUERY_RESULT, &time_ns);
-  return time_ns;
+GLuint64 result_of(GLuint query) {
+  GLuint64 result = 0;
+  glGetQueryObjectui64v(query, GL_QUERY_RESULT, &result);
+  return result;
+}
+
+double processor_time_ms(clockid_t whose) {
+  std::timespec time{};
+  ::clock_gettime(whose, &time);
+  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
 }  // namespace
 
 PassClock::~PassClock() {
-  if (!queries_.empty()) glDeleteQueries(static_cast<GLsizei>(queries_.size()), queries_.data());
+  for (const std::vector<GLuint>* queries : {&timestamps_, &triangle_counts_}) {
+    if (!queries->empty()) glDeleteQueries(static_cast<GLsizei>(queries->size()), queries->data());
+  }
 }
 
-void PassClock::put_timestamp() {
+void PassClock::grow(std::vector<GLuint>& queries, std::size_t count) {
+  while (queries.size() < count) glGenQueries(1, &queries.emplace_back(0));
+}
+
+void PassClock::put_mark() {
+  const std::size_t number = names_.size();
+  if (number > 0) glEndQuery(GL_PRIMITIVES_GENERATED);
   if (by_ == By::kProcessor) {
     glFinish();
-    times_ms_.push_back(1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC);
-    return;
+  } else {
+    grow(timestamps_, number + 1);
+    glQueryCounter(timestamps_[number], GL_TIMESTAMP);
   }
-  const std::size_t number = names_.size();
-  if (number == queries_.size()) glGenQueries(1, &queries_.emplace_back(0));
-  glQueryCounter(queries_[number], GL_TIMESTAMP);
+  spent_.push_back({.all_threads_ms = processor_time_ms(CLOCK_PROCESS_CPUTIME_ID),
+                    .thread_ms = processor_time_ms(CLOCK_THREAD_CPUTIME_ID),
+                    .uploaded_bytes = uploaded_bytes()});
+  grow(triangle_counts_, number + 1);
+  glBeginQuery(GL_PRIMITIVES_GENERATED, triangle_counts_[number]);
 }
 
 void PassClock::begin() {
   names_.clear();
-  times_ms_.clear();
-  put_timestamp();
+  spent_.clear();
+  put_mark();
 }
 
 void PassClock::mark(std::string_view name) {
   names_.emplace_back(name);
-  put_timestamp();
+  put_mark();
 }
 
-std::vector<PassClock::Pass> PassClock::passes() const {
+std::vector<PassClock::Pass> PassClock::end() {
+  glEndQuery(GL_PRIMITIVES_GENERATED);
   std::vector<Pass> passes;
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const double time_ms = by_ == By::kProcessor
-                               ? times_ms_[i + 1] - times_ms_[i]
-                               : 1e-6 * static_cast<double>(time_of(queries_[i + 1]) - time_of(queries_[i]));
-    const auto same = std::ranges::find(passes, names_[i], &Pass::name);
-    same == passes.end() ? passes.push_back({names_[i], time_ms}) : void(same->time_ms += time_ms);
+    const Spent& from = spent_[i];
+    const Spent& to = spent_[i + 1];
+    auto pass = std::ranges::find(passes, names_[i], &Pass::name);
+    if (pass == passes.end()) pass = passes.insert(passes.end(), {.name = names_[i]});
+    pass->time_ms += by_ == By::kProcessor
+                         ? to.all_threads_ms - from.all_threads_ms
+                         : 1e-6 * static_cast<double>(result_of(timestamps_[i + 1]) - result_of(timestamps_[i]));
+    pass->thread_ms += to.thread_ms - from.thread_ms;
+    pass->uploaded_bytes += to.uploaded_bytes - from.uploaded_bytes;
+    pass->triangles += result_of(triangle_counts_[i]);
   }
   return passes;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,7 +10,7 @@
 
 namespace yuragi::viewer::gl {
 
-/// How long each pass of a picture takes. For measurements: it waits.
+/// What each pass of a picture costs. For measurements: it waits.
 ///
 /// By the GPU: by timestamps between the passes (GL_TIMESTAMP), read when the picture is done. By the processor, where
 /// that draws (which otherwise draws all passes together at the end): each pass is waited for, and its time is that of
@@ -29,17 +30,29 @@ class PassClock {
 
   struct Pass {
     std::string name;
-    double time_ms;
+    double time_ms = 0.0;
+    double thread_ms = 0.0;  ///< processor time of the drawing thread
+    std::size_t uploaded_bytes = 0;
+    std::size_t triangles = 0;  ///< given to the pass, seen or not
   };
-  /// Those of the picture, in order; marks of the same name are added up. Waits until the GPU is done.
-  std::vector<Pass> passes() const;
+  /// The picture ends. Its passes in order; marks of the same name are added up. Waits until the GPU is done.
+  std::vector<Pass> end();
 
  private:
-  void put_timestamp();
+  /// What had been spent at a mark since the program began.
+  struct Spent {
+    double all_threads_ms = 0.0;
+    double thread_ms = 0.0;
+    std::size_t uploaded_bytes = 0;
+  };
+
+  void put_mark();
+  static void grow(std::vector<GLuint>& queries, std::size_t count);
 
   By by_;
-  std::vector<GLuint> queries_;   // one more than names_ while a picture is drawn; those behind are for later
-  std::vector<double> times_ms_;  // likewise, of the processor
+  std::vector<GLuint> timestamps_;       // one more than names_ while a picture is drawn; those behind are for later
+  std::vector<GLuint> triangle_counts_;  // likewise; the last is being counted
+  std::vector<Spent> spent_;             // likewise
   std::vector<std::string> names_;
 };
 

@@ -13,13 +13,42 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-constexpr float kCell_px = 3.0F;  // of the coarsest mesh that does
+constexpr float kShadowCell_px = 12.0F;  // of a shadow's mesh
+constexpr float kKeep = 0.15F;           // of a level: so far beyond its bounds it is kept
 constexpr float kNearest_m = 0.1F;
 constexpr std::size_t kLooks = 12;     // joints along each side that are asked how far they are
 constexpr float kHalfHem_m = 0.0015F;  // half the thickness of a hem
 constexpr float kDarkestPaint = 0.012F;
 constexpr float kLightestPaint = 0.78F;
+constexpr float kThinnestWire_px = 0.8F;
 constexpr float kThinnest_px = 0.2F;  // half as thick, a rim is not seen
+
+/// How wide the cells of the coarsest mesh are that does, at most, pixels.
+float cell_px_of(look::Quality quality) {
+  switch (quality) {
+    case look::Quality::kLow:
+      return 6.0F;
+    case look::Quality::kMedium:
+      return 4.0F;
+    case look::Quality::kHigh:
+    case look::Quality::kAuto:
+      break;
+  }
+  return 3.0F;
+}
+
+/// A curtain's folds hang down: its cells are half as wide as another cloth's, and twice as high.
+constexpr float kFoldedShare = 0.5F;
+constexpr int kFoldedLevels = 2;
+
+/// How much finer than along a row a cloth is divided along a column, as a power of 2, for cells of the right shape.
+int finer_down(meshes::ClothStyle style, const meshes::ClothMeasure& lies) {
+  const float across_m = glm::length(lies.per_column_m);
+  const float down_m = glm::length(lies.per_row_m);
+  if (!(across_m > 0.0F) || !(down_m > 0.0F)) return 0;
+  const int folded = style == meshes::ClothStyle::kCurtain ? kFoldedLevels : 0;
+  return static_cast<int>(std::lround(std::clamp(std::log2(down_m / across_m), -8.0F, 8.0F))) - folded;
+}
 
 /// From a banner's pole to the end of its arm along the ground, at rest and in a pose.
 glm::vec2 arm_m(const pose::GridSkeleton& cloth, const pose::GridPose* pose) {
@@ -69,14 +98,17 @@ meshes::Bounds bounds_of(const meshes::SolidMesh& mesh, const meshes::Bounds& no
 }  // namespace
 
 ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle style, const look::ClothLook& look,
-                             const meshes::SolidMesh& holder)
+                             look::Quality quality, const meshes::SolidMesh& holder)
     : cloth_(&cloth),
       lies_(meshes::measure(cloth)),
       style_(style),
       is_vane_(style_ == meshes::ClothStyle::kBanner && cloth.columns > 1 && cloth.rows > 0),
       points_(cloth),
+      cell_px_(cell_px_of(quality) * (style == meshes::ClothStyle::kCurtain ? kFoldedShare : 1.0F)),
+      finer_down_(finer_down(style, lies_)),
       holder_bounds_(bounds_of(holder, meshes::bounds_of(cloth))),
       holder_(holder),
+      wire_m_(2.0F * holder.wire_radius_m()),
       floor_(meshes::cloth_floor(style_, cloth)),
       program_(gl::link_program("cloth", gl::shaders::kClothVert, gl::shaders::kClothFrag)) {
   if (floor_) boards_.emplace(*floor_);
@@ -104,19 +136,24 @@ float ClothRenderer::nearest_m(const meshes::View& view) const {
   return std::max(nearest_m, kNearest_m);
 }
 
-int ClothRenderer::level_in(const meshes::View& view) const {
-  const float cell_m = std::max(glm::length(lies_.per_column_m), glm::length(lies_.per_row_m));
-  const float level = std::ceil(std::log2(std::max(cell_m, 1e-6F) / (kCell_px * view.eye_m.w * nearest_m(view))));
-  return static_cast<int>(std::clamp(level, static_cast<float>(meshes::ClothSurface::kCoarsest),
-                                     static_cast<float>(meshes::ClothSurface::kFinest)));
+int ClothRenderer::level_in(const meshes::View& view, float cell_px, const std::optional<int>& before) const {
+  const float cell_m = std::max(glm::length(lies_.per_column_m), 1e-6F);
+  const float wanted = std::clamp(std::log2(cell_m / (cell_px * view.eye_m.w * nearest_m(view))),
+                                  static_cast<float>(meshes::ClothSurface::kCoarsest),
+                                  static_cast<float>(meshes::ClothSurface::kFinest));
+  if (before) {
+    const auto last = static_cast<float>(*before);
+    if (wanted > last - 1.0F - kKeep && wanted < last + kKeep) return *before;
+  }
+  return static_cast<int>(std::ceil(wanted));
 }
 
-ClothSheet& ClothRenderer::sheet() {
-  const auto i = static_cast<std::size_t>(level_ - meshes::ClothSurface::kCoarsest);
-  std::optional<ClothSheet>& sheet = sheets_[i];
-  if (!sheet) sheet.emplace(meshes::layout_of(*cloth_), lies_, level_);
-  if (!is_moved_[i]) sheet->move_to(std::as_const(points_).data());
-  is_moved_[i] = true;
+ClothSheet& ClothRenderer::sheet(int level) {
+  const auto i = static_cast<std::size_t>(level - meshes::ClothSurface::kCoarsest);
+  std::optional<ClothSheet>& sheet = sheets_.at(i);
+  if (!sheet) sheet.emplace(meshes::layout_of(*cloth_), lies_, level, finer_down_);
+  if (!is_moved_.at(i)) sheet->move_to(std::as_const(points_).data());
+  is_moved_.at(i) = true;
   return *sheet;
 }
 
@@ -135,18 +172,28 @@ void ClothRenderer::move_to(const pose::Pose& pose) {
 }
 
 void ClothRenderer::draw(const meshes::View& view) {
-  // The sun sees what the last picture's eye saw.
-  const bool is_sun = view.to_clip[0][3] == 0.0F && view.to_clip[1][3] == 0.0F && view.to_clip[2][3] == 0.0F;
-  if (!is_sun) level_ = level_in(view);
+  level_ = level_in(view, cell_px_, level_);
   glUseProgram(program_.name());
   if (picture_) glBindTexture(GL_TEXTURE_2D, picture_->name());
-  ClothSheet& now = sheet();
+  ClothSheet& now = sheet(*level_);
   now.draw();
-  if (!is_sun && kHalfHem_m > kThinnest_px * view.eye_m.w * nearest_m(view)) now.draw_rim(kHalfHem_m);
-  holder_.draw();
-  if (is_sun || !boards_) return;
+  const float pixel_m = view.eye_m.w * nearest_m(view);
+  if (kHalfHem_m > kThinnest_px * pixel_m) now.draw_rim(kHalfHem_m);
+  wire_m_ > kThinnestWire_px* pixel_m ? holder_.draw() : holder_.draw_coarsely();
+  if (!boards_) return;
   boards_->draw();
   if (view.shadow.x == 0.0F) boards_->draw_in_shade([&] { now.draw(); });
+}
+
+void ClothRenderer::draw_shadow(const meshes::View& view) {
+  // On the ground it may be coarse. In a map the sun has to see what the last picture's eye saw, or the cloth would
+  // shade itself.
+  const bool is_map = view.to_clip[0][3] == 0.0F && view.to_clip[1][3] == 0.0F && view.to_clip[2][3] == 0.0F;
+  if (!is_map) shadow_level_ = level_in(view, std::max(cell_px_, kShadowCell_px), shadow_level_);
+  if (is_map && !level_) level_ = level_in(view, cell_px_, level_);
+  glUseProgram(program_.name());
+  sheet(is_map ? *level_ : *shadow_level_).draw();
+  holder_.draw_coarsely();
 }
 
 }  // namespace yuragi::viewer::looks

@@ -15,9 +15,9 @@ constexpr float kBendReach_m = 0.03F;
 
 }  // namespace
 
-ClothSheet::ClothSheet(const meshes::GridLayout& joints, const meshes::ClothMeasure& lies, int level)
+ClothSheet::ClothSheet(const meshes::GridLayout& joints, const meshes::ClothMeasure& lies, int level, int finer_down)
     : lies_(lies),
-      surface_(joints, level),
+      surface_(joints, level, finer_down),
       bends_per_m_(surface_.layout().size()),
       rim_points_(6 * surface_.rim().size()),
       rim_normals_(rim_points_.size()) {

@@ -15,7 +15,7 @@ namespace yuragi::viewer::looks {
 /// made.
 class ClothSheet {
  public:
-  ClothSheet(const meshes::GridLayout& joints, const meshes::ClothMeasure& lies, int level);
+  ClothSheet(const meshes::GridLayout& joints, const meshes::ClothMeasure& lies, int level, int finer_down);
 
   /// Takes the joints' present positions: all x, then all y, then all z.
   void move_to(std::span<const float> joints);

@@ -25,6 +25,7 @@ class FlameRenderer : public SceneRenderer {
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
   void draw_light() override;
+  bool throws_light() const override { return true; }
   std::optional<light::Fire> fire() const override;
   meshes::Bounds bounds_with_holder(const meshes::Bounds& bounds) const override;
   bool casts_shadow() const override { return true; }

@@ -27,6 +27,7 @@ FurRenderer::FurRenderer(const pose::StrandSkeleton& strands, look::Quality qual
       skin_(gl::link_program("skin", gl::shaders::kSkinVert, gl::shaders::kSkinFrag)),
       noise_(gl::make_noise_texture()) {
   gl::set_sampler(hair_, "joints", 0);
+  gl::set_sampler(hair_, "blades", gl::kStripsUnit);
   gl::set_sampler(skin_, "noise_tile", 0);
   const meshes::Body body = meshes::body_of(strands);
   set_body(hair_, body);
@@ -53,6 +54,17 @@ void FurRenderer::move_to(const pose::Pose& pose) {
 
 void FurRenderer::draw(const meshes::View& view) {
   ribbons_.draw(hair_, view);
+  draw_skin();
+}
+
+void FurRenderer::draw_shadow(const meshes::View& view) {
+  // A body's shadow on the ground does as well without its hairs; in a map they shade each other.
+  const bool is_map = view.to_clip[0][3] == 0.0F && view.to_clip[1][3] == 0.0F && view.to_clip[2][3] == 0.0F;
+  if (is_map) ribbons_.draw(hair_, view);
+  draw_skin();
+}
+
+void FurRenderer::draw_skin() const {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, noise_.name());
   glUseProgram(skin_.name());

@@ -14,9 +14,12 @@ class FurRenderer : public SceneRenderer {
 
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
+  void draw_shadow(const meshes::View& view) override;
   bool casts_shadow() const override { return true; }
 
  private:
+  void draw_skin() const;
+
   StrandRibbons ribbons_;
   gl::GlProgram hair_;
   gl::GlProgram skin_;

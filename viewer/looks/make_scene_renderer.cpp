@@ -27,8 +27,8 @@ std::unique_ptr<SceneRenderer> renderer_of(const pose::StrandSkeleton& strands, 
   return std::make_unique<GrassRenderer>(strands, grass_detail(quality));
 }
 std::unique_ptr<SceneRenderer> renderer_of(const pose::GridSkeleton& cloth, const wire::SceneModel& scene,
-                                           look::Quality) {
-  return std::make_unique<ClothRenderer>(cloth, scene.kind, scene.cloth);
+                                           look::Quality quality) {
+  return std::make_unique<ClothRenderer>(cloth, scene.kind, scene.cloth, quality);
 }
 std::unique_ptr<SceneRenderer> renderer_of(const pose::TreeSkeleton& tree, const wire::SceneModel&,
                                            look::Quality quality) {

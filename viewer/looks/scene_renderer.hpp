@@ -33,14 +33,16 @@ class SceneRenderer {
   };
   virtual void set_moment(const Moment&) {}
 
-  /// Takes the pose of the next picture, which fits the skeleton. Called before anything is drawn.
+  /// Takes the pose of the next picture, which fits the skeleton. Called before anything is drawn; not where nothing of
+  /// it is seen, unless it throws light.
   virtual void move_to(const pose::Pose& pose) = 0;
 
   /// Draws pictures of its own that later ones are made of. Called before anything of a picture is drawn; `views` and
   /// the framebuffer are set again afterwards, and so are depth test, stencil test and blending.
   virtual void prepare(const meshes::View&, gl::ViewBuffer&) {}
 
-  /// Draws the opaque parts. The View is bound (ViewBuffer::set). The stage has set depth and stencil tests; other
+  /// Draws the opaque parts. The View is bound (ViewBuffer::set); `view` may have larger pixels, where meshes are to be
+  /// coarser. The stage has set depth and stencil tests; other
   /// OpenGL state that is changed here, but for bindings, is restored.
   virtual void draw(const meshes::View& view) = 0;
 
@@ -52,6 +54,9 @@ class SceneRenderer {
 
   /// Fills, in the stencil alone, the part of the ground that is open: under water.
   virtual void draw_hole() {}
+
+  /// Does it light what is around it?
+  virtual bool throws_light() const { return false; }
 
   /// The light that it throws on what is around it, after move_to().
   virtual std::optional<light::Fire> fire() const { return std::nullopt; }
@@ -67,6 +72,10 @@ class SceneRenderer {
 
   /// The height of the level mirror that it is, metres; nothing where it is none.
   virtual std::optional<float> mirror_m() const { return std::nullopt; }
+
+  /// So much of what it mirrors (0 to 1) is in the mirror of the next picture; in place of the rest it mirrors clear
+  /// sky.
+  virtual void set_mirror_share(float) {}
 
   /// Draws what is seen of it in a mirror.
   virtual void draw_mirrored(const meshes::View& view) { draw(view); }

@@ -1,20 +1,24 @@
 #include "viewer/looks/solids.hpp"
 
 #include <cstddef>
+#include <vector>
 
 #include "viewer/gl/shaders.hpp"
 
 namespace yuragi::viewer::looks {
 
 Solids::Solids(const meshes::SolidMesh& mesh)
-    : index_count_(static_cast<GLsizei>(mesh.indices().size())),
+    : index_count_(static_cast<GLsizei>(mesh.indices().size() + mesh.rings().size())),
+      ring_index_count_(static_cast<GLsizei>(mesh.rings().size())),
       program_(gl::link_program("solid", gl::shaders::kSolidVert, gl::shaders::kSolidFrag)),
       axis_place_(glGetUniformLocation(program_.name(), "axis_m")),
       turn_place_(glGetUniformLocation(program_.name(), "turn")) {
   glBindVertexArray(array_.name());
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_.name());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices().size() * sizeof(std::uint32_t)),
-               mesh.indices().data(), GL_STATIC_DRAW);
+  std::vector<std::uint32_t> indices = mesh.indices();
+  indices.insert(indices.end(), mesh.rings().begin(), mesh.rings().end());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)), indices.data(),
+               GL_STATIC_DRAW);
   glBindBuffer(GL_ARRAY_BUFFER, vertex_buffer_.name());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices().size() * sizeof(meshes::SolidVertex)),
                mesh.vertices().data(), GL_STATIC_DRAW);
@@ -41,6 +45,12 @@ void Solids::draw() const {
   glUseProgram(program_.name());
   glBindVertexArray(array_.name());
   glDrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+void Solids::draw_coarsely() const {
+  glUseProgram(program_.name());
+  glBindVertexArray(array_.name());
+  glDrawElements(GL_TRIANGLES, index_count_ - ring_index_count_, GL_UNSIGNED_INT, nullptr);
 }
 
 }  // namespace yuragi::viewer::looks

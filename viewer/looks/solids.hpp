@@ -18,9 +18,12 @@ class Solids {
 
   /// The View is bound (ViewBuffer::set).
   void draw() const;
+  /// Without its rings, which are seen from near by alone.
+  void draw_coarsely() const;
 
  private:
-  GLsizei index_count_;
+  GLsizei index_count_;  ///< with those of the rings, which are the last
+  GLsizei ring_index_count_;
   gl::GlProgram program_;
   GLint axis_place_, turn_place_;
   gl::GlBuffer vertex_buffer_;

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include "engine/pose/pose_arrays.hpp"
 #include "viewer/meshes/shadow_view.hpp"
@@ -16,6 +20,47 @@ constexpr int kHighTexels = 2048;
 constexpr int kMirror = 2;           // a mirror's pixel is as large as so many of the picture, across and upright
 constexpr int kLowMirror = 4;        // with quality low
 constexpr float kLowestSun = 0.02F;  // the sine of its height: below it shadows have no end
+
+constexpr float kShadowPixels = 2.5F;  // a shadow on the ground is drawn as coarsely as if pixels were so large
+constexpr float kSmallest_px = 2.0F;   // half as wide, nothing is drawn of a thing
+
+/// How wide water is in the picture, half of it, where it begins to mirror more than the sky, and where it mirrors all.
+constexpr float kMirrorFrom_px = 12.0F;
+constexpr float kMirrorAll_px = 36.0F;
+constexpr float kSameHeight_m = 0.01F;
+
+/// The box with room for what the wind moves out of it.
+meshes::Bounds with_room(const meshes::Bounds& box) {
+  const glm::vec3 size_m = box.high_m - box.low_m;
+  const glm::vec3 room_m = 0.15F * size_m + glm::vec3(0.5F * size_m.y, 0.0F, 0.5F * size_m.y) + 0.2F;
+  return {box.low_m - room_m, box.high_m + room_m};
+}
+
+/// Around the shadow of a box on the ground.
+meshes::Bounds shadow_of(const meshes::Bounds& box, const glm::vec3& to_sun) {
+  const auto laid_down = [&](float y_m) {
+    const glm::vec3 off_m = to_sun * (-std::max(y_m, 0.0F) / to_sun.y);
+    return meshes::Bounds{glm::vec3(box.low_m.x + off_m.x, 0.0F, box.low_m.z + off_m.z),
+                          glm::vec3(box.high_m.x + off_m.x, 0.0F, box.high_m.z + off_m.z)};
+  };
+  return united(laid_down(box.low_m.y), laid_down(box.high_m.y));
+}
+
+/// Half of the width of a ball around the box in a picture, pixels; from within, as from its surface.
+float half_width_px(const meshes::View& view, const meshes::Bounds& box) {
+  const float radius_m = 0.5F * glm::distance(box.low_m, box.high_m);
+  const float distance_m = glm::distance(glm::vec3(view.eye_m), 0.5F * (box.low_m + box.high_m));
+  return radius_m / (view.eye_m.w * std::max({distance_m, radius_m, 1e-3F}));
+}
+
+bool is_large_in_view(const meshes::View& view, const std::array<glm::vec4, 5>& planes, const meshes::Bounds& box) {
+  return meshes::is_in_view(planes, box.low_m, box.high_m) && half_width_px(view, box) > kSmallest_px;
+}
+
+meshes::View coarser(meshes::View view, float pixels) {
+  view.eye_m.w *= pixels;
+  return view;
+}
 
 bool is_alike(const meshes::Stand& a, const meshes::Stand& b) {
   return a.length_m == b.length_m && a.blades_per_m2 == b.blades_per_m2;
@@ -51,8 +96,9 @@ void Stage::set_scenes(std::vector<wire::SceneModel> scenes) {
     }
     scenes_.push_back(&views_.back()->scene);
   }
-  const bool is_there = std::ranges::any_of(scenes_, [&](const auto* scene) { return only_ && scene->name == *only_; });
-  if (!is_there) only_.reset();
+  const bool has_only = std::ranges::any_of(scenes_, [&](const auto* scene) { return only_ && scene->name == *only_; });
+  if (!has_only) only_.reset();
+  seen_.assign(views_.size(), {});
 }
 
 void Stage::show_next() {
@@ -111,9 +157,59 @@ std::size_t Stage::node_count() const {
   return count;
 }
 
-bool Stage::is_seen(const stream::PoseMoment& moment, std::size_t scene) const {
+bool Stage::is_there(const stream::PoseMoment& moment, std::size_t scene) const {
   return is_chosen(scene) && scene < moment.poses.size() && scene < moment.opacities.size() &&
          moment.opacities[scene] > 0.0F && pose::fits(moment.poses[scene], scenes_[scene]->skeleton);
+}
+
+/// Finds out which scenes may be seen, and where.
+void Stage::look_around(const stream::PoseMoment& moment, const meshes::View& view) {
+  const glm::vec3 to_sun(light_.to_sun);
+  const std::array<glm::vec4, 5> planes = meshes::side_planes(view);
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    const SceneRenderer& renderer = *views_[scene]->renderer;
+    seen_[scene] = {};
+    if (!is_there(moment, scene)) continue;
+    const bool is_field = renderer.is_field();
+    const meshes::Bounds box = with_room(views_[scene]->bounds);
+    seen_[scene].in_picture = is_field || is_large_in_view(view, planes, box);
+    if (!renderer.casts_shadow() || to_sun.y <= kLowestSun) continue;
+    // In a map of shadows it falls on whatever stands between the thing and the ground, too.
+    const meshes::Bounds shadow = shadow_of(box, to_sun);
+    seen_[scene].in_shadow = is_field || is_large_in_view(view, planes, shadow_map_ ? united(box, shadow) : shadow);
+  }
+  choose_mirror(view);
+  if (!image_) return;
+  const std::array<glm::vec4, 5> image_planes = meshes::side_planes(*image_);
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    const SceneRenderer& renderer = *views_[scene]->renderer;
+    if (!is_there(moment, scene) || renderer.is_field()) continue;
+    if (quality_ == look::Quality::kLow && !renderer.mirror_m() && !renderer.throws_light()) continue;  // draw_mirror()
+    seen_[scene].in_mirror = is_large_in_view(*image_, image_planes, with_room(views_[scene]->bounds));
+  }
+}
+
+/// There is one mirror: for the water that is widest in the picture, and all that is as high.
+void Stage::choose_mirror(const meshes::View& view) {
+  image_.reset();
+  float widest_px = kMirrorFrom_px;
+  std::optional<float> height_m;
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    if (!seen_[scene].in_picture || !views_[scene]->renderer->mirror_m()) continue;
+    const float width_px = half_width_px(view, views_[scene]->bounds);
+    if (width_px <= widest_px) continue;
+    widest_px = width_px;
+    height_m = views_[scene]->renderer->mirror_m();
+  }
+  for (const auto& scene : views_) {
+    const std::optional<float> own_m = scene->renderer->mirror_m();
+    const bool is_as_high = own_m && height_m && std::abs(*own_m - *height_m) < kSameHeight_m;
+    const float width_px = half_width_px(view, scene->bounds);
+    scene->renderer->set_mirror_share(is_as_high ? glm::smoothstep(kMirrorFrom_px, kMirrorAll_px, width_px) : 0.0F);
+  }
+  if (!height_m) return;
+  const int smaller = quality_ == look::Quality::kLow ? kLowMirror : kMirror;
+  image_ = meshes::mirrored(view, *height_m, 1.0F / static_cast<float>(smaller));
 }
 
 /// Gives each renderer its pose, and asks which light it throws.
@@ -124,8 +220,9 @@ void Stage::move_to(const stream::PoseMoment& moment) {
       .flame_brightness = light::flame_brightness(light_.air.x)};
   fires_.clear();
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    if (!is_seen(moment, scene)) continue;
+    const Seen& seen = seen_[scene];
     SceneRenderer& renderer = *views_[scene]->renderer;
+    if (!is_there(moment, scene) || !(seen.is_anywhere() || renderer.throws_light())) continue;
     renderer.set_moment(now);
     renderer.move_to(moment.poses[scene]);
     renderer.set_blade_share(blade_share_);
@@ -160,7 +257,7 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
       continue;
     }
     is_bare = is_bare && !is_chosen(scene);
-    if (!is_seen(moment, scene)) continue;
+    if (!is_there(moment, scene)) continue;
     const float opacity = moment.opacities[scene];
     meshes::Standing& thing = standing_.emplace_back();
     thing.bounds = view.bounds;
@@ -225,9 +322,9 @@ void Stage::set_quality(look::Quality quality) {
 }
 
 /// Draws what the sun sees of everything that casts a shadow, for `view` to look it up.
-void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view) {
+void Stage::draw_shadow_map(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view) {
   const auto casts = [&](std::size_t scene) {
-    return is_seen(moment, scene) && views_[scene]->renderer->casts_shadow();
+    return is_there(moment, scene) && views_[scene]->renderer->casts_shadow();
   };
   std::optional<meshes::Bounds> casters = around(casts);
   if (!casters) return;
@@ -246,7 +343,7 @@ void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_s
   glDisable(GL_SCISSOR_TEST);
   shadow_map_->begin();
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    if (!casts(scene)) continue;
+    if (!seen_[scene].in_shadow) continue;
     door_.open(moment.opacities[scene], scene);
     views_[scene]->renderer->draw_shadow(shadows);
     door_.close();
@@ -257,14 +354,7 @@ void Stage::draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_s
 
 /// Draws what the water in view mirrors, with less work than the picture is.
 void Stage::draw_mirror(const stream::PoseMoment& moment, const meshes::View& view, const gl::RenderTarget& target) {
-  const std::array<glm::vec4, 5> planes = meshes::side_planes(view);
-  std::optional<float> height_m;
-  for (std::size_t scene = 0; scene < views_.size() && !height_m; ++scene) {
-    const meshes::Bounds& box = views_[scene]->bounds;
-    if (!is_seen(moment, scene) || !meshes::is_in_view(planes, box.low_m, box.high_m)) continue;
-    height_m = views_[scene]->renderer->mirror_m();
-  }
-  if (!height_m) return;
+  if (!image_) return;
   const int smaller = quality_ == look::Quality::kLow ? kLowMirror : kMirror;
   const int width_px = std::max(1, target.drawn_width_px() / smaller);
   const int height_px = std::max(1, target.drawn_height_px() / smaller);
@@ -272,22 +362,20 @@ void Stage::draw_mirror(const stream::PoseMoment& moment, const meshes::View& vi
     mirror_.reset();
     mirror_.emplace(width_px, height_px);
   }
-  const meshes::View image = meshes::mirrored(view, *height_m, 1.0F / static_cast<float>(smaller));
-  view_buffer_.set(image);
+  view_buffer_.set(*image_);
   mirror_->begin();
-  // With low quality the sky, the hills and fires alone.
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    SceneRenderer& renderer = *views_[scene]->renderer;
-    if (!is_seen(moment, scene) || renderer.is_field()) continue;
-    if (quality_ == look::Quality::kLow && !renderer.mirror_m()) continue;
+    // With low quality what grows at the water alone, and sky, hills and fires.
+    if (!seen_[scene].in_mirror) continue;
+    if (quality_ == look::Quality::kLow && !views_[scene]->renderer->mirror_m()) continue;
     door_.open(moment.opacities[scene], scene);
-    renderer.draw_mirrored(image);
+    views_[scene]->renderer->draw_mirrored(coarser(*image_, coarseness_));
     door_.close();
   }
-  if (quality_ == look::Quality::kHigh || quality_ == look::Quality::kAuto) draw_sward(image);
-  landscape_.draw_mirrored_sky(image);
+  if (quality_ == look::Quality::kHigh || quality_ == look::Quality::kAuto) draw_sward(*image_);
+  landscape_.draw_mirrored_sky(*image_);
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    if (is_seen(moment, scene)) views_[scene]->renderer->draw_light();
+    if (seen_[scene].in_mirror) views_[scene]->renderer->draw_light();
   }
   mirror_->end();
   view_buffer_.set(view);
@@ -299,15 +387,16 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   if (clock_ != nullptr) clock_->begin();
   const glm::vec3 to_sun(light_.to_sun);
   const bool has_shadows = to_sun.y > kLowestSun;
+  look_around(moment, view);
   move_to(moment);
   view_buffer_.set(light::nearest_fires(fires_, glm::vec3(view.eye_m)));
   mark_pass("kinematics");
   view_buffer_.set(light_);
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    if (is_seen(moment, scene)) views_[scene]->renderer->prepare(view, view_buffer_);
+    if (seen_[scene].is_anywhere()) views_[scene]->renderer->prepare(view, view_buffer_);
   }
   if (has_shadows && shadow_map_) {
-    draw_shadows(moment, to_sun, view);
+    draw_shadow_map(moment, to_sun, view);
     mark_pass("shadows");
   }
   const bool has_flat_shadows = has_shadows && !shadow_map_;
@@ -326,18 +415,21 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   target.begin();
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    if (!is_seen(moment, scene)) continue;
     SceneRenderer& renderer = *views_[scene]->renderer;
+    const bool is_shadow_drawn = has_flat_shadows && seen_[scene].in_shadow;
+    if (!seen_[scene].in_picture && !is_shadow_drawn) continue;
     door_.open(moment.opacities[scene], scene);
-    renderer.draw(view);
-    door_.begin_mark(gl::kHole);
-    renderer.draw_hole();
-    door_.end_mark();
-    mark_pass(scenes_[scene]->kind);
-    if (has_flat_shadows && renderer.casts_shadow()) {
+    if (seen_[scene].in_picture) {
+      renderer.draw(renderer.is_field() ? view : coarser(view, coarseness_));
+      door_.begin_mark(gl::kHole);
+      renderer.draw_hole();
+      door_.end_mark();
+      mark_pass(scenes_[scene]->kind);
+    }
+    if (is_shadow_drawn) {
       view_buffer_.set(flat);
       door_.begin_mark(gl::kShadow);
-      renderer.draw_shadow(flat);
+      renderer.draw_shadow(coarser(flat, coarseness_ * kShadowPixels));
       door_.end_mark();
       view_buffer_.set(view);
       mark_pass("shadows");
@@ -351,7 +443,9 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   landscape_.draw_sky(view);
   mark_pass("hills and sky");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
-    if (!is_seen(moment, scene)) continue;
+    // A fire shines beyond its own box.
+    const bool is_fire = is_there(moment, scene) && views_[scene]->renderer->throws_light();
+    if (!seen_[scene].in_picture && !is_fire) continue;
     door_.open(moment.opacities[scene], scene);
     views_[scene]->renderer->draw_light();
     door_.close();

@@ -54,6 +54,9 @@ class Stage {
   /// From now on only this share (0 to 1] of the blades of grass that the quality has is drawn; all at first.
   void set_blade_share(float share) { blade_share_ = share; }
 
+  /// From now on the meshes of things are those of a picture whose pixels are so many times as large (1 or more).
+  void set_coarseness(float coarseness) { coarseness_ = coarseness; }
+
   /// Draws `moment` into `target`, and resolves it. Scenes whose pose does not fit their skeleton are left out.
   void draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target);
 
@@ -71,12 +74,23 @@ class Stage {
     meshes::Shore shore;                 // of water
   };
 
+  /// Where of a picture a scene may be seen.
+  struct Seen {
+    bool in_picture = false;
+    bool in_shadow = false;  // it casts one that may be seen
+    bool in_mirror = false;
+
+    bool is_anywhere() const { return in_picture || in_shadow || in_mirror; }
+  };
+
   bool is_chosen(std::size_t scene) const { return !only_ || scenes_[scene]->name == *only_; }
   template <class IsChosen>
   std::optional<meshes::Bounds> around(IsChosen&& is_chosen) const;
-  bool is_seen(const stream::PoseMoment& moment, std::size_t scene) const;
+  bool is_there(const stream::PoseMoment& moment, std::size_t scene) const;
+  void look_around(const stream::PoseMoment& moment, const meshes::View& view);
+  void choose_mirror(const meshes::View& view);
   void draw_mirror(const stream::PoseMoment& moment, const meshes::View& view, const gl::RenderTarget& target);
-  void draw_shadows(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view);
+  void draw_shadow_map(const stream::PoseMoment& moment, const glm::vec3& to_sun, meshes::View& view);
   void mark_pass(std::string_view name) {
     if (clock_ != nullptr) clock_->mark(name);
   }
@@ -87,6 +101,8 @@ class Stage {
   std::vector<std::unique_ptr<SceneView>> views_;  // a renderer refers to its scene, which may not move
   std::vector<const wire::SceneModel*> scenes_;    // of views_
   std::optional<std::string> only_;
+  std::vector<Seen> seen_;             // of the present picture
+  std::optional<meshes::View> image_;  // what the water in view mirrors
   light::Light light_ = light::light_of({}, 0.0);
   std::vector<light::Fire> fires_;
   Landscape landscape_;
@@ -100,6 +116,7 @@ class Stage {
   gl::ScreenDoor door_;
   gl::ViewBuffer view_buffer_;
   float blade_share_ = 1.0F;
+  float coarseness_ = 1.0F;
   look::Quality quality_ = look::Quality::kLow;
   std::optional<gl::ShadowMap> shadow_map_;  // nothing: hard shadows
   std::optional<gl::Mirror> mirror_;         // made when water is first seen

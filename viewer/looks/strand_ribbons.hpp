@@ -2,6 +2,7 @@
 
 #include "engine/pose/strand_kinematics.hpp"
 #include "viewer/gl/gl.hpp"
+#include "viewer/gl/strip_indices.hpp"
 #include "viewer/meshes/blades.hpp"
 #include "viewer/meshes/view.hpp"
 
@@ -10,11 +11,12 @@ namespace yuragi::viewer::looks {
 /// Strands on the GPU, each a ribbon along its joints, with more vertices the larger it is in the picture. Needs a
 /// current context.
 ///
-/// A shader finds an instance's Blade in the attributes 0 to 3, the joints in the sampler `joints` (unit 0, see
-/// shaders/common.glsl), and the uniforms `links`, `rings` and `copies`.
+/// A shader finds the Blades in the sampler `blades` (kStripsUnit), the joints in the sampler `joints` (unit 0, see
+/// shaders/common.glsl), and the uniforms `links`, `rings` and `copies`: strip i (StripIndices) is ribbon i % copies of
+/// Blade i / copies.
 class StrandRibbons {
  public:
-  /// `strands` must outlive this. Each is drawn as so many ribbons: instance i is ribbon i % copies.
+  /// `strands` must outlive this. Each is drawn as so many ribbons.
   StrandRibbons(const pose::StrandSkeleton& strands, GLint copies);
 
   /// Computes and uploads the joints of this pose.
@@ -30,7 +32,8 @@ class StrandRibbons {
   gl::GlBuffer joint_buffer_;
   gl::GlTexture joint_texture_;
   gl::GlBuffer blade_buffer_;
-  gl::GlVertexArray blade_array_;
+  gl::GlTexture blade_texture_;
+  gl::StripIndices strips_;
 };
 
 }  // namespace yuragi::viewer::looks

@@ -1,8 +1,11 @@
 #include "viewer/looks/water_renderer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
 
@@ -15,7 +18,10 @@ namespace yuragi::viewer::looks {
 namespace {
 
 // Behind the units of the shadows and of the mirror.
-constexpr GLsizei kReedRings = 6;
+constexpr float kCell_px = 20.0F;  // of the water's mesh, at most
+constexpr float kKeep = 1.15F;     // so far beyond its bounds a level of detail is kept
+constexpr GLint kReedRings = 6;
+constexpr GLint kMirroredReedRings = 3;
 constexpr float kUnderBank_m = 0.15F;  // so far the sheet goes on where the bank hides it
 
 void describe(GLuint attribute, GLint numbers, GLsizei stride, std::size_t offset) {
@@ -42,6 +48,8 @@ WaterRenderer::WaterRenderer(const pose::SurfaceSkeleton& surface)
       bank_(gl::link_program("bank", gl::shaders::kBankVert, gl::shaders::kBankFrag)),
       hole_(gl::link_program("hole", gl::shaders::kHoleVert, gl::shaders::kHoleFrag)),
       reed_(gl::link_program("reed", gl::shaders::kReedVert, gl::shaders::kShadeFrag)),
+      reed_rings_place_(glGetUniformLocation(reed_.name(), "rings")),
+      mirror_share_place_(glGetUniformLocation(water_.name(), "mirror_share")),
       ripples_(gl::make_ripple_texture()) {
   for (const gl::GlProgram* program : {&water_, &bank_, &hole_, &reed_}) GroundMaps::set_samplers(*program);
   if (!shore_.is_pond()) return;
@@ -60,19 +68,23 @@ void WaterRenderer::make_sheet() {
   const auto is_hidden = [&](std::uint32_t i) {
     return shore_.out_m(glm::vec2(rest[i])) > kUnderBank_m * shore_.scale();
   };
-  std::vector<std::uint32_t> triangles;
-  const std::vector<std::uint32_t> all = meshes::grid_triangles(meshes::layout_of(*surface_));
-  for (std::size_t i = 0; i < all.size(); i += 3) {
-    if (is_hidden(all[i]) && is_hidden(all[i + 1]) && is_hidden(all[i + 2])) continue;
-    triangles.insert(triangles.end(), {all[i], all[i + 1], all[i + 2]});
-  }
-  sheet_count_ = static_cast<GLsizei>(triangles.size());
-  glBindVertexArray(sheet_array_.name());
-  fill(GL_ELEMENT_ARRAY_BUFFER, sheet_indices_, triangles);
   fill(GL_ARRAY_BUFFER, rest_buffer_, rest);
-  describe(0, 3, sizeof(glm::vec3), 0);
-  glBindBuffer(GL_ARRAY_BUFFER, height_buffer_.name());
-  describe(1, 1, sizeof(float), 0);
+  for (std::size_t level = 0; level < kSteps.size(); ++level) {
+    std::vector<std::uint32_t> triangles;
+    const std::vector<std::uint32_t> all = meshes::grid_triangles(meshes::layout_of(*surface_), kSteps.at(level));
+    for (std::size_t i = 0; i < all.size(); i += 3) {
+      if (is_hidden(all[i]) && is_hidden(all[i + 1]) && is_hidden(all[i + 2])) continue;
+      triangles.insert(triangles.end(), {all[i], all[i + 1], all[i + 2]});
+    }
+    Sheet& sheet = sheets_.at(level);
+    sheet.index_count = static_cast<GLsizei>(triangles.size());
+    glBindVertexArray(sheet.array.name());
+    fill(GL_ELEMENT_ARRAY_BUFFER, sheet.indices, triangles);
+    glBindBuffer(GL_ARRAY_BUFFER, rest_buffer_.name());
+    describe(0, 3, sizeof(glm::vec3), 0);
+    glBindBuffer(GL_ARRAY_BUFFER, height_buffer_.name());
+    describe(1, 1, sizeof(float), 0);
+  }
 
   glBindTexture(GL_TEXTURE_2D, slopes_.name());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
@@ -85,6 +97,7 @@ void WaterRenderer::make_sheet() {
   // A point of the grid is in the middle of its texel.
   const glm::vec2 cells(static_cast<float>(surface_->columns - 1), static_cast<float>(surface_->rows - 1));
   const glm::vec2 texel_m = 2.0F * shore_.half_m() / cells;
+  cell_m_ = std::max(texel_m.x, texel_m.y);
   const glm::vec2 along_m = shore_.along() * texel_m.x;
   const glm::vec2 across_m = shore_.across() * texel_m.y;
   const glm::vec2 corner_m = glm::vec2(rest[0]) - 0.5F * (along_m + across_m);
@@ -114,14 +127,9 @@ void WaterRenderer::make_shore() {
   glUniform1f(glGetUniformLocation(bank_.name(), "water_m"), *mirror_m());
 
   const std::vector<meshes::Reed> reeds = meshes::reeds_of(shore_);
-  reed_count_ = static_cast<GLsizei>(reeds.size());
-  glBindVertexArray(reed_array_.name());
-  fill(GL_ARRAY_BUFFER, reed_buffer_, reeds);
-  describe(0, 4, sizeof(meshes::Reed), offsetof(meshes::Reed, root_m));
-  describe(1, 4, sizeof(meshes::Reed), offsetof(meshes::Reed, heading_rad));
-  for (const GLuint attribute : {0U, 1U}) glVertexAttribDivisor(attribute, 1);
-  glUseProgram(reed_.name());
-  glUniform1i(glGetUniformLocation(reed_.name(), "rings"), kReedRings);
+  reed_count_ = reeds.size();
+  fill(GL_TEXTURE_BUFFER, reed_buffer_, reeds);
+  gl::set_sampler(reed_, "reeds", gl::kStripsUnit);
 }
 
 std::optional<float> WaterRenderer::mirror_m() const {
@@ -146,31 +154,53 @@ void WaterRenderer::move_to(const pose::Pose& pose) {
   glActiveTexture(GL_TEXTURE0);
 }
 
-void WaterRenderer::draw_reeds() const {
+void WaterRenderer::draw_reeds(GLint rings) {
   glUseProgram(reed_.name());
-  glBindVertexArray(reed_array_.name());
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 2 * (kReedRings + 1), reed_count_);
+  glUniform1i(reed_rings_place_, rings);
+  glActiveTexture(GL_TEXTURE0 + gl::kStripsUnit);
+  glBindTexture(GL_TEXTURE_BUFFER, reed_texture_.name());
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, reed_buffer_.name());
+  glActiveTexture(GL_TEXTURE0);
+  reed_strips_.draw(2 * (static_cast<std::size_t>(rings) + 1), reed_count_);
 }
 
-void WaterRenderer::draw(const meshes::View&) {
+const WaterRenderer::Sheet& WaterRenderer::sheet_in(const meshes::View& view) {
+  // From the eye to the nearest place of the water.
+  const glm::vec2 off_m = glm::vec2(view.eye_m.x, view.eye_m.z) - shore_.middle_m();
+  const glm::vec2 beside_m(std::abs(glm::dot(off_m, shore_.along())), std::abs(glm::dot(off_m, shore_.across())));
+  const glm::vec2 out_m = glm::max(beside_m - shore_.half_m(), 0.0F);
+  const float nearest_m = glm::length(glm::vec3(out_m, view.eye_m.y - *mirror_m()));
+  // It is flat but for its waves, whose light is of each pixel: a cell may be wide.
+  const float widest = kCell_px * view.eye_m.w * nearest_m / cell_m_;  // step
+  const float now = static_cast<float>(kSteps.at(level_));
+  if (now > widest * kKeep || 2.0F * now < widest / kKeep) {
+    level_ = 0;
+    while (level_ + 1 < kSteps.size() && static_cast<float>(kSteps.at(level_ + 1)) <= widest) ++level_;
+  }
+  return sheets_.at(level_);
+}
+
+void WaterRenderer::draw(const meshes::View& view) {
   if (!shore_.is_pond()) return;
-  draw_reeds();
+  draw_reeds(kReedRings);
   glUseProgram(bank_.name());
   glBindVertexArray(bank_array_.name());
   glDrawElements(GL_TRIANGLES, bank_count_, GL_UNSIGNED_INT, nullptr);
 
   glUseProgram(water_.name());
+  glUniform1f(mirror_share_place_, mirror_share_);
   glActiveTexture(GL_TEXTURE0 + gl::kSlopesUnit);
   glBindTexture(GL_TEXTURE_2D, slopes_.name());
   glActiveTexture(GL_TEXTURE0 + gl::kRipplesUnit);
   glBindTexture(GL_TEXTURE_2D, ripples_.name());
   glActiveTexture(GL_TEXTURE0);
-  glBindVertexArray(sheet_array_.name());
-  glDrawElements(GL_TRIANGLES, sheet_count_, GL_UNSIGNED_INT, nullptr);
+  const Sheet& sheet = sheet_in(view);
+  glBindVertexArray(sheet.array.name());
+  glDrawElements(GL_TRIANGLES, sheet.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
 void WaterRenderer::draw_mirrored(const meshes::View&) {
-  if (shore_.is_pond()) draw_reeds();
+  if (shore_.is_pond()) draw_reeds(kMirroredReedRings);
 }
 
 void WaterRenderer::draw_hole() {

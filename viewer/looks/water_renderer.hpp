@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+
 #include "engine/pose/point_kinematics.hpp"
 #include "viewer/gl/gl.hpp"
+#include "viewer/gl/strip_indices.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/meshes/shore.hpp"
 
@@ -17,24 +20,41 @@ class WaterRenderer : public SceneRenderer {
   void draw(const meshes::View& view) override;
   void draw_hole() override;
   std::optional<float> mirror_m() const override;
+  void set_mirror_share(float share) override { mirror_share_ = share; }
   /// The reeds.
   void draw_mirrored(const meshes::View& view) override;
 
  private:
+  /// The water's surface at one level of detail: triangles of its points.
+  struct Sheet {
+    gl::GlBuffer indices = {};
+    gl::GlVertexArray array = {};
+    GLsizei index_count = 0;
+  };
+  static constexpr std::array<std::size_t, 4> kSteps = {1, 2, 4, 8};  // of the points along each side
+
   void make_sheet();
+  const Sheet& sheet_in(const meshes::View& view);
   void make_shore();
-  void draw_reeds() const;
+  void draw_reeds(GLint rings);
 
   const pose::SurfaceSkeleton* surface_;
   meshes::Shore shore_;
   pose::PointPositions points_;
   meshes::WaveSlopes waves_;
-  GLsizei sheet_count_ = 0, hole_count_ = 0, bank_count_ = 0, reed_count_ = 0;
+  float mirror_share_ = 0.0F;
+  GLsizei hole_count_ = 0, bank_count_ = 0;
+  std::size_t reed_count_ = 0;
   gl::GlProgram water_, bank_, hole_, reed_;
-  gl::GlTexture slopes_, ripples_;
-  gl::GlVertexArray sheet_array_, hole_array_, bank_array_, reed_array_;
-  gl::GlBuffer sheet_indices_, rest_buffer_, height_buffer_;
+  GLint reed_rings_place_, mirror_share_place_;
+  gl::GlTexture slopes_, ripples_, reed_texture_;
+  gl::GlVertexArray hole_array_, bank_array_;
+  std::array<Sheet, kSteps.size()> sheets_;
+  std::size_t level_ = 0;  // of sheets_, in the last picture
+  float cell_m_ = 0.0F;
+  gl::GlBuffer rest_buffer_, height_buffer_;
   gl::GlBuffer bank_buffer_, hole_indices_, bank_indices_, reed_buffer_;
+  gl::StripIndices reed_strips_;
 };
 
 }  // namespace yuragi::viewer::looks

@@ -49,7 +49,7 @@ std::vector<Blade> blades_of(const pose::StrandSkeleton& skeleton) {
     const auto [third, fourth] = chance.uniform_pair(2 * i + 1);
     Blade& blade = blades[i];
     blade.root_m = {skeleton.root_x_m[i], skeleton.root_y_m[i], skeleton.root_z_m[i]};
-    blade.strand = static_cast<std::uint32_t>(i);
+    blade.strand = static_cast<float>(i);
 
     blade.facing_rad = static_cast<float>(first * 2.0 * kPi);
     blade.length_m = skeleton.link_length_m[i] * static_cast<float>(skeleton.links_per_strand);
@@ -97,7 +97,13 @@ void BladeSorter::sort(const View& view) {
     }
     const float height_px = blade.length_m / (view.eye_m.w * distance_m);
     if (height_px < kFarPx) {
-      if (height_px >= kTinyPx || i % 2 == 0) levels_.back().blades.push_back(blade);
+      const float part = std::min(height_px / kTinyPx, 1.0F);
+      const float share = height_px >= kTinyPx ? 1.0F : std::max(0.5F * part * part, kFewest);
+      // Numbers that are spread evenly, whatever the share (the golden ratio's multiples).
+      const double turns = static_cast<double>(i) * 0.6180339887498949;
+      if (static_cast<float>(turns - std::floor(turns)) >= share) continue;
+      levels_.back().blades.push_back(blade);
+      levels_.back().blades.back().width_m /= std::sqrt(share);
       continue;
     }
     const auto rings = static_cast<std::size_t>(std::min(height_px / kRingPx, 1e6F));

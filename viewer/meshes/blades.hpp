@@ -14,14 +14,15 @@
 
 namespace yuragi::viewer::meshes {
 
-/// An instance for a strand, in the layout that the shaders of hair read.
+/// What is drawn for a strand, in the layout that the shader of hair reads: three texels.
 struct Blade {
   std::array<float, 3> root_m{};
   float width_m = 0.0F;
   std::array<float, 3> tint{};  ///< of its tip, linear light
   float facing_rad = 0.0F;      ///< bearing of its flat side
-  std::uint32_t strand = 0;
+  float strand = 0.0F;          ///< its number; a whole one
   float length_m = 0.0F;
+  std::array<float, 2> unused{};
 };
 
 /// A blade (or hair) for each strand: wide enough for the strands' spacing to cover the ground, tinted as a coat is, by
@@ -36,14 +37,15 @@ struct DetailLevel {
 };
 
 /// Sorts blades by how large they are in the picture: a large one gets a ring of vertices a link, a small one fewer.
-/// Blades outside the picture are left out, those that a body hides (body.hpp), and every second very small one. Pure;
-/// does not allocate once it has seen all blades in each level.
+/// Blades outside the picture are left out, those that a body hides (body.hpp), and the more of the very small ones the
+/// smaller they are, the others being wider for it. Pure; does not allocate once it has seen all blades in each level.
 class BladeSorter {
  public:
   static constexpr float kRingPx = 22.0F;      ///< a ring for each of so many pixels of a blade's height
   static constexpr std::size_t kMinRings = 3;  ///< where there are as many links
   static constexpr float kFarPx = 20.0F;       ///< smaller ones are far; hair.vert.glsl has the same number
-  static constexpr float kTinyPx = 8.0F;       ///< of smaller ones, every second is drawn
+  static constexpr float kTinyPx = 8.0F;       ///< of smaller ones, half are drawn or fewer
+  static constexpr float kFewest = 1.0F / 32.0F;
   static constexpr std::size_t kFarRings = 2;
 
   explicit BladeSorter(const pose::StrandSkeleton& skeleton);

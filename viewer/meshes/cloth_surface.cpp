@@ -16,11 +16,12 @@ std::size_t refined(std::size_t joints, int level) {
   return 1 + (level >= 0 ? cells << level : std::max<std::size_t>(cells >> -level, std::min<std::size_t>(cells, 4)));
 }
 
-GridLayout refined(const GridLayout& joints, int level) {
+GridLayout refined(const GridLayout& joints, int level, int finer_down) {
   GridLayout points;
   do {
     points.columns = refined(joints.columns, level);
-    points.rows = refined(joints.rows, level);
+    points.rows =
+        refined(joints.rows, std::clamp(level + finer_down, 2 * ClothSurface::kCoarsest, ClothSurface::kFinest));
   } while (points.columns * points.rows > ClothSurface::kMostPoints && --level >= ClothSurface::kCoarsest);
   points.stride = points.columns;
   return points;
@@ -68,9 +69,9 @@ std::vector<ClothSurface::Taps> ClothSurface::taps(std::size_t joints, std::size
   return all;
 }
 
-ClothSurface::ClothSurface(const GridLayout& joints, int level)
+ClothSurface::ClothSurface(const GridLayout& joints, int level, int finer_down)
     : joints_(joints),
-      layout_(refined(joints, std::clamp(level, kCoarsest, kFinest))),
+      layout_(refined(joints, std::clamp(level, kCoarsest, kFinest), finer_down)),
       across_(taps(joints.columns, layout_.columns)),
       down_(taps(joints.rows, layout_.rows)),
       row_(3 * joints.columns),

@@ -19,13 +19,13 @@ namespace yuragi::viewer::meshes {
 /// Allocates when it is made, never afterwards. Thread-safe: no.
 class ClothSurface {
  public:
-  static constexpr int kCoarsest = -2;  ///< a quarter of the joints along each side
+  static constexpr int kCoarsest = -4;  ///< a sixteenth of the joints along each side, but at least five
   static constexpr int kFinest = 2;     ///< four times as many
   static constexpr std::size_t kMostPoints = std::size_t{1} << 18;
 
-  /// Of joints that lie so. 2 to the power of `level` cells for each cell of theirs along each side, but no more than
-  /// kMostPoints points in all.
-  ClothSurface(const GridLayout& joints, int level);
+  /// Of joints that lie so. 2 to the power of `level` cells for each cell of theirs along a row, of `level` and
+  /// `finer_down` along a column, but no more than kMostPoints points in all.
+  ClothSurface(const GridLayout& joints, int level, int finer_down = 0);
 
   /// `joints`: all x, then all y, then all z.
   void move_to(std::span<const float> joints);

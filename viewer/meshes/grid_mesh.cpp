@@ -1,5 +1,6 @@
 #include "viewer/meshes/grid_mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace yuragi::viewer::meshes {
@@ -40,21 +41,22 @@ GridLayout layout_of(const pose::SurfaceSkeleton& surface) {
   return {surface.columns, surface.rows, surface.columns, surface.is_closed, surface.is_closed ? surface.shells : 1};
 }
 
-std::vector<std::uint32_t> grid_triangles(const GridLayout& layout) {
+std::vector<std::uint32_t> grid_triangles(const GridLayout& layout, std::size_t step) {
   std::vector<std::uint32_t> indices;
   const std::size_t columns = layout.columns / layout.shells;
   if (columns < 2 || layout.rows < 2) return indices;
   const std::size_t cells = layout.is_closed ? columns : columns - 1;
-  indices.reserve(6 * layout.shells * cells * (layout.rows - 1));
+  indices.reserve(6 * layout.shells * (cells / step + 1) * ((layout.rows - 1) / step + 1));
   for (std::size_t shell = 0; shell < layout.shells; ++shell) {
-    for (std::size_t row = 0; row + 1 < layout.rows; ++row) {
+    for (std::size_t row = 0; row + 1 < layout.rows; row += step) {
       const std::size_t first = row * layout.stride + shell * columns;
-      for (std::size_t column = 0; column < cells; ++column) {
-        const std::size_t next = (column + 1) % columns;
+      const std::size_t down = (std::min(row + step, layout.rows - 1) - row) * layout.stride;
+      for (std::size_t column = 0; column < cells; column += step) {
+        const std::size_t next = layout.is_closed ? (column + 1) % columns : std::min(column + step, columns - 1);
         const auto here = static_cast<std::uint32_t>(first + column);
         const auto beside = static_cast<std::uint32_t>(first + next);
-        const auto below = static_cast<std::uint32_t>(first + layout.stride + column);
-        const auto across = static_cast<std::uint32_t>(first + layout.stride + next);
+        const auto below = static_cast<std::uint32_t>(first + down + column);
+        const auto across = static_cast<std::uint32_t>(first + down + next);
         indices.insert(indices.end(), {here, beside, below, below, beside, across});
       }
     }

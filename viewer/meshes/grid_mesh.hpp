@@ -21,8 +21,9 @@ struct GridLayout {
 GridLayout layout_of(const pose::GridSkeleton& cloth);
 GridLayout layout_of(const pose::SurfaceSkeleton& surface);
 
-/// Two triangles for each cell, three indices of points each, all with the same winding; shell after shell.
-std::vector<std::uint32_t> grid_triangles(const GridLayout& layout);
+/// Two triangles for each cell, three indices of points each, all with the same winding; shell after shell. With a
+/// `step` above 1, of an open grid: only each so many-th column and row, and the last ones, are used.
+std::vector<std::uint32_t> grid_triangles(const GridLayout& layout, std::size_t step = 1);
 
 /// A unit normal for each point: the cross product of the differences between its neighbours along the row and along
 /// the column (at an edge, between a neighbour and the point itself). Zero where these are parallel.

@@ -1,5 +1,6 @@
 #include "viewer/meshes/solid_mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -76,10 +77,10 @@ void SolidMesh::add_ring(const glm::vec3& middle, const glm::vec3& axis, float r
       const std::uint32_t here = base + around * kWireSides;
       const std::uint32_t there = base + (around + 1) % (2 * kSides) * kWireSides;
       const std::uint32_t next = (side + 1) % kWireSides;
-      indices_.insert(indices_.end(),
-                      {here + side, there + side, here + next, here + next, there + side, there + next});
+      rings_.insert(rings_.end(), {here + side, there + side, here + next, here + next, there + side, there + next});
     }
   }
+  wire_radius_m_ = std::max(wire_radius_m_, wire_radius_m);
 }
 
 void SolidMesh::add_quad(const std::array<glm::vec3, 4>& corners, const glm::vec3& tint) {

@@ -26,7 +26,7 @@ class SolidMesh {
   void add_tube(const glm::vec3& from, const glm::vec3& to, float from_radius_m, float to_radius_m,
                 const glm::vec3& tint);
   void add_ball(const glm::vec3& middle, float radius_m, const glm::vec3& tint);
-  /// Around `middle`, across `axis`: of so thick a wire.
+  /// Around `middle`, across `axis`: of so thick a wire. Its triangles are many, and in rings().
   void add_ring(const glm::vec3& middle, const glm::vec3& axis, float radius_m, float wire_radius_m,
                 const glm::vec3& tint);
   /// A bar along `from`..`to` (level), from low_y to high_y.
@@ -36,12 +36,17 @@ class SolidMesh {
   void add_quad(const std::array<glm::vec3, 4>& corners, const glm::vec3& tint);
 
   const std::vector<SolidVertex>& vertices() const { return vertices_; }
+  /// Of all pieces but the rings.
   const std::vector<std::uint32_t>& indices() const { return indices_; }
+  const std::vector<std::uint32_t>& rings() const { return rings_; }
+  /// The radius of the thickest ring's wire; 0 where there is no ring.
+  float wire_radius_m() const { return wire_radius_m_; }
 
  private:
   float grain_ = 0.0F;
   std::vector<SolidVertex> vertices_;
-  std::vector<std::uint32_t> indices_;
+  std::vector<std::uint32_t> indices_, rings_;
+  float wire_radius_m_ = 0.0F;
 };
 
 }  // namespace yuragi::viewer::meshes

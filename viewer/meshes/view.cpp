@@ -79,6 +79,7 @@ View laid_flat(const View& view, const glm::vec3& to_sun) {
   flatten[1] = {-to_sun.x / to_sun.y, 0.0F, -to_sun.z / to_sun.y, 0.0F};
   View flat = view;
   flat.to_clip = view.to_clip * flatten;
+  flat.shadow = {0.0F, 0.0F, 0.0F, 1.0F};
   return flat;
 }
 

@@ -21,8 +21,9 @@ struct View {
   /// the camera's axis; w: mean density of the mist between the eye's height and the ground, 1 on it
   glm::vec4 forward{0.0F};
   glm::mat4 to_shadow{1.0F};  ///< to the shadow map: place and depth, 0 to 1
-  glm::vec4 shadow{
-      0.0F};  ///< a texel of the map (0: there is none); how a penumbra grows, across and upright; depth, m
+  /// A texel of the map (0: there is none); how a penumbra grows, across and upright; its depth, m (and no texel: what
+  /// is drawn is a shadow, without color).
+  glm::vec4 shadow{0.0F};
 };
 
 /// For a picture of so many pixels.

@@ -387,6 +387,36 @@ TEST_F(StageTest, OpensTheGroundOverWater) {
   EXPECT_GT(changed(calm, storm), 1000U);
 }
 
+TEST_F(StageTest, OfPondsAtTwoHeightsTheWidestHasTheMirrorWhicheverComesFirst) {
+  const wire::SceneModel low = test_model("ripple");
+  wire::SceneModel high = low;
+  high.name = "high";
+  auto& surface = std::get<pose::SurfaceSkeleton>(high.skeleton);
+  for (float& y_m : surface.rest_y_m) y_m += 0.6F;
+  for (float& x_m : surface.rest_x_m) x_m += 40.0F;
+  show({low, high});
+  camera_.frame({{10.0, 0.0, 0.0}, 270.0, 14.0, 20.0});
+  const Pixels first = draw(0.5, 1.0F);
+  models_ = {high, low};
+  stage_->set_scenes(models_);
+  EXPECT_EQ(changed(first, draw(0.5, 1.0F)), 0U);
+}
+
+TEST_F(StageTest, WhatIsSeenNowhereIsNotMoved) {
+  show({test_model("curtain"), test_model("tree")});
+  camera_.frame({{0.0, 1.0, 0.0}, 0.0, 5.0, 8.0});
+  const auto uploaded_by = [&](double strength) {
+    const std::size_t before = gl::uploaded_bytes();
+    draw(strength, 1.0F);
+    return gl::uploaded_bytes() - before;
+  };
+  uploaded_by(0.2);
+  const std::size_t in_view = uploaded_by(0.4);
+  camera_.frame({{0.0, 400.0, 0.0}, 0.0, -80.0, 8.0});  // up into the sky
+  uploaded_by(0.6);
+  EXPECT_LT(uploaded_by(0.8), in_view / 4);
+}
+
 TEST_F(StageTest, ThrowsShadowsOnTheGround) {
   // Toward the north-east of a tree, seen from above, the ground is darker.
   show({test_model("tree")});

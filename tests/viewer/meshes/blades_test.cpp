@@ -1,5 +1,6 @@
 #include "viewer/meshes/blades.hpp"
 
+#include <cmath>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -27,7 +28,7 @@ TEST_F(BladesTest, HaveARootAWidthAndATintEach) {
   const std::vector<Blade> blades = blades_of(strands_);
   ASSERT_EQ(blades.size(), strands_.strand_count);
   for (std::size_t i = 0; i < blades.size(); ++i) {
-    EXPECT_EQ(blades[i].strand, i);
+    EXPECT_EQ(blades[i].strand, static_cast<float>(i));
     EXPECT_EQ(blades[i].root_m[2], strands_.root_z_m[i]);
     EXPECT_GT(blades[i].width_m, 0.0F);
     EXPECT_LT(blades[i].width_m, 0.1F);
@@ -46,7 +47,7 @@ TEST_F(BladesTest, AreBoundedByRootsAndHeights) {
 
 TEST_F(BladesTest, AreAllDrawnOnceWhenAllAreInView) {
   sorter_.sort(view({{0.0, 0.0, 0.0}, 0.0, 60.0, 25.0}));
-  std::set<std::uint32_t> seen;
+  std::set<float> seen;
   for (const DetailLevel& level : sorter_.levels()) {
     for (const Blade& blade : level.blades) EXPECT_TRUE(seen.insert(blade.strand).second);
   }
@@ -76,7 +77,13 @@ TEST_F(BladesTest, AreDrawnMoreFinelyTheNearerTheyAre) {
   // From afar, all with few.
   sorter_.sort(view({{0.0, 0.5, 0.0}, 0.0, 30.0, 150.0}));
   EXPECT_TRUE(sorter_.levels().front().blades.empty());
-  EXPECT_EQ(sorter_.levels().back().blades.size(), (strands_.strand_count + 1) / 2);
+  // The fewer the smaller, and so much wider that together they cover as much.
+  const std::vector<Blade>& far_ones = sorter_.levels().back().blades;
+  EXPECT_LT(far_ones.size(), strands_.strand_count / 4);
+  EXPECT_GT(far_ones.size(), strands_.strand_count / 32);
+  const Blade whole = blades_of(strands_)[static_cast<std::size_t>(far_ones[0].strand)];
+  const float share = static_cast<float>(far_ones.size()) / static_cast<float>(strands_.strand_count);
+  EXPECT_NEAR(far_ones[0].width_m, whole.width_m / std::sqrt(share), 0.25F * far_ones[0].width_m);
   for (std::size_t i = 0; i + 1 < sorter_.levels().size(); ++i) EXPECT_TRUE(sorter_.levels()[i].blades.empty());
 }
 

@@ -59,6 +59,14 @@ TEST(GridNormals, OfEachShellPointAwayFromTheAxisAllAround) {
   }
 }
 
+TEST(GridTriangles, OfASteppedGridReachItsLastColumnAndRow) {
+  const std::vector<std::uint32_t> triangles = grid_triangles({.columns = 6, .rows = 4, .stride = 6}, 4);
+  // Columns 0, 4 and 5, rows 0 and 3.
+  EXPECT_EQ(triangles.size(), 2U * 6U);
+  EXPECT_EQ(std::set<std::uint32_t>(triangles.begin(), triangles.end()),
+            (std::set<std::uint32_t>{0, 4, 5, 18, 22, 23}));
+}
+
 TEST(GridTriangles, AreNoneWhereThereIsNoCell) {
   EXPECT_TRUE(grid_triangles({1, 5, 16, false}).empty());
   EXPECT_TRUE(grid_triangles({5, 1, 16, false}).empty());

@@ -10,14 +10,13 @@ uniform vec3 body_middle_m;
 uniform mat3 body_shape;
 uniform float spacing_m;  // of the strands
 
-layout(location = 0) in vec4 root_width;   // metres
-layout(location = 1) in vec4 tint_facing;  // the coat's colour here
-layout(location = 2) in uint strand;
-layout(location = 3) in float whole_m;  // the strand's length
+uniform samplerBuffer blades;  // three texels each: root and width, metres; the coat's colour here; number, length in metres
 
 out vec3 shade;
 
-float chance_of(float seed) { return fract(sin(seed * 12.9898 + float(strand % 8191u) * 0.7548777) * 43758.5453); }
+float chance_of(float seed, uint strand) {
+  return fract(sin(seed * 12.9898 + float(strand % 8191u) * 0.7548777) * 43758.5453);
+}
 
 float lobe(vec3 along, vec3 half_way, float sharpness) {
   float across = dot(along, half_way);
@@ -25,13 +24,20 @@ float lobe(vec3 along, vec3 half_way, float sharpness) {
 }
 
 void main() {
-  int copy = gl_InstanceID % copies;
-  int ring = gl_VertexID >> 1;
+  int ribbon = gl_VertexID >> 8;
+  int blade = ribbon / copies;
+  int copy = ribbon - blade * copies;
+  vec4 root_width = texelFetch(blades, 3 * blade);
+  vec3 tint = texelFetch(blades, 3 * blade + 1).rgb;
+  vec2 traits = texelFetch(blades, 3 * blade + 2).xy;
+  uint strand = uint(traits.x);
+  float whole_m = traits.y;
+  int ring = (gl_VertexID & 255) >> 1;
   float side = float(gl_VertexID & 1) * 2.0 - 1.0;
   float t = float(ring) / float(rings);
   float seed = float(copy) + 1.0;
-  float which = chance_of(seed);
-  float other = chance_of(seed + 31.7);
+  float which = chance_of(seed, strand);
+  float other = chance_of(seed + 31.7, strand);
   bool is_guard = copy == 0 || which > 0.72;
 
   // Farther away one hair stands for more and more of them.
@@ -81,7 +87,7 @@ void main() {
 
   // Pale at the root; a guard hair has a light band below its dark tip.
   vec3 wool = vec3(0.52, 0.38, 0.245) * (0.85 + 0.3 * other);
-  vec3 coat = tint_facing.rgb * (0.80 + 0.4 * fract(other * 13.0));
+  vec3 coat = tint * (0.80 + 0.4 * fract(other * 13.0));
   vec3 albedo = mix(wool, coat, smoothstep(0.12, 0.50, t));
   if (is_guard) {
     float band = 0.80 + 0.10 * (other - 0.5);

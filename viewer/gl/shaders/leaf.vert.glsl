@@ -102,6 +102,11 @@ void main() {
     tint *= 1.12 - 0.12 * edge_leaf.x;
   }
   gl_Position = to_clip * vec4(place, 1.0);
+  // A shadow needs no color.
+  if (shadow.x == 0.0 && shadow.w > 0.0) {
+    shade = vec3(0.0);
+    return;
+  }
 
   vec3 to_eye = normalize(eye_m.xyz - place);
   bool is_below = dot(normal, to_eye) < 0.0;

@@ -9,6 +9,7 @@
 uniform sampler2D slopes;   // along x, along z, and the sum of their squares
 uniform sampler2D ripples;
 uniform sampler2D mirror;
+uniform float mirror_share; // of what is mirrored that is in the mirror: 1, or less where the water is small in the picture
 uniform vec4 grid_place;    // x, z of the middle of the first texel's corner; size of a texel, metres; the water's height
 uniform vec4 grid_axes;     // a matrix: from metres behind that place to parts of the grid's sides
 in vec3 place_m;
@@ -68,7 +69,7 @@ void main() {
   float spread = sqrt(0.5 * unseen + 0.06 * dot(slope, slope));
   float blur = log2(max(1.2 * spread * float(textureSize(mirror, 0).y) / (2.0 * up.w * kMirrorMargin), 1.0));
   vec3 sky = textureLod(mirror, 0.5 + 0.5 * off, min(blur, 4.0)).rgb;
-  float beside = smoothstep(0.88, 1.0, max(abs(off.x), abs(off.y)));
+  float beside = max(smoothstep(0.88, 1.0, max(abs(off.x), abs(off.y))), 1.0 - mirror_share);
   if (beside > 0.0 || at.w <= 0.01) sky = mix(sky, finish(air_light(up_ray)), at.w > 0.01 ? beside : 1.0);
 
   // What is seen through it: the bed, and the light that the water itself scatters.

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+
+#include "viewer/gl/gl.hpp"
+
+namespace yuragi::viewer::gl {
+
+/// Draws many strips of triangles as one mesh. As instances they would be slow where the processor draws: llvmpipe
+/// spends more on an instance (1 to 2 us) than on its ten triangles.
+///
+/// A vertex shader finds corner gl_VertexID & 255 of strip gl_VertexID >> 8, and what it needs of the strip in a
+/// texture buffer. Needs a current context. Allocates when a number of corners is first drawn.
+class StripIndices {
+ public:
+  static constexpr int kCornerBits = 8;  // hair.vert.glsl and reed.vert.glsl have the same number
+
+  /// Draws strips 0 to `strips` - 1 with the program in use. `corners`: of each, two for a ring; 4 to 256.
+  void draw(std::size_t corners, std::size_t strips);
+
+ private:
+  struct Mesh {
+    GlBuffer indices;
+    GlVertexArray array;
+  };
+  std::map<std::size_t, Mesh> meshes_;  // by corners
+};
+
+}  // namespace yuragi::viewer::gl
