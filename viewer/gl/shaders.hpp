@@ -42,6 +42,8 @@ extern const std::string_view kHillsFrag;
 extern const std::string_view kHoleVert;
 extern const std::string_view kHoleFrag;
 extern const std::string_view kLeafVert;
+extern const std::string_view kLimbVert;
+extern const std::string_view kLimbFrag;
 extern const std::string_view kReedVert;
 extern const std::string_view kSkinVert;
 extern const std::string_view kSkinFrag;
