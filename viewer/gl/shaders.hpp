@@ -12,6 +12,8 @@ extern const std::string_view kBankVert;
 extern const std::string_view kBankFrag;
 extern const std::string_view kBarkVert;
 extern const std::string_view kBarkFrag;
+extern const std::string_view kBowlShadeVert;
+extern const std::string_view kBowlShadeFrag;
 extern const std::string_view kClothVert;
 extern const std::string_view kClothFrag;
 extern const std::string_view kCloudsFrag;
