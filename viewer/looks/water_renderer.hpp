@@ -13,6 +13,7 @@ class WaterRenderer : public SceneRenderer {
   /// `surface` must outlive this.
   explicit WaterRenderer(const pose::SurfaceSkeleton& surface);
 
+  void set_moment(const Moment& moment) override;
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
   void draw_hole() override;
@@ -35,6 +36,7 @@ class WaterRenderer : public SceneRenderer {
   gl::GlVertexArray sheet_array_, hole_array_, bank_array_, reed_array_;
   gl::GlBuffer sheet_indices_, rest_buffer_, height_buffer_;
   gl::GlBuffer bank_buffer_, hole_indices_, bank_indices_, reed_buffer_;
+  GLint lee_place_ = -1;
 };
 
 }  // namespace yuragi::viewer::looks
