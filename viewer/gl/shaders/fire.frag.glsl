@@ -52,7 +52,7 @@ void main() {
       float torn = 3.4 * (one + two - 1.0);
       float high = min(v * 2.2, 1.0);
       float laid = min(length(slope.xy), 1.0);
-      float level = heat - 0.26 - 0.66 * smoothstep(0.20, 1.0, v) + torn * (0.28 + (0.80 - 0.25 * laid) * high);
+      float level = heat - 0.26 - 0.66 * smoothstep(0.20, 1.0, v) - 0.9 * smoothstep(0.80, 1.0, v) + torn * (0.28 + (0.80 - 0.25 * laid) * high);
       level -= 2.5 * smoothstep(floor_m.y, floor_m.x, y_m);
       // It burns in sheets around what is hottest.
       float thick = smoothstep(0.0, 0.30, level) * (1.0 - 0.55 * smoothstep(0.40, 1.0, level));
