@@ -53,9 +53,9 @@ const std::array kFlagParameters = {
     Parameter{"length", "m", 1.8, 0.1, 50, "from the hoist to the fly"},
     Parameter{"hoist", "m", 1.2, 0.1, 50, "along the pole"},
     Parameter{"pole_height", "m", 5.0, 0, 200, "of the flag's top above the ground"},
-    Parameter{"droop", "deg", 12.0, 0, 60, "how far from straight down it hangs in calm air"},
-    Parameter{"folds", "", 3.5, 0, 50, "folds that it hangs in"},
-    Parameter{"fold_angle", "deg", 8.0, 0, 45, "how far the folds stand out to the sides"},
+    Parameter{"droop", "deg", 20.0, 0, 60, "how far from straight down it hangs in calm air, on average"},
+    Parameter{"folds", "", 1.5, 0, 50, "folds that it hangs in"},
+    Parameter{"fold_angle", "deg", 4.0, 0, 45, "how far the folds stand out to the sides"},
     Parameter{"half_lift_speed", "m/s", 3.0, 0.1, 60, "the wind that lifts it half way; heavier cloth needs more"},
     Parameter{"lift_rate", "Hz", 1.0, 0.05, 10, "how quickly it rises and sinks; less: it lags behind the gusts"},
     Parameter{"max_flutter", "deg", 84.0, 0, 120, "how far the strongest waves turn the fly to the sides"},
@@ -138,6 +138,19 @@ ClothSpec flag_spec(const FlagSettings& settings) {
           .skin_drag_per_m = 1.0 * drag_per_m(settings.half_lift_speed_m_s)};
 }
 
+/// How much farther out the lowest thread hangs than the highest: where their ends are nearest to each other. With
+/// threads of length l at an angle d, hoist h apart, and d as small a step as this, their distance squared is h^2 - 2 h
+/// l step sin(d) + l^2 step^2, which is least, (h cos(d))^2, at h sin(d) / l. No thread hangs to the other side.
+double droop_fan_rad(const FlagSettings& settings) {
+  const double droop_rad = settings.droop_deg * kRadPerDeg;
+  return std::min(settings.hoist_m / settings.length_m * std::sin(droop_rad), 2.0 * droop_rad);
+}
+
+/// How far a thread that begins so far down the pole (0 the top, 1 the bottom) hangs out.
+double droop_at_deg(const FlagSettings& settings, double along) {
+  return settings.droop_deg + (along - 0.5) * droop_fan_rad(settings) / kRadPerDeg;
+}
+
 /// The columns from the top down, on the pole.
 ClothEdge flag_edge(const FlagSettings& settings, const SceneSetup& setup) {
   ClothEdge edge(settings.columns);
@@ -152,7 +165,7 @@ ClothEdge flag_edge(const FlagSettings& settings, const SceneSetup& setup) {
         static_cast<float>(setup.placement.y_m + settings.pole_height_m - pitch_m * static_cast<double>(column));
     edge.z_m[column] = static_cast<float>(setup.placement.z_m);
     const EastSouth lean = turned_by_heading(setup.placement, fold * lean_of_deg(settings.fold_angle_deg),
-                                             -lean_of_deg(settings.droop_deg));
+                                             -lean_of_deg(droop_at_deg(settings, along)));
     edge.lean_east[column] = static_cast<float>(lean.east);
     edge.lean_south[column] = static_cast<float>(lean.south);
   }
@@ -258,7 +271,7 @@ class Flag final : public Scene {
         half_flutter_speed_m_s_(settings.half_flutter_speed_m_s),
         wave_speed_(settings.wave_speed),
         edge_flutter_(settings.edge_flutter),
-        longest_rest_(std::hypot(lean_of_deg(settings.droop_deg), lean_of_deg(settings.fold_angle_deg))),
+        longest_rest_(std::hypot(lean_of_deg(droop_at_deg(settings, 1.0)), lean_of_deg(settings.fold_angle_deg))),
         wind_(setup.placement, setup.gusts),
         cloth_(flag_spec(settings), edge, setup.row),
         down_m_(heights_m(cloth_, settings.hoist_m)),

@@ -29,8 +29,8 @@ constexpr float kUsualHeat = 0.42F;  // of all points, on average
 // Shown at this part of that, so that no more than three tongues in a second pass a place (WCAG 2.3.1), and with a pose
 // that follows the streamed one within kFollowing_s: flame_flash_test.cpp.
 constexpr double kRise = 0.73;
-constexpr double kShownRise = 0.30;
-constexpr double kFollowing_s = 0.55;
+constexpr double kShownRise = 0.36;
+constexpr double kFollowing_s = 0.65;
 constexpr double kJump_s = 1.0;
 constexpr double kGravity_m_s2 = 9.81;
 
@@ -84,7 +84,8 @@ FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface, look::Quality
       sheet_program_(gl::link_program("flame", gl::shaders::kFlameVert, gl::shaders::kFlameFrag)),
       glow_program_(gl::link_program("glow", gl::shaders::kGlowVert, gl::shaders::kGlowFrag)),
       embers_program_(gl::link_program("embers", gl::shaders::kEmbersVert, gl::shaders::kEmbersFrag)),
-      contact_program_(gl::link_program("contact", gl::shaders::kContactVert, gl::shaders::kContactFrag)) {
+      contact_program_(gl::link_program("contact", gl::shaders::kContactVert, gl::shaders::kContactFrag)),
+      shade_program_(gl::link_program("bowl shade", gl::shaders::kBowlShadeVert, gl::shaders::kBowlShadeFrag)) {
   glBindTexture(GL_TEXTURE_2D, ramp_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kRampColors, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE,
@@ -128,6 +129,7 @@ FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface, look::Quality
   glUseProgram(embers_program_.name());
   glUniform4f(glGetUniformLocation(embers_program_.name(), "disc_m"), bowl_.embers_m.x, bowl_.embers_m.y,
               bowl_.embers_m.z, bowl_.embers_radius_m);
+  shade_place_ = glGetUniformLocation(shade_program_.name(), "shade_m");
   embers_brightness_place_ = glGetUniformLocation(embers_program_.name(), "brightness");
   embers_breath_place_ = glGetUniformLocation(embers_program_.name(), "breath");
 
@@ -214,6 +216,7 @@ void FlameRenderer::draw_light() {
   glDepthMask(GL_FALSE);
   glBlendFunc(GL_DST_COLOR, GL_ZERO);
   draw_contact();
+  draw_bowl_shade();
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_COLOR);
   glActiveTexture(GL_TEXTURE0 + gl::kFlameRampUnit);
   glBindTexture(GL_TEXTURE_2D, ramp_.name());
@@ -245,6 +248,28 @@ void FlameRenderer::draw_contact() {
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
+void FlameRenderer::draw_bowl_shade() {
+  // Seen from the middle of the heat its edge falls on the ground so much farther out, on the side away from it; the
+  // flame's top throws it nearer, its foot farther.
+  const glm::vec3 bowl_m = bowl_.embers_m;
+  const float above_m = hot_middle_m_.y - bowl_m.y;
+  if (!(bowl_m.y > 0.05F && above_m > 0.05F)) return;
+  const float drawn_out = bowl_m.y / above_m;
+  const float radius_m = 1.15F * bowl_.embers_radius_m;
+  constexpr float kMostDrawnOut = 3.0F;
+  const glm::vec2 aside_m =
+      std::min(drawn_out, kMostDrawnOut) * glm::vec2(bowl_m.x - hot_middle_m_.x, bowl_m.z - hot_middle_m_.z);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(-2.0F, -2.0F);
+  glUseProgram(shade_program_.name());
+  glUniform4f(shade_place_, bowl_m.x + aside_m.x, bowl_m.z + aside_m.y,
+              radius_m * (0.6F + 0.3F * std::min(drawn_out, kMostDrawnOut)),
+              radius_m * (1.3F + 1.4F * std::min(drawn_out, kMostDrawnOut)));
+  glBindVertexArray(no_attributes_.name());
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
 void FlameRenderer::draw_glow() {
   glUseProgram(glow_program_.name());
   const glm::vec3 light = kGlow * (moment_.flame_brightness * shown_heat_ / kUsualHeat);
@@ -264,21 +289,23 @@ void FlameRenderer::draw_embers() {
 }
 
 void FlameRenderer::draw_body() {
-  // The noises rise as the gas does, one faster than the other; the shader has 0.26 and 0.36 tiles over the height.
+  // The noises rise as the gas does, one faster than the other; the shader has 0.10 and 0.16 tiles over the height.
   const double rise_per_s = kShownRise * kRise * std::sqrt(kGravity_m_s2 / static_cast<double>(height_m_));
   glUseProgram(fire_program_.name());
-  glUniform2f(risen_place_, part_of(0.26 * rise_per_s * moment_.time_s),
-              part_of(0.36 * 1.2 * rise_per_s * moment_.time_s));
+  glUniform2f(risen_place_, part_of(0.10 * rise_per_s * moment_.time_s),
+              part_of(0.16 * 1.2 * rise_per_s * moment_.time_s));
   glUniform1f(fire_brightness_place_, kBodyBrightness * moment_.flame_brightness);
   glActiveTexture(GL_TEXTURE0 + gl::kFlameRowsUnit);
   glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_3D, heat_tile_.name());
   glBindVertexArray(hull_array_.name());
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glEnable(GL_CULL_FACE);
   glCullFace(GL_BACK);
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(volume_.hull_indices().size()), GL_UNSIGNED_SHORT, nullptr);
   glDisable(GL_CULL_FACE);
+  glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_COLOR);
 }
 
 void FlameRenderer::draw_sparks() {

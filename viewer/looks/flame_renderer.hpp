@@ -33,6 +33,7 @@ class FlameRenderer : public SceneRenderer {
  private:
   void move_sheet(const pose::SurfacePose& burning);
   void draw_contact();
+  void draw_bowl_shade();
   void draw_glow();
   void draw_embers();
   void draw_body();
@@ -69,8 +70,9 @@ class FlameRenderer : public SceneRenderer {
   gl::GlProgram sheet_program_;
   GLint sheet_brightness_place_ = -1;
 
-  gl::GlProgram glow_program_, embers_program_, contact_program_;
+  gl::GlProgram glow_program_, embers_program_, contact_program_, shade_program_;
   GLint glow_ball_place_ = -1, glow_light_place_ = -1;
+  GLint shade_place_ = -1;
   GLint embers_brightness_place_ = -1, embers_breath_place_ = -1;
 };
 

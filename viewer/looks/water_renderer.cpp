@@ -104,6 +104,8 @@ void WaterRenderer::make_sheet() {
   const glm::mat2 to_parts = glm::inverse(
       glm::mat2(along_m * static_cast<float>(surface_->columns), across_m * static_cast<float>(surface_->rows)));
   glUseProgram(water_.name());
+  lee_place_ = glGetUniformLocation(water_.name(), "lee");
+  glUniform2f(glGetUniformLocation(water_.name(), "middle_m"), shore_.middle_m().x, shore_.middle_m().y);
   glUniform4f(glGetUniformLocation(water_.name(), "grid_place"), corner_m.x, corner_m.y, std::min(texel_m.x, texel_m.y),
               *mirror_m());
   glUniform4f(glGetUniformLocation(water_.name(), "grid_axes"), to_parts[0].x, to_parts[0].y, to_parts[1].x,
@@ -135,6 +137,21 @@ void WaterRenderer::make_shore() {
 std::optional<float> WaterRenderer::mirror_m() const {
   if (!shore_.is_pond()) return std::nullopt;
   return surface_->rest_y_m[0] - meshes::Shore::kSunk_m;
+}
+
+void WaterRenderer::set_moment(const Moment& moment) {
+  // Foam comes to the lee shore from Beaufort 5 on: what floats is driven by waves that break.
+  constexpr float kFoamFrom_m_s = 6.0F;
+  constexpr float kFoamFull_m_s = 13.0F;
+  const float speed_m_s = glm::length(moment.wind_m_s);
+  if (!shore_.is_pond()) return;
+  const glm::vec2 downwind = speed_m_s > 0.0F ? moment.wind_m_s / speed_m_s : glm::vec2(1.0F, 0.0F);
+  const glm::vec2 half_m(glm::dot(downwind, shore_.along()) * shore_.half_m().x,
+                         glm::dot(downwind, shore_.across()) * shore_.half_m().y);
+  const glm::vec2 lee = downwind / std::max(glm::length(half_m), 0.1F);
+  glUseProgram(water_.name());
+  glUniform3f(lee_place_, lee.x, lee.y,
+              std::clamp((speed_m_s - kFoamFrom_m_s) / (kFoamFull_m_s - kFoamFrom_m_s), 0.0F, 1.0F));
 }
 
 void WaterRenderer::move_to(const pose::Pose& pose) {

@@ -16,6 +16,7 @@ class WaterRenderer : public SceneRenderer {
   /// `surface` must outlive this.
   explicit WaterRenderer(const pose::SurfaceSkeleton& surface);
 
+  void set_moment(const Moment& moment) override;
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
   void draw_hole() override;
@@ -55,6 +56,7 @@ class WaterRenderer : public SceneRenderer {
   gl::GlBuffer rest_buffer_, height_buffer_;
   gl::GlBuffer bank_buffer_, hole_indices_, bank_indices_, reed_buffer_;
   gl::StripIndices reed_strips_;
+  GLint lee_place_ = -1;
 };
 
 }  // namespace yuragi::viewer::looks

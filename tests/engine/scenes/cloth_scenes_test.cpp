@@ -376,6 +376,19 @@ TEST(FlagTest, HangsLimpInCalmAirAndFliesDownwind) {
   }
 }
 
+TEST(FlagTest, HangsLimpWithoutBeingStretchedBetweenItsThreads) {
+  const auto scene = cloth(kFlagScene);
+  const pose::GridSkeleton& grid = grid_of(*scene);
+  for (const std::size_t row : {grid.rows / 4, grid.rows / 2, grid.rows - 1}) {
+    double way_m = 0.0;
+    for (std::size_t column = 0; column + 1 < grid.columns; ++column) {
+      way_m += (rest_at(*scene, column + 1, row) - rest_at(*scene, column, row)).length();
+    }
+    EXPECT_LT(way_m, 1.2 * 1.2) << row;  // its hoist, and as much more as woven cloth gives on the bias
+    EXPECT_GT(way_m, 0.9 * 1.2) << row;
+  }
+}
+
 TEST(BannerTest, ItsArmIsAVane) {
   const auto scene = cloth(kBannerScene);
   const pose::GridSkeleton& grid = grid_of(*scene);

@@ -51,6 +51,14 @@ vec3 weave(vec2 at_m, float thread_m) {
   return vec3(near * lean, 1.0 + uneven.x + uneven.y - near * 0.22 * (gap.x + gap.y - 0.8));
 }
 
+// Wrinkles of about this width that lie across a way on the cloth: their slope along it, from -1 to 1. They begin and end,
+// and none is as wide as the next.
+float wrinkles(vec2 at_m, vec2 way, float width_m) {
+  vec2 at = vec2(dot(at_m, way), dot(at_m, vec2(-way.y, way.x))) / width_m;
+  float across = at.x + 0.9 * sin(0.37 * at.y + 1.9 * sin(0.23 * at.x)) + 0.3 * sin(0.83 * at.x - 0.61 * at.y);
+  return cos(6.2831853 * across) * (0.55 + 0.45 * sin(0.47 * at.y + 1.3 * at.x));
+}
+
 // Seams at a hem so wide that ends `edge_m` away: its layers (x), the stitches along it (y), and the shade at its fold (z).
 vec3 hem(float edge_m, float along_m, float width_m) {
   float from_seam_m = edge_m - (width_m - 0.0025);
@@ -183,7 +191,22 @@ void main() {
   vec3 along_y = dFdy(place_m) * right_m.x - dFdx(place_m) * right_m.y;
   float turned = right_m.x * down_m.y - right_m.y * down_m.x < 0.0 ? -1.0 : 1.0;
   vec3 leaning = threads.x * along_x * inversesqrt(dot(along_x, along_x) + 1e-30) + threads.y * along_y * inversesqrt(dot(along_y, along_y) + 1e-30);
-  facing = normalize(facing + 0.30 * turned * leaning);
+  leaning *= 0.30;
+
+  // Where the cloth is pressed together it wrinkles across that: a part of each length on it, by which it is shorter than it
+  // lies flat (the strain between its joints), goes into wrinkles too small for them.
+  float area = max(abs(right_m.x * down_m.y - right_m.y * down_m.x), 1e-20);
+  vec3 per_x = along_x / area;
+  vec3 per_y = along_y / area;
+  float width_m = style == 0 ? 0.11 : 0.13;
+  float seen_near = 1.0 - smoothstep(0.12, 0.40, max(length(right_m), length(down_m)) / width_m);
+  const vec2 kWays[4] = vec2[4](vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(0.7071, 0.7071), vec2(0.7071, -0.7071));
+  for (int i = 0; i < 4; ++i) {
+    vec3 way = kWays[i].x * per_x + kWays[i].y * per_y;
+    float pressed = seen_near * smoothstep(0.03, 0.45, 1.0 - length(way));
+    if (pressed > 0.01) leaning += (0.34 * pressed * wrinkles(cloth_m + 0.37 * float(i), kWays[i], width_m)) * way;
+  }
+  facing = normalize(facing + turned * leaning);
 
   // Inside a fold comes less of the sky; the cloth's own light fills it again a little.
   float hollow = bend_per_m * side;

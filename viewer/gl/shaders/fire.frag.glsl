@@ -20,7 +20,7 @@ void main() {
   float v = inside.z;
   float y_m = place_m.y;
   vec2 layers = vec2(textureSize(layer_rows, 0));
-  float chance = 0.25 + 0.5 * pixel_chance(gl_FragCoord.xy);
+  float chance = 0.3 + 0.4 * pixel_chance(gl_FragCoord.xy);
   vec3 sum = vec3(0.0);
   bool was_inside = false;
   for (int i = 0; i < steps; ++i) {
@@ -44,15 +44,18 @@ void main() {
     was_inside = is_inside;
     float heat = is_inside ? textureLod(heat_tile, vec3(0.5 + 0.5 * q, layer / layers.y), 0.0).r : 0.0;
     if (heat > 0.03) {
-      // Two noises at right angles to each other, drawn out along the flame.
+      // Two noises at right angles to each other, drawn out along the flame: long tongues, and what tears them the higher
+      // they come; less where the wind lays them over, for what is short and bright flashes soonest.
       vec2 across = mat2(0.8, 0.6, -0.6, 0.8) * at_m / size_m.x;
-      float one = textureLod(noise_tile, vec2(0.46 * across.x + 0.14 * across.y, 0.26 * v - risen.x), 2.4).r;
-      float two = textureLod(noise_tile, vec2(0.54 * across.y - 0.12 * across.x + 0.25 * one, 0.36 * v - risen.y), 2.4).r;
-      float torn = 3.0 * (one + two - 1.0);
-      float level = heat - 0.30 - 0.75 * smoothstep(0.45, 1.0, v) + torn * (0.30 + 0.70 * min(v * 2.5, 1.0));
+      float one = textureLod(noise_tile, vec2(0.55 * across.x + 0.16 * across.y, 0.10 * v - risen.x), 2.5).r;
+      float two = textureLod(noise_tile, vec2(0.67 * across.y - 0.14 * across.x + 0.20 * one, 0.16 * v - risen.y), 2.5).r;
+      float torn = 3.4 * (one + two - 1.0);
+      float high = min(v * 2.2, 1.0);
+      float laid = min(length(slope.xy), 1.0);
+      float level = heat - 0.26 - 0.66 * smoothstep(0.20, 1.0, v) - 0.9 * smoothstep(0.80, 1.0, v) + torn * (0.28 + (0.80 - 0.25 * laid) * high);
       level -= 2.5 * smoothstep(floor_m.y, floor_m.x, y_m);
       // It burns in sheets around what is hottest.
-      float thick = smoothstep(0.0, 0.30, level) * (1.0 - 0.60 * smoothstep(0.40, 1.0, level));
+      float thick = smoothstep(0.0, 0.30, level) * (1.0 - 0.55 * smoothstep(0.40, 1.0, level));
       vec4 hot = textureLod(ramp, vec2((clamp(0.29 + 0.42 * level - 0.10 * v, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
       sum += hot.rgb * hot.rgb * (thick * step_m);
       // The blue of the root, where air still reaches the gas.
@@ -65,5 +68,8 @@ void main() {
   // Never a saturated red (R / (R + G + B) of 0.8), whose flicker is the most harmful: orange at most.
   vec3 value = finish(sum * (brightness / size_m.x));
   value.g = max(value.g, 0.555 * value.r);
-  color = vec4(value, 0.0);
+  // As yellow as what glows, also where the eye would see it without color in the dark.
+  value.b = min(value.b, value.g * value.g * value.g / max(value.r * value.r, 1e-4));
+  // Its soot holds back a part of what is behind it.
+  color = vec4(value, 0.6 * max(value.r, max(value.g, value.b)));
 }

@@ -11,6 +11,8 @@ uniform sampler2D ripples;
 uniform sampler2D mirror;
 uniform float mirror_share; // of what is mirrored that is in the mirror: 1, or less where the water is small in the picture
 uniform vec4 grid_place;    // x, z of the middle of the first texel's corner; size of a texel, metres; the water's height
+uniform vec3 lee;           // downwind, over half the pond's length that way; how much is washed to the shore there
+uniform vec2 middle_m;      // of the pond
 uniform vec4 grid_axes;     // a matrix: from metres behind that place to parts of the grid's sides
 in vec3 place_m;
 in float bed_m;
@@ -20,6 +22,7 @@ const float kMirrorMargin = 1.25;      // view.hpp
 const float kRippleDeviation = 0.16;   // ripple_texture.hpp
 const float kFineShare = 0.67;         // the slopes' variance that the grid cannot hold, over what it holds (ripple.cpp: 0.6 of all)
 const float kMirrored_m = 60.0;        // about as far as what is mirrored: level water mirrors near things as exactly
+const float kThroughCrest = 0.8;
 const float kPi = 3.14159265;
 
 vec2 ripple_at(vec2 at, float lod) { return (textureLod(ripples, at, lod).rg - 0.5) / kRippleDeviation; }
@@ -91,6 +94,23 @@ void main() {
 
   within += vec3(0.036, 0.050, 0.029) * fire_light(place_m, normal) * (1.0 - left.g);
 
+  // A crest between the eye and the sun lets its light through: the more, the thinner it is.
+  float crest = (place_m.y - grid_place.w) * inversesqrt(rough + 1e-4);
+  float through = smoothstep(0.05, 0.40, crest) * max(dot(from_eye, to_sun.xyz), 0.0) * smoothstep(0.02, 0.20, length(slope));
+  within += vec3(0.060, 0.130, 0.085) * sun_light.rgb * (lit * through * kThroughCrest);
+
+  // Foam: on the crests of a strong wind (E. Monahan, I. O'Muircheartaigh 1980, "Optimal power-law description of oceanic
+  // whitecap coverage": a part in a hundred of the water at 10 m/s, five at 16), and washed to the lee shore.
+  float breaking = smoothstep(0.018, 0.042, rough) * smoothstep(0.10, 0.28, crest);
+  float washed = 0.8 * lee.z * smoothstep(0.15, 0.75, dot(place_m.xz - middle_m, lee.xy)) * smoothstep(0.16, 0.02, depth_m);
+  float foamy = max(breaking, washed);
+  float foam = 0.0;
+  if (foamy > 0.01) {
+    float broad = textureLod(noise_tile, place_m.xz * 0.45 + 0.10 * slope, max(log2(pixel_m * 115.0), 0.0)).r;
+    float bubbles = textureLod(noise_tile, mat2(0.8, 0.6, -0.6, 0.8) * place_m.xz * 1.9 + 0.25 * slope, max(log2(pixel_m * 486.0), 0.0)).r;
+    foam = smoothstep(0.0, 0.36, 0.55 * broad + 0.45 * bubbles - 1.0 + 0.66 * foamy);
+  }
+
   // The sun's glitter: the share of slopes that mirror it.
   vec3 half_way = normalize(to_sun.xyz - from_eye);
   vec2 from_mean = -half_way.xz / max(half_way.y, 0.05) - slope;
@@ -100,6 +120,10 @@ void main() {
   float missing_2 = missing * missing;
   float glitter = (0.02 + 0.98 * missing_2 * missing_2 * missing) * steepness / (4.0 * half_way.y * half_way.y * half_way.y * half_way.y * max(cosine, 0.05));
   vec3 own = within * (1.0 - mirrored) + sun_light.rgb * (lit * min(glitter * max(to_sun.y, 0.0) * kPi, 6.0));
+
+  vec3 white = vec3(0.72) * (soft_light(normal) + sun_light.rgb * (lit * max(dot(normal, to_sun.xyz), 0.0)) + fire_light(place_m, normal));
+  own = mix(own, white, foam);
+  mirrored *= 1.0 - foam;
 
   // The mirror has the screen's values: they are mixed as light, nearly.
   vec3 value = seen(own, place_m);
