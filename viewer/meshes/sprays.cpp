@@ -257,7 +257,9 @@ SprayLevel spray_level(const SprayShape& shape, float leaf_px, const SprayDetail
   const auto all = static_cast<float>(shape.leaves);
   const float share = std::clamp(std::min(leaf_px / detail.leaf_px, 1e3F), 1.0F / detail.largest, 1.0F);
   const bool is_near = leaf_px > detail.shaped_leaf_px;
-  const bool is_speck = leaf_px / share <= detail.speck_px;
+  // The corners of a triangle are seen sooner where it stands for a pale round flower.
+  const float largest_speck_px = (shape.has_flowers() ? 0.5F : 1.0F) * detail.speck_px;
+  const bool is_speck = leaf_px / share <= largest_speck_px;
   return {.leaves = all * share * share,
           .size = 1.0F / share,
           .kind = is_near ? SprayKind::kNear : (is_speck ? SprayKind::kSpeck : SprayKind::kFar)};
