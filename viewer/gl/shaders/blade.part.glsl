@@ -38,10 +38,11 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
   float t = ring_at(v >> 1, head_from);
   vec3 place = foot_m + length_m * arc_point(foot, turned, t);
   vec3 along = leaning(foot + turned * max(t, 0.15));
-  float lean = mix(0.55, length(leaning(foot + turned * 0.5).xz) + kGust * gust_of(bend), tall);
   vec3 to_eye = eye_m.xyz - place;
   float distance_m = length(to_eye);
   to_eye /= distance_m;
+  float gust = kGust * (1.0 - to_eye.y * to_eye.y) * gust_of(bend);
+  float lean = mix(0.55, length(leaning(foot + turned * 0.5).xz) + gust, tall);
 
   // The flat side faces the blade's own bearing, turned half way to the eye, so that no blade is seen edge-on.
   vec3 across_eye = normalize(cross(along, to_eye));

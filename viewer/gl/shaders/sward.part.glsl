@@ -90,14 +90,17 @@ vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float
 }
 
 // How much more the grass is bent at a place than on the average: where a gust is.
-float gust_of(vec2 bend) { return clamp(length(bend) - length(bend_mean.xy), -0.25, 0.35); }
+float gust_of(vec2 bend) { return clamp(length(bend) - length(bend_mean.xy), -0.35, 0.45); }
 
 // The light of grass as one sees it from afar: the upper parts of its blades, leaning with the wind. `tufts` from -0.5 to
 // 0.5: how a tuft differs from its neighbours.
 vec3 canopy_light(vec2 bend, vec3 to_eye, vec2 patch_at, float tufts, float tall, float sunlight) {
   vec3 along = leaning(bend * mix(0.35, 0.8, tall) + vec2(0.25, 0.1) * tufts);
   vec3 normal = normalize(vec3(to_eye.x, 0.35, to_eye.z) + vec3(along.x, 0.0, along.z) * 0.5);
-  float lean = mix(0.55, clamp(0.36 + 0.42 * length(bend) + kGust * gust_of(bend) + 0.45 * tufts, 0.0, 1.1), tall);
+  // What leans shows its side, of which one sees less from above.
+  float from_side = 1.0 - 0.6 * to_eye.y * to_eye.y;
+  float gust = (0.42 + kGust) * from_side * gust_of(bend);
+  float lean = mix(0.55, clamp(0.36 + 0.42 * length(bend_mean.xy) + gust + 0.45 * tufts, 0.0, 1.1), tall);
   vec3 light = blade_light(to_eye, along, normal, mix(0.72, 0.82, tall) + 0.3 * tufts, tint_of(patch_at, 0.5 + 0.8 * tufts), lean, sunlight);
   // From above one looks down between the blades.
   return light * (1.0 - tall * (0.15 + 0.30 * to_eye.y * to_eye.y * (1.0 - 0.6 * min(length(bend), 1.0))));
