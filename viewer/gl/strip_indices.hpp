@@ -7,8 +7,8 @@
 
 namespace yuragi::viewer::gl {
 
-/// Draws many strips of triangles as one mesh. Where the processor draws, hairs cost a quarter less so than as instances
-/// (llvmpipe 22.3: 8.2 ms against 10.6).
+/// Draws many strips of triangles as one mesh. Where the processor draws, hairs cost a quarter less so than as
+/// instances (llvmpipe 22.3: 8.2 ms against 10.6).
 ///
 /// A vertex shader finds corner gl_VertexID & 255 of strip gl_VertexID >> 8, and what it needs of the strip in a
 /// texture buffer. Needs a current context. Allocates when a number of corners is first drawn.
