@@ -100,7 +100,7 @@ vec3 canopy_light(vec2 bend, vec3 to_eye, vec2 patch_at, float tufts, float tall
   // What leans shows its side, of which one sees less from above.
   float from_side = 1.0 - 0.6 * to_eye.y * to_eye.y;
   float gust = (0.42 + kGust) * from_side * gust_of(bend);
-  float lean = mix(0.55, clamp(0.36 + 0.42 * length(bend_mean.xy) + gust + 0.45 * tufts, 0.0, 1.1), tall);
+  float lean = mix(0.55, clamp(0.36 + 0.42 * length(bend_mean.xy) + gust + 0.45 * tufts, 0.0, 0.92), tall);
   vec3 light = blade_light(to_eye, along, normal, mix(0.72, 0.82, tall) + 0.3 * tufts, tint_of(patch_at, 0.5 + 0.8 * tufts), lean, sunlight);
   // From above one looks down between the blades.
   return light * (1.0 - tall * (0.15 + 0.30 * to_eye.y * to_eye.y * (1.0 - 0.6 * min(length(bend), 1.0))));
