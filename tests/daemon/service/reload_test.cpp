@@ -1,7 +1,9 @@
 #include "daemon/service/reload.hpp"
 
 #include <future>
+#include <memory>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -173,24 +175,24 @@ TEST_F(ReloadTest, ScenesAreMadeBeforeAnythingChangesAndAdoptedLast) {
 TEST_F(ReloadTest, ItsEndDoesNotWaitForADiskThatHangs) {
   // Owned by the thread that is left behind.
   struct Disk {
-    std::promise<void> answers, is_asked, has_been_left;
+    std::promise<void> answers, is_asked;
   };
-  const auto disk = std::make_shared<Disk>();
+  auto disk = std::make_shared<Disk>();
   ReloadParts hanging = parts();
   hanging.read = [disk]() -> settings::Config {
     disk->is_asked.set_value();
     disk->answers.get_future().wait();
-    disk->has_been_left.set_value_at_thread_exit();
     throw settings::ConfigError("wall.toml:1:1: file: cannot be read");
   };
   {
-    Reload reload(settings::default_config(), hanging);
+    Reload reload(settings::default_config(), std::move(hanging));
     reload.request({}, reply());
     disk->is_asked.get_future().wait();
   }
   EXPECT_THAT(reports_, IsEmpty());
   disk->answers.set_value();
-  disk->has_been_left.get_future().wait();
+  const std::weak_ptr<Disk> is_left_with_the_thread = std::exchange(disk, nullptr);
+  while (!is_left_with_the_thread.expired()) std::this_thread::yield();
   EXPECT_TRUE(queue_.is_empty()) << "nobody is there who could be told";
 }
 
