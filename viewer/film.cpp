@@ -124,7 +124,8 @@ class ProgressLine {
 
 std::unique_ptr<Renderer> make_renderer(const ViewerOptions& options) {
   if (options.draws_nothing) return std::make_unique<NullRenderer>(options.width_px, options.height_px);
-  return std::make_unique<GlRenderer>(options.width_px, options.height_px, options.samples.value_or(kFilmSamples));
+  return std::make_unique<GlRenderer>(make_headless_context(), options.width_px, options.height_px,
+                                      options.samples.value_or(kFilmSamples));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "viewer/viewer_exit.hpp"
 
@@ -23,15 +24,24 @@ std::unique_ptr<gl::HeadlessContext> make_headless_context() {
   }
 }
 
-GlRenderer::GlRenderer(int width_px, int height_px, int samples)
-    : context_(make_headless_context()), target_(width_px, height_px, samples) {}
+GlRenderer::GlRenderer(std::unique_ptr<gl::HeadlessContext> context, int width_px, int height_px, int samples)
+    : context_(std::move(context)), samples_(samples), target_(width_px, height_px, samples) {}
+
+void GlRenderer::resize(int width_px, int height_px) {
+  if (target_.width_px() == width_px && target_.height_px() == height_px) return;
+  target_ = gl::RenderTarget(width_px, height_px, samples_);
+}
 
 void GlRenderer::set_quality(look::Quality quality, float density) {
-  stage_.set_quality(quality);
-  stage_.set_blade_share(density);
+  quality_ = quality == look::Quality::kAuto ? own_quality_ : quality;
+  density_ = density;
+  stage_.set_quality(quality_);
 }
 
 void GlRenderer::draw(const Picture& picture) {
+  stage_.set_blade_share(drawn_.blades * density_);
+  stage_.set_coarseness(drawn_.coarseness);
+  target_.set_drawn_side(drawn_.side);
   if (picture.fading_out) {
     camera_.go_to(*picture.fading_out);
     stage_.draw(picture.moment, camera_, target_);

@@ -8,13 +8,9 @@
 namespace yuragi::viewer {
 
 PictureDirector::PictureDirector(const ViewerOptions& options, Renderer& renderer, std::string source)
-    : options_(options),
-      renderer_(renderer),
-      source_(std::move(source)),
-      view_(read_camera_view(options.camera)),
-      aspect_(static_cast<double>(options.width_px) / options.height_px) {
+    : options_(options), renderer_(renderer), source_(std::move(source)), view_(read_camera_view(options.camera)) {
   // What the command line asks for comes before the hour.
-  if (!options.camera.empty() && !view_) {
+  if (is_camera_named()) {
     cameras_.begin_with(options.camera);
   } else if (view_ || !options.scene.empty() || options.is_turning) {
     cameras_.begin_by_hand();
@@ -22,13 +18,18 @@ PictureDirector::PictureDirector(const ViewerOptions& options, Renderer& rendere
   camera_.set_turning(options.is_turning);
   sky_.start(look_for({}));
   if (!options.scene.empty()) renderer_.show_only(options.scene);
+  frame();
 }
 
 void PictureDirector::set_scenes(std::vector<wire::SceneModel> scenes) {
   renderer_.set_scenes(std::move(scenes));
   if (std::exchange(has_scenes_, true)) return;
   require_scene();
-  meshes::CameraPlace place = renderer_.home(aspect_);
+  frame();
+}
+
+void PictureDirector::frame() {
+  meshes::CameraPlace place = renderer_.home();
   if (view_) {
     place.heading_deg = view_->heading_deg;
     place.pitch_deg = view_->pitch_deg;
@@ -37,16 +38,32 @@ void PictureDirector::set_scenes(std::vector<wire::SceneModel> scenes) {
   camera_.frame(place);
 }
 
-void PictureDirector::take_status(const wire::Sensors& status) {
+void PictureDirector::take_status(const wire::Sensors& status, double fade_s) {
   const bool is_first = !std::exchange(has_status_, true);
-  is_first ? sky_.start(look_for(status.look)) : sky_.set_look(look_for(status.look));
+  is_first ? sky_.start(look_for(status.look)) : sky_.set_look(look_for(status.look), fade_s);
   cameras_.set_cameras(status.cameras, status.camera);
   if (is_first) require_camera();
 }
 
+meshes::OrbitCamera& PictureDirector::take_camera() {
+  if (cameras_.now().camera) camera_.go_to(place_for(cameras_.now()));
+  cameras_.take_by_hand();
+  return camera_;
+}
+
+void PictureDirector::reset_camera() {
+  if (!cameras_.reset()) camera_.reset();
+}
+
+void PictureDirector::frame_scenes(bool are_all) {
+  cameras_.take_by_hand();
+  frame();
+  if (are_all) cameras_.reset();
+}
+
 void PictureDirector::advance(double passed_s, double utc_s, const wind::WindVector& wind) {
   cameras_.advance(passed_s);
-  cameras_.hear_clock(utc_s);
+  if (utc_s != std::exchange(utc_s_, utc_s)) cameras_.hear_clock(utc_s);
   camera_.advance(passed_s);
   renderer_.set_light(sky_.advance(utc_s, passed_s, {wind.u_m_s, -wind.v_m_s}));
   const look::Look& look = sky_.look();
@@ -62,13 +79,20 @@ void PictureDirector::draw(const stream::PoseMoment& moment) {
   renderer_.draw(picture);
 }
 
+std::string PictureDirector::camera_text() const {
+  if (cameras_.cameras().empty()) return {};
+  const std::string name = cameras_.now().name();
+  const std::string fading = cameras_.is_fading() ? ", cross-fading" : "";
+  return (name.empty() ? "camera by hand" : "camera " + name) + fading;
+}
+
 look::Look PictureDirector::look_for(const look::Look& senders) const {
   return *look::edited(senders, options_.look);
 }
 
 meshes::CameraPlace PictureDirector::place_for(const Shot& shot) const {
   if (!shot.camera) return camera_.place();
-  return place_of(*shot.camera, renderer_.bounds_of(shot.camera->scene), aspect_, shot.utc_s);
+  return place_of(*shot.camera, renderer_.bounds_of(shot.camera->scene), renderer_.aspect(), shot.utc_s);
 }
 
 void PictureDirector::require_scene() const {
@@ -82,7 +106,7 @@ void PictureDirector::require_scene() const {
 }
 
 void PictureDirector::require_camera() const {
-  if (options_.camera.empty() || view_ || cameras_.has(options_.camera)) return;
+  if (!is_camera_named() || cameras_.has(options_.camera)) return;
   std::string names;
   for (const look::Camera& camera : cameras_.cameras()) names += names.empty() ? camera.name : ", " + camera.name;
   throw ViewerExit(EX_USAGE, "--camera: " + source_ + " has no camera '" + options_.camera + "'; it has " +

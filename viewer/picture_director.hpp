@@ -20,27 +20,47 @@ class PictureDirector {
 
   /// Throws ViewerExit where the first ones are without the one that was asked for.
   void set_scenes(std::vector<wire::SceneModel> scenes);
-  /// Light and cameras. Throws ViewerExit where the first are without the camera that was asked for.
-  void take_status(const wire::Sensors& status);
+  /// Light, which fades over `fade_s`, and cameras. Throws ViewerExit where the first are without the camera that was
+  /// asked for.
+  void take_status(const wire::Sensors& status, double fade_s = light::SkyKeeper::kFade_s);
+  /// Does the command line ask for one of the sender's cameras?
+  bool is_camera_named() const { return !options_.camera.empty() && !view_; }
+  /// Throws ViewerExit where the sender does not have it.
+  void require_camera() const;
 
-  /// Advances by passed_s to utc_s, the sender's clock.
+  /// The camera by hand, which begins where the picture is.
+  meshes::OrbitCamera& take_camera();
+  /// On to the next of the sender's cameras.
+  void show_next_camera() { cameras_.next(); }
+  void reset_camera();
+  /// After the choice of scenes: the camera by hand at its first place for them, or, where all are drawn, the first
+  /// camera.
+  void frame_scenes(bool are_all);
+
+  /// Advances by passed_s. `utc_s`: the sender's clock, as its newest frame has it; 0 before the first.
   void advance(double passed_s, double utc_s, const wind::WindVector& wind);
   void draw(const stream::PoseMoment& moment);
 
+  /// What the last picture showed.
+  const look::Look& look() const { return sky_.look(); }
+  double heading_deg() const { return place_for(cameras_.now()).heading_deg; }
+  /// "camera evening, cross-fading"; empty where the sender has none.
+  std::string camera_text() const;
+
  private:
+  void frame();
   look::Look look_for(const look::Look& senders) const;
   meshes::CameraPlace place_for(const Shot& shot) const;
   void require_scene() const;
-  void require_camera() const;
 
   const ViewerOptions& options_;
   Renderer& renderer_;
   const std::string source_;
   const std::optional<CameraView> view_;  // of the command line
-  const double aspect_;
   CameraKeeper cameras_;
-  meshes::OrbitCamera camera_;  // where none is the sender's
+  meshes::OrbitCamera camera_;  // by hand
   light::SkyKeeper sky_;
+  double utc_s_ = 0.0;
   bool has_scenes_ = false;
   bool has_status_ = false;
 };

@@ -33,8 +33,10 @@ class Renderer {
   /// Draws only the scene of this name.
   virtual void show_only(const std::string& scene) = 0;
 
-  /// The camera's first place for a picture of width / height `aspect`.
-  virtual meshes::CameraPlace home(double aspect) const = 0;
+  /// Width / height of the pictures.
+  virtual double aspect() const = 0;
+  /// The camera's first place for what is drawn.
+  virtual meshes::CameraPlace home() const = 0;
   /// The box around the scene of this name; nothing where there is none.
   virtual std::optional<meshes::Bounds> bounds_of(std::string_view scene) const = 0;
 

@@ -2,21 +2,17 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <optional>
 
 #include "engine/base/address.hpp"
-#include "viewer/camera_keeper.hpp"
-#include "viewer/camera_place.hpp"
-#include "viewer/gl/cross_fade.hpp"
 #include "viewer/gl/dimmer.hpp"
 #include "viewer/gl_renderer.hpp"
 #include "viewer/light/sky_keeper.hpp"
-#include "viewer/looks/stage.hpp"
 #include "viewer/overlay.hpp"
 #include "viewer/pace_keeper.hpp"
 #include "viewer/panel.hpp"
+#include "viewer/picture_director.hpp"
 #include "viewer/picture_file.hpp"
 #include "viewer/quality.hpp"
 #include "viewer/stream/scene_timeline.hpp"
@@ -70,6 +66,7 @@ class Viewer::Show {
         brightness_(options.is_dark_when_closed || output_ ? 0.0 : 1.0),
         has_overlay_(options.overlay.value_or(options.screenshot.empty() && !output_)),
         has_panel_(options.has_panel) {
+    std::unique_ptr<gl::HeadlessContext> context;
     if (options.screenshot.empty()) {
       window_.emplace(WindowOptions{.width_px = options.width_px,
                                     .height_px = options.height_px,
@@ -78,25 +75,21 @@ class Viewer::Show {
                                     .is_hidden = output_.has_value()});
       if (output_) wall_.emplace(window_->handle(), *output_);
     } else {
-      headless_ = make_headless_context();
+      context = make_headless_context();
     }
 #ifdef YURAGI_GL_DEBUG
     gl::report_gl_errors();
 #endif
     is_software_ = gl::is_software_renderer();
-    const bool is_slow = is_software_ && options.screenshot.empty();
-    samples_ = options.samples.value_or(is_slow ? 1 : kSamples);
-    stage_.emplace();
-    dimmer_.emplace();
-    cross_fade_.emplace();
-    if (options.has_test_card) test_card_.emplace();
-    sky_.start(look_for({}));
-    if (!options.scene.empty()) stage_->show_only(options.scene);
-    window_ ? overlay_.emplace(window_->handle(), window_->content_scale()) : overlay_.emplace(nullptr, 1.0);
-    begin_cameras();
+    const bool is_slow = is_software_ && window_;
+    renderer_.emplace(std::move(context), options.width_px, options.height_px,
+                      options.samples.value_or(is_slow ? 1 : kSamples));
+    renderer_->set_own_quality(quality_for(look::Quality::kAuto, is_software_));
     if (output_ && output_->screen) see_through(*output_->screen);
-    camera_.set_turning(options.is_turning);
-    frame_camera();
+    director_.emplace(options_, *renderer_, options_.connect);
+    dimmer_.emplace();
+    if (options.has_test_card) test_card_.emplace();
+    window_ ? overlay_.emplace(window_->handle(), window_->content_scale()) : overlay_.emplace(nullptr, 1.0);
   }
 
   void run_window() {
@@ -135,7 +128,7 @@ class Viewer::Show {
       }
       if (first_pose_s == 0.0) first_pose_s = last_s_;
       if (!sensors_ && last_s_ - first_pose_s < longest_wait_for_status_s()) continue;
-      require_camera();
+      director_->require_camera();
       if (options_.at_s && last_s_ - first_pose_s < *options_.at_s) continue;
       ++drawn;
       if (drawn >= (options_.at_s ? kOverlayPictures : options_.frames)) return draw_to_file(size);
@@ -146,7 +139,7 @@ class Viewer::Show {
  private:
   void draw_to_file(const PixelSize& size) {
     draw(size);
-    write_picture(options_.screenshot, size.width_px, size.height_px, target_->read_rgb());
+    write_picture(options_.screenshot, size.width_px, size.height_px, renderer_->read_rgb());
   }
 
   /// Empty where there is nothing to show it on.
@@ -157,8 +150,8 @@ class Viewer::Show {
   }
 
   void show(const PixelSize& size) {
-    if (wall_) return wall_->show(*target_, options_.has_test_card);
-    target_->show(size.width_px, size.height_px);
+    if (wall_) return wall_->show(renderer_->target(), options_.has_test_card);
+    renderer_->target().show(size.width_px, size.height_px);
     window_->swap();
   }
 
@@ -169,112 +162,42 @@ class Viewer::Show {
                                          "HOST:PORT, or wait longer with --wait SECONDS.");
   }
 
-  void require_scene() const {
-    if (options_.scene.empty()) return;
-    std::string names;
-    for (const wire::SceneModel* scene : stage_->scenes()) {
-      if (scene->name == options_.scene) return;
-      names += names.empty() ? scene->name : ", " + scene->name;
-    }
-    throw ViewerExit(EX_USAGE,
-                     "--scene: " + options_.connect + " has no scene '" + options_.scene + "'; it has: " + names);
-  }
-
   /// A camera that is asked for by its name has to come.
   double longest_wait_for_status_s() const {
-    return is_camera_named() ? std::max(options_.wait_s, kLookWait_s) : kLookWait_s;
-  }
-
-  bool is_camera_named() const {
-    return !options_.camera.empty() && !view_;
-  }
-
-  void require_camera() const {
-    if (!is_camera_named() || cameras_.has(options_.camera)) return;
-    std::string names;
-    for (const look::Camera& camera : cameras_.cameras()) names += names.empty() ? camera.name : ", " + camera.name;
-    throw ViewerExit(EX_USAGE, "--camera: " + options_.connect + " has no camera '" + options_.camera + "'; it has " +
-                                   (names.empty() ? "none: there is no [[camera]] in its configuration" : names));
+    return director_->is_camera_named() ? std::max(options_.wait_s, kLookWait_s) : kLookWait_s;
   }
 
   void see_through(const output::Screen& screen) {
     const auto place = [](const output::RoomPlace& of) { return glm::dvec3(of[0], of[1], of[2]); };
-    const meshes::Frustum frustum = meshes::frustum_through(place(screen.lower_left_m), place(screen.lower_right_m),
-                                                            place(screen.upper_left_m), place(screen.eye_m));
-    camera_.see_through(frustum);
-    shot_camera_.see_through(frustum);
+    renderer_->see_through(meshes::frustum_through(place(screen.lower_left_m), place(screen.lower_right_m),
+                                                   place(screen.upper_left_m), place(screen.eye_m)));
   }
 
-  /// What the command line asks for comes before the hour.
-  void begin_cameras() {
-    view_ = read_camera_view(options_.camera);
-    if (is_camera_named()) {
-      cameras_.begin_with(options_.camera);
-    } else if (view_ || !options_.scene.empty() || options_.is_turning) {
-      cameras_.begin_by_hand();
-    }
-  }
-
-  /// The camera of a shot, for a picture of width / height `aspect`.
-  const meshes::OrbitCamera& camera_of(const Shot& shot, double aspect) {
-    if (!shot.camera) return camera_;
-    const look::Camera& camera = *shot.camera;
-    shot_camera_.go_to(place_of(camera, stage_->bounds_of(camera.scene), aspect, shot.utc_s));
-    return shot_camera_;
-  }
-
-  /// The user's hand begins where the picture is.
-  void take_camera() {
-    if (cameras_.now().camera) camera_.go_to(camera_of(cameras_.now(), aspect_).place());
-    cameras_.take_by_hand();
-  }
-
-  /// For the overlay.
-  std::string camera_text() const {
-    if (cameras_.cameras().empty()) return {};
-    const std::string name = cameras_.now().name();
-    if (name.empty()) return cameras_.is_fading() ? "camera by hand, cross-fading" : "camera by hand";
-    return "camera " + name + (cameras_.is_fading() ? ", cross-fading" : "");
-  }
-
-  /// What the command line says, over the daemon's look.
-  look::Look look_for(const look::Look& daemons) const {
-    return *look::edited(daemons, options_.look);
-  }
-
-  /// Says a change in the log, too.
-  void use_quality(look::Quality quality) {
-    if (quality == quality_) return;
-    quality_ = quality;
-    stage_->set_quality(quality);
-    std::fprintf(stderr, "yuragi-viewer: %s\n", quality_text(quality).c_str());
-  }
-
-  void frame_camera() {
-    meshes::CameraPlace place = stage_->home(static_cast<double>(options_.width_px) / options_.height_px);
-    if (view_) {
-      place.heading_deg = view_->heading_deg;
-      place.pitch_deg = view_->pitch_deg;
-      place.distance_m = view_->distance_m;
-    }
-    camera_.frame(place);
+  /// Says a change in the log.
+  void tell_quality() {
+    if (renderer_->quality() == quality_) return;
+    quality_ = renderer_->quality();
+    std::fprintf(stderr, "yuragi-viewer: %s\n", quality_text(quality_).c_str());
   }
 
   void use_input() {
     const WindowInput input = window_->take_input();
-    if (input.moves_camera() || input.toggle_turning) take_camera();
-    camera_.orbit(input.orbit_right, input.orbit_down);
-    camera_.pan(input.pan_right, input.pan_down, aspect_);
-    camera_.zoom(input.zoom_notches);
-    if (input.next_camera) cameras_.next();
-    if (input.reset_camera && !cameras_.reset()) camera_.reset();
-    if (input.next_scene) {
-      stage_->show_next();
-      cameras_.take_by_hand();
-      frame_camera();
-      if (stage_->shows_all()) cameras_.reset();
+    if (input.moves_camera()) {
+      meshes::OrbitCamera& camera = director_->take_camera();
+      camera.orbit(input.orbit_right, input.orbit_down);
+      camera.pan(input.pan_right, input.pan_down, renderer_->aspect());
+      camera.zoom(input.zoom_notches);
     }
-    if (input.toggle_turning) camera_.set_turning(!camera_.is_turning());
+    if (input.next_camera) director_->show_next_camera();
+    if (input.reset_camera) director_->reset_camera();
+    if (input.next_scene) {
+      renderer_->stage().show_next();
+      director_->frame_scenes(renderer_->stage().shows_all());
+    }
+    if (input.toggle_turning) {
+      meshes::OrbitCamera& camera = director_->take_camera();
+      camera.set_turning(!camera.is_turning());
+    }
     if (input.toggle_overlay) has_overlay_ = !has_overlay_;
     if (input.toggle_panel) has_panel_ = !has_panel_;
     window_->set_taken(has_panel_ && overlay_->takes_mouse(), has_panel_ && overlay_->takes_keys());
@@ -288,36 +211,22 @@ class Viewer::Show {
       utc_s_ = 1e-9 * static_cast<double>(timed.frame.info.utc_ns);
       timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
     }
-    if (!inbox.frames.empty()) cameras_.hear_clock(utc_s_);
     advance_panel(inbox);
     const bool is_first_status = inbox.sensors && !sensors_;
     if (inbox.sensors) {
       sensors_ = std::move(inbox.sensors);
-      const double over_s = panel_.is_setting() ? kHandFade_s : light::SkyKeeper::kFade_s;
-      is_first_status ? sky_.start(look_for(sensors_->look)) : sky_.set_look(look_for(sensors_->look), over_s);
-      cameras_.set_cameras(sensors_->cameras, sensors_->camera);
-      if (is_first_status) require_camera();
+      director_->take_status(*sensors_, panel_.is_setting() ? kHandFade_s : light::SkyKeeper::kFade_s);
     }
 
     const double now = now_s();
     const double passed_s = now - last_s_;
     last_s_ = now;
     picture_passed_s_ = passed_s;
-    camera_.advance(passed_s);
-    cameras_.advance(passed_s);
     moment_ = &timeline_.advance(now);
     follow_brightness(is_first_status ? kDimming_s : passed_s);
-    if (auto scenes = timeline_.take_new_scenes()) {
-      stage_->set_scenes(std::move(*scenes));
-      if (!has_framed_) {
-        require_scene();
-        frame_camera();
-      }
-      has_framed_ = true;
-    }
-    const wind::WindVector& wind = moment_->wind.wind;
-    stage_->set_light(sky_.advance(utc_s_, passed_s, {wind.u_m_s, -wind.v_m_s}));
-    use_quality(quality_for(sky_.look().quality, is_software_));
+    if (auto scenes = timeline_.take_new_scenes()) director_->set_scenes(std::move(*scenes));
+    director_->advance(passed_s, utc_s_, moment_->wind.wind);
+    tell_quality();
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
   }
 
@@ -343,41 +252,30 @@ class Viewer::Show {
   }
 
   void draw(const PixelSize& size) {
-    if (!target_ || PixelSize{target_->width_px(), target_->height_px()} != size) {
-      target_.emplace(size.width_px, size.height_px, samples_);
-    }
+    renderer_->resize(size.width_px, size.height_px);
     if (test_card_) {
-      target_->bind_resolved();
+      renderer_->target().bind_resolved();
       return test_card_->draw({.width_px = size.width_px, .height_px = size.height_px});
     }
-    aspect_ = static_cast<double>(size.width_px) / size.height_px;
     const DrawnPart part = is_drawn_for_pace() ? pace_.drawn() : DrawnPart{};
-    stage_->set_blade_share(part.blades * static_cast<float>(sky_.look().density));
-    stage_->set_coarseness(part.coarseness);
-    target_->set_drawn_side(part.side);
-    if (cameras_.is_fading()) {
-      stage_->draw(*moment_, camera_of(cameras_.before(), aspect_), *target_);
-      cross_fade_->keep(*target_);
-    }
-    const meshes::OrbitCamera& camera = camera_of(cameras_.now(), aspect_);
-    stage_->draw(*moment_, camera, *target_);
-    if (cameras_.is_fading()) cross_fade_->draw(*target_, static_cast<float>(cameras_.share()));
+    renderer_->set_drawn(part);
+    director_->draw(*moment_);
     dimmer_->draw(static_cast<float>(brightness_));
     if (!has_overlay_ && !has_panel_) return;
-    const light::Sky sky = light::sky_of(sky_.look(), utc_s_);
+    const light::Sky sky = light::sky_of(director_->look(), utc_s_);
     overlay_->draw(size, {.wind = moment_->wind,
                           .playback = timeline_.playback(),
                           .stream = connection_.status(),
                           .sensors = sensors_ ? &*sensors_ : nullptr,
                           .pictures_per_s = 1.0 / picture_s_,
-                          .nodes = stage_->node_count(),
-                          .scenes = stage_->scenes(),
+                          .nodes = renderer_->stage().node_count(),
+                          .scenes = renderer_->scenes(),
                           .opacities = moment_->opacities,
                           .sky = &sky,
                           .quality = quality_,
                           .drawn = part,
-                          .heading_deg = camera.place().heading_deg,
-                          .camera = camera_text(),
+                          .heading_deg = director_->heading_deg(),
+                          .camera = director_->camera_text(),
                           .has_texts = has_overlay_,
                           .panel = has_panel_ ? &panel_ : nullptr});
   }
@@ -398,24 +296,15 @@ class Viewer::Show {
   const std::atomic<bool>& is_stopping_;
   stream::StreamConnection connection_;
   const std::optional<output::Output> output_;
-  std::optional<Window> window_;    // this or headless_; the members below need its context
-  std::optional<wall::Wall> wall_;  // of the window, where there is an output
-  std::unique_ptr<gl::HeadlessContext> headless_;
-  std::optional<looks::Stage> stage_;
+  std::optional<Window> window_;        // none for a picture in a file; the members below need its context
+  std::optional<wall::Wall> wall_;      // of the window, where there is an output
+  std::optional<GlRenderer> renderer_;  // has a context of its own where there is no window
+  std::optional<PictureDirector> director_;
   std::optional<gl::Dimmer> dimmer_;
-  std::optional<gl::CrossFade> cross_fade_;
   std::optional<wall::TestCard> test_card_;
   std::optional<Overlay> overlay_;
-  std::optional<gl::RenderTarget> target_;
 
   Watchdog watchdog_;
-  std::optional<CameraView> view_;  // of the command line
-  CameraKeeper cameras_;
-  meshes::OrbitCamera camera_;       // by hand
-  meshes::OrbitCamera shot_camera_;  // one of the daemon's, at the moment
-  double aspect_ = 16.0 / 9.0;       // of the last picture
-  bool has_framed_ = false;
-  light::SkyKeeper sky_;
   bool is_software_ = false;
   PaceKeeper pace_;
   look::Quality quality_ = look::Quality::kAuto;
@@ -431,7 +320,6 @@ class Viewer::Show {
   bool has_overlay_;
   bool has_panel_;
   Panel panel_;
-  int samples_ = kSamples;
 };
 
 Viewer::Viewer(const ViewerOptions& options, const std::atomic<bool>& is_stopping)

@@ -59,7 +59,8 @@ class WatchedRenderer final : public Renderer {
   void set_scenes(std::vector<wire::SceneModel> scenes) override { nothing_.set_scenes(std::move(scenes)); }
   const std::vector<const wire::SceneModel*>& scenes() const override { return nothing_.scenes(); }
   void show_only(const std::string& /*scene*/) override {}
-  meshes::CameraPlace home(double aspect) const override { return nothing_.home(aspect); }
+  double aspect() const override { return nothing_.aspect(); }
+  meshes::CameraPlace home() const override { return nothing_.home(); }
   std::optional<meshes::Bounds> bounds_of(std::string_view scene) const override { return nothing_.bounds_of(scene); }
   void set_light(const light::Light& /*light*/) override {}
   void set_quality(look::Quality quality, float /*density*/) override { quality_ = quality; }
