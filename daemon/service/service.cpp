@@ -33,7 +33,9 @@
 #include "daemon/settings/config_file.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/stream/tcp_stream.hpp"
+#include "daemon/web/access.hpp"
 #include "daemon/web/web_server.hpp"
+#include "drivers/sensor/secret_source.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/base/latest.hpp"
 #include "engine/base/version.hpp"
@@ -176,6 +178,8 @@ class Service::Io {
   web::WebSettings web_settings(const settings::Config& config) {
     web::WebSettings settings{.listen = config.http.listen,
                               .hosts = config.http.hosts,
+                              .token = token_of(config.http),
+                              .reading_takes_token = config.http.reading_takes_token,
                               .software = with_version("yuragi"),
                               .tick_rate_hz = rate_hz_};
     settings.hosts.push_back(asio::ip::host_name());
@@ -183,6 +187,16 @@ class Service::Io {
       asio::post(io_, [this, control, is_local, reply = std::move(reply)] { reply(handle(control, is_local)); });
     };
     return settings;
+  }
+
+  static Secret token_of(const settings::HttpConfig& http) {
+    if (http.token_file.empty()) return {};
+    auto token = drivers::sensor::secret_in_file(http.token_file);
+    std::string why = token ? "" : token.error().message;
+    if (token && token->reveal().size() < web::Access::kShortestToken) why = "\"" + http.token_file + "\" is too short";
+    if (why.empty()) return *token;
+    throw FailureError(
+        {"[http] token_file: " + why + "; `yuragi token --new` makes a token", FailureKind::kUnavailable});
   }
 
   static stream::AdmissionLimits admission_of(const settings::StreamConfig& stream) {

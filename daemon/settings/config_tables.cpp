@@ -51,17 +51,35 @@ const std::array kStreamParameters = {
               .choices = kControlPermissionNames},
 };
 
+constexpr std::array<std::string_view, 2> kReaders = {"anyone", "token"};
+
 const std::array kHttpParameters = {
-    Parameter{.name = "listen",
-              .unit = "",
-              .default_value = std::string(),
-              .help = "address and port that browsers, scripts and Prometheus ask: 127.0.0.1:7480, or 0.0.0.0:7480 for "
-                      "other machines, too; empty: none. Who may change something, [stream] control says"},
+    Parameter{
+        .name = "listen",
+        .unit = "",
+        .default_value = std::string(),
+        .help =
+            "address and port that browsers, scripts and Prometheus ask: 127.0.0.1:7480, or 0.0.0.0:7480 for "
+            "other machines, too; empty: none. What may be changed by this machine, [stream] control says; by others, "
+            "token_file"},
     Parameter{.name = "hosts",
               .unit = "",
               .default_value = std::string(),
               .help = "names, with blanks between them, by which others call this machine, besides its own name, "
                       "localhost and its addresses; a request for any other is refused"},
+    Parameter{
+        .name = "token_file",
+        .unit = "",
+        .default_value = std::string(),
+        .help = "a file with the token, which `yuragi token --new` makes; clients of other machines that show it, and "
+                "browsers that were paired with `yuragi token`, may change what this machine may; empty: they "
+                "change nothing",
+        .is_secret_file = true},
+    Parameter{.name = "readers",
+              .unit = "",
+              .default_value = std::string("anyone"),
+              .help = "who may read from other machines: anyone who reaches the port, or only those with the token",
+              .choices = kReaders},
 };
 
 const std::array kRecordingParameters = {

@@ -7,7 +7,12 @@
 namespace yuragi::daemon::settings {
 
 Result<HttpConfig, ParameterError> http_config_of(const ParameterValues& values) {
-  HttpConfig config{.listen = values.text("listen"), .hosts = {}};
+  HttpConfig config{.listen = values.text("listen"),
+                    .hosts = {},
+                    .token_file = values.text("token_file"),
+                    .reading_takes_token = values.text("readers") == "token"};
+  if (config.reading_takes_token && config.token_file.empty())
+    return ParameterError{"readers", "\"token\" takes a token_file; `yuragi token --new` makes one"};
   if (!config.listen.empty()) {
     if (const auto address = parse_address(config.listen); !address)
       return ParameterError{"listen", address.error().message};

@@ -12,6 +12,8 @@ namespace yuragi::daemon::settings {
 struct HttpConfig {
   std::string listen;              ///< HOST:PORT, see parse_address(); empty: nowhere
   std::vector<std::string> hosts;  ///< further names by which this machine is called
+  std::string token_file;          ///< empty: there is no token
+  bool reading_takes_token = false;
 };
 
 /// From the values of http_parameters(). An error names the key.

@@ -32,6 +32,8 @@ constexpr std::array kKeyRules = {
 
     KeyRule{"http", "listen", kTakesRestart},
     KeyRule{"http", "hosts", kTakesRestart},
+    KeyRule{"http", "token_file", kTakesRestart},
+    KeyRule{"http", "readers", kTakesRestart},
 
     KeyRule{"recording", "file", kTakesRestart},
     KeyRule{"recording", "rotate", kApplied},

@@ -34,6 +34,10 @@ std::vector<std::string> exposed_secrets(const Config& config, const std::filesy
       }
     }
   }
+  if (const std::string& token = config.http.token_file; !token.empty() && is_read_by_everybody(token)) {
+    warnings.push_back(
+        fmt::format("http.token_file: everybody on this machine can read {}; chmod 640 {}", token, token));
+  }
   return warnings;
 }
 

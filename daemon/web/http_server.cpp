@@ -86,14 +86,19 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const auto field = [&message](http::field name) { return text_of(message[name]); };
     const std::string target = text_of(message.target());
     const std::size_t mark = std::min(target.find('?'), target.size());
-    const HttpRequest request{.method = text_of(message.method_string()),
-                              .path = target.substr(0, mark),
-                              .query = mark < target.size() ? target.substr(mark + 1) : std::string(),
-                              .host = field(http::field::host),
-                              .origin = field(http::field::origin),
-                              .content_type = field(http::field::content_type),
-                              .body = message.body(),
-                              .client = client_};
+    const HttpRequest request{
+        .method = text_of(message.method_string()),
+        .path = target.substr(0, mark),
+        .query = mark < target.size() ? target.substr(mark + 1) : std::string(),
+        .host = field(http::field::host),
+        .origin = field(http::field::origin),
+        .content_type = field(http::field::content_type),
+        .authorization = field(http::field::authorization),
+        .cookie = field(http::field::cookie),
+        .body = message.body(),
+        .is_forwarded = message.count("Forwarded") + message.count("X-Forwarded-For") + message.count("X-Real-IP") > 0,
+        .is_https = text_of(message["X-Forwarded-Proto"]) == "https",
+        .client = client_};
     handler_(request, [self = shared_from_this()](HttpResponse response) { self->write(std::move(response)); });
   }
 

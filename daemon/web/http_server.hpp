@@ -26,7 +26,11 @@ struct HttpRequest {
   std::string host = {};
   std::string origin = {};
   std::string content_type = {};
+  std::string authorization = {};
+  std::string cookie = {};
   std::string body = {};
+  bool is_forwarded = false;  ///< a proxy says that it sends it for another
+  bool is_https = false;      ///< a proxy says that it came to it by HTTPS
   stream::Peer client = {};
 };
 

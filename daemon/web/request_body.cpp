@@ -95,6 +95,14 @@ Result<wire::Control, Failure> scene_control_of(std::string_view json) {
   return control;
 }
 
+Result<Pairing, Failure> pairing_of(std::string_view json) {
+  Body body(json);
+  Pairing pairing{.code = body.text("code", "")};
+  body.require(!pairing.code.empty(), "code: is missing: what `yuragi token` shows");
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return pairing;
+}
+
 Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json) {
   Body body(json);
   wire::PlayerCommand command;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "engine/base/result.hpp"
@@ -12,6 +13,14 @@ namespace yuragi::daemon::web {
 
 /// {"scene": name, "shown": true, "hide_others": false, "over_s": 2}
 Result<wire::Control, Failure> scene_control_of(std::string_view json);
+
+/// A code that somebody has typed to be let in.
+struct Pairing {
+  std::string code;
+};
+
+/// {"code": "K7QM-2XPD"}
+Result<Pairing, Failure> pairing_of(std::string_view json);
 
 /// {"action": "pause", "resume", "step", "seek" or "rate", "sensor": name, "count": 1, "place": "+30", "rate": 1}
 Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json);

@@ -13,7 +13,6 @@
 #include "daemon/web/metrics.hpp"
 #include "daemon/web/openapi.hpp"
 #include "daemon/web/problem.hpp"
-#include "daemon/web/request_body.hpp"
 
 namespace yuragi::daemon::web {
 namespace {
@@ -107,6 +106,12 @@ Answer change_player(const HttpRequest& request, const Facts& /*facts*/) {
                   }};
 }
 
+Answer pair(const HttpRequest& request, const Facts& /*facts*/) {
+  auto pairing = pairing_of(request.body);
+  if (!pairing) return problem(400, "Not understood", pairing.error().message);
+  return std::move(*pairing);
+}
+
 constexpr std::array kRoutes = {
     Route{"GET", "/healthz", health},
     Route{"GET", "/metrics", metrics},
@@ -116,6 +121,7 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/scenes", change_scene},
     Route{"GET", "/api/v1/player", players},
     Route{"POST", "/api/v1/player", change_player},
+    Route{"POST", kPairPath, pair},
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "daemon/web/http_server.hpp"
+#include "daemon/web/request_body.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::web {
@@ -27,7 +28,10 @@ struct Question {
   std::function<HttpResponse(const wire::ControlReply& reply)> answer;
 };
 
-using Answer = std::variant<HttpResponse, Question>;
+using Answer = std::variant<HttpResponse, Question, Pairing>;
+
+/// What those may do, too, who are let in nowhere else yet.
+inline constexpr std::string_view kPairPath = "/api/v1/pair";
 
 /// One thing that can be asked for.
 struct Route {

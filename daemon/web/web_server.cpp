@@ -12,6 +12,7 @@
 
 #include "daemon/web/http_server.hpp"
 #include "daemon/web/known_host.hpp"
+#include "daemon/web/permission.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/routes.hpp"
 #include "engine/wire/wire.hpp"
@@ -55,6 +56,7 @@ class WebServer::Thread {
  public:
   explicit Thread(WebSettings settings)
       : settings_(std::move(settings)),
+        access_(settings_.token.is_empty() ? std::nullopt : std::optional<Access>(settings_.token)),
         server_(std::make_unique<HttpServer>(
             *io_, settings_.listen, HttpLimits{.clients = settings_.clients},
             [this](const HttpRequest& request, HttpReply reply) { answer(request, std::move(reply)); })),
@@ -106,7 +108,14 @@ class WebServer::Thread {
     if (!only_reads && !request.content_type.starts_with("application/json"))
       return reply(problem(415, "Not JSON", "the body is to be JSON: Content-Type: application/json"));
 
-    const auto& news = request.client.is_local ? here_ : elsewhere_;
+    const double utc_s = seconds(std::chrono::system_clock::now().time_since_epoch());
+    const bool trusted = is_trusted(request, access_ ? &*access_ : nullptr, utc_s);
+    if (request.path != kPairPath) {
+      auto refusal = permission_refusal(request, trusted, access_.has_value(), settings_.reading_takes_token);
+      if (refusal) return reply(std::move(*refusal));
+    }
+
+    const auto& news = trusted ? here_ : elsewhere_;
     const Facts facts{.software = settings_.software,
                       .address = endpoint_,
                       .tick_rate_hz = settings_.tick_rate_hz,
@@ -115,7 +124,11 @@ class WebServer::Thread {
                       .patience_s = seconds(settings_.patience)};
     Answer answer = answer_to(request, facts);
     if (auto* const response = std::get_if<HttpResponse>(&answer)) return reply(std::move(*response));
-    ask(std::get<Question>(std::move(answer)), request.client.is_local, std::move(reply));
+    if (const auto* const pairing = std::get_if<Pairing>(&answer)) {
+      const double now_s = seconds(steady_clock::now().time_since_epoch());
+      return reply(pairing_answer(pairing->code, request, access_ ? &*access_ : nullptr, pairing_tries_, utc_s, now_s));
+    }
+    ask(std::get<Question>(std::move(answer)), trusted, std::move(reply));
   }
 
   void ask(Question question, bool is_local, HttpReply reply) {
@@ -139,6 +152,8 @@ class WebServer::Thread {
   }
 
   WebSettings settings_;
+  const std::optional<Access> access_;
+  PairingTries pairing_tries_;
   std::shared_ptr<asio::io_context> io_ = std::make_shared<asio::io_context>(1);
   asio::executor_work_guard<asio::io_context::executor_type> work_{io_->get_executor()};
   std::optional<News> here_, elsewhere_;

@@ -10,6 +10,7 @@
 
 #include "daemon/stream/client_admission.hpp"
 #include "daemon/stream/transport.hpp"
+#include "engine/base/secret.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi::daemon::web {
@@ -17,12 +18,14 @@ namespace yuragi::daemon::web {
 struct WebSettings {
   std::string listen = {};  ///< "HOST:PORT"; port 0 takes any free one
   std::vector<std::string> hosts =
-      {};  ///< names by which clients may call this machine, besides its own (known_host())
+      {};                            ///< names by which clients may call this machine, besides its own (known_host())
+  Secret token = {};                 ///< of clients of other machines; empty: they only read
+  bool reading_takes_token = false;  ///< then they do not read without it, either
   stream::AdmissionLimits clients = {};
   std::string software = {};  ///< "yuragi 0.2.0"
   double tick_rate_hz = 0.0;
   /// Carries out a client's request and calls `reply` once, on any thread. Called on the web server's own; must not
-  /// wait. Empty: every request is refused.
+  /// wait. `is_local`: the client is of this machine, or trusted as if it were. Empty: every request is refused.
   std::function<void(const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply)> ask =
       {};
   /// After so long without news of the daemon the page says that it hangs, and a question is given up.

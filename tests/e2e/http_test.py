@@ -6,6 +6,7 @@ usage: http_test.py FOLDER_OF_PROGRAMS
 import json
 import os
 import re
+import subprocess
 import sys
 import tempfile
 import time
@@ -20,19 +21,27 @@ SMALL_MEADOW = '[[scene]]\nname = "meadow"\nkind = "grass"\nblades_across = 20\n
 
 
 class Http(unittest.TestCase):
-    def start_daemon(self, sensor):
+    def write_config(self, text):
         file = os.path.join(self.enterContext(tempfile.TemporaryDirectory()), "yuragi.toml")
         with open(file, "w", encoding="utf-8") as config:
-            config.write('[http]\nlisten = "127.0.0.1:0"\n' + sensor + SMALL_MEADOW)
+            config.write(text)
+        return file
+
+    def start_daemon(self, sensor, http=""):
+        self.start_daemon_with(self.write_config('[http]\nlisten = "127.0.0.1:0"\n' + http + sensor + SMALL_MEADOW))
+
+    def start_daemon_with(self, file):
         daemon = self.enterContext(Program(YURAGI, "run", "--config", file, "--listen", "127.0.0.1:0"))
         self.base = daemon.wait_for(r"answering at (http://\S+)").group(1)
 
-    def ask(self, path, body=None):
-        """Status and text of the answer."""
+    def ask(self, path, body=None, **fields):
+        """Status and text of the answer; its cookies are in self.cookies."""
         data = None if body is None else json.dumps(body).encode()
-        request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json"})
+        fields = {name.replace("_", "-"): value for name, value in fields.items()}
+        request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json", **fields})
         try:
             with urllib.request.urlopen(request, timeout=HANG_S) as answer:
+                self.cookies = answer.headers.get("Set-Cookie", "")
                 return answer.status, answer.read().decode()
         except urllib.error.HTTPError as refusal:
             with refusal:
@@ -63,6 +72,35 @@ class Http(unittest.TestCase):
         self.start_daemon(f'[[sensor]]\nname = "roof"\ndriver = "nmea"\ntransport = "tcp"\nhost = "127.0.0.1"\nport = {free_port()}\n')
         self.wait_for("/healthz", 503, "roof.*127.0.0.1")
         self.wait_for("/metrics", 200, r'yuragi_sensor_believed{sensor="roof",driver="nmea"} 0\n')
+
+    def test_another_machine_changes_something_once_it_is_paired_or_has_the_token(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        token_file = os.path.join(folder, "token")
+        http = f'[http]\nlisten = "127.0.0.1:0"\ntoken_file = "{token_file}"\nreaders = "token"\n'
+        file = self.write_config(http + '[[sensor]]\nname = "roof"\ndriver = "synthetic"\n' + SMALL_MEADOW)
+        token = [YURAGI, "token", "--config", file]
+        self.assertEqual(subprocess.run(token, capture_output=True).returncode, 69, "there is none yet")
+        made = subprocess.run([*token, "--new"], capture_output=True, text=True, check=True)
+        self.assertEqual(os.stat(token_file).st_mode & 0o007, 0)
+        with open(token_file, encoding="ascii") as secret_file:
+            secret = secret_file.read().strip()
+        self.assertNotIn(secret, made.stdout + made.stderr)
+        self.start_daemon_with(file)
+
+        from_elsewhere = {"X_Forwarded_For": "192.0.2.7"}
+        hide = {"scene": "meadow", "shown": False, "over_s": 0}
+        self.assertEqual(self.ask("/api/v1/scenes", **from_elsewhere)[0], 401)
+        self.assertEqual(self.ask("/api/v1/scenes", hide, **from_elsewhere)[0], 401)
+        self.assertEqual(self.ask("/api/v1/scenes")[0], 200, "this machine needs no token")
+        self.assertEqual(self.ask("/api/v1/scenes", hide, **from_elsewhere, Authorization="Bearer " + secret)[0], 200)
+
+        code = json.loads(subprocess.run([*token, "--json"], capture_output=True, check=True).stdout)["pairing_code"]
+        self.assertEqual(self.ask("/api/v1/pair", {"code": "0000-0000"}, **from_elsewhere)[0], 403)
+        self.assertEqual(self.ask("/api/v1/pair", {"code": code.lower()}, **from_elsewhere)[0], 200)
+        self.assertRegex(self.cookies, "^yuragi_session=.*; HttpOnly; SameSite=Strict$")
+        session = self.cookies.split(";")[0]
+        self.assertEqual(self.ask("/api/v1/scenes", **from_elsewhere, Cookie=session)[0], 200)
+        self.assertEqual(self.ask("/api/v1/scenes", hide, **from_elsewhere, Cookie=session)[0], 200)
 
 
 if __name__ == "__main__":

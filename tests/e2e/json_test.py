@@ -73,6 +73,7 @@ TABLES = {
     "describe": ([], [r"^(\[.*?\])  # (.*)$", r"^  (\w+) {2,}(\S.*)$"]),
     "spectrum": (["--frequency", "0.01,0.1,1"], [r"^([\d.]+) ([\d.e-]+)$"]),
     "reload": (["--connect", "ADDRESS"], [r"^takes a restart: (.*)$"]),
+    "token": (["--config", "CONFIG"], [r"^pairing code: (\S+),"]),
     "scene list": (["--connect", "ADDRESS"], [r"^(\S+) +(\w+) "]),
     "scene values": (["--connect", "ADDRESS"], [r"^(\S+) \((\w+)\)$", r"^  (\w+) +([\d.]+)\b"]),
     "look values": (["--connect", "ADDRESS"], [r"^  (\w+) +([\d.]+)\b"]),
@@ -114,7 +115,11 @@ class Json(unittest.TestCase):
         cls.config = os.path.join(cls.folder, "wall.toml")
         with open(cls.config, "w", encoding="utf-8") as out:
             out.write(CONFIG.replace("FOLDER", cls.folder))
+            out.write(f'[http]\ntoken_file = "{cls.folder}/token"\n')
         os.chmod(cls.config, 0o640)
+        with open(os.path.join(cls.folder, "token"), "w", encoding="ascii") as out:
+            out.write("correct horse battery staple\n")
+        os.chmod(out.name, 0o640)
         subprocess.run([os.path.join(BIN, "yuragi-sim"), "recording", "-o", os.path.join(cls.folder, "wind.windlog"),
                         "--speed", "6", "--duration", "600"], check=True, stdout=subprocess.DEVNULL, timeout=HANG_S)
         daemon = Program(YURAGI, "run", "--config", cls.config, "--listen", "127.0.0.1:0")

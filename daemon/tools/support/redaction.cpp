@@ -114,6 +114,7 @@ std::vector<std::string> known_secrets(const settings::Config& config) {
   const auto add = [&](const Result<Secret, Failure>& secret) {
     if (secret) secrets.push_back(secret->reveal());
   };
+  if (!config.http.token_file.empty()) add(drivers::sensor::secret_in_file(config.http.token_file));
   for (const settings::SensorConfig& sensor : config.sensors) {
     for (const auto& [name, value] : sensor.values.all()) {
       const auto* secret = std::get_if<Secret>(&value);

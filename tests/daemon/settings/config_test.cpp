@@ -579,6 +579,13 @@ class SecretExposure : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(SecretExposure, IsToldOfATokenThatOthersCanRead) {
+  for (const auto& [mode, count] : {std::pair(0644U, 1U), std::pair(0640U, 0U)}) {
+    const std::string token = write("token", "correct horse battery staple\n", mode);
+    EXPECT_EQ(warnings_of("[http]\ntoken_file = \"" + token + "\"\n", 0640U).size(), count);
+  }
+}
+
 TEST_F(SecretExposure, IsToldOfAConfigurationThatOthersCanRead) {
   const std::string file = folder_ / "wall.toml";
   for (const mode_t open : {0644U, 0604U, 0666U}) {

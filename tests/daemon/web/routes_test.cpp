@@ -131,9 +131,10 @@ TEST(OpenApi, BodiesAreThoseThatAreTaken) {
                                                : json("meadow");
     return body.dump();
   };
-  for (const char* path : {"/api/v1/scenes", "/api/v1/player"}) {
+  for (const char* path : {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair"}) {
     const Answer answer = answer_to({.method = "POST", .path = path, .body = keys(path)}, {});
-    EXPECT_TRUE(std::holds_alternative<Question>(answer)) << std::get<HttpResponse>(answer).body;
+    const auto* const refusal = std::get_if<HttpResponse>(&answer);
+    EXPECT_EQ(refusal, nullptr) << refusal->body;
   }
 }
 

@@ -90,6 +90,7 @@ class WebServerTest : public testing::Test {
   WebSettings settings() {
     return {.listen = "127.0.0.1:0",
             .hosts = {"roof"},
+            .token = Secret("correct horse battery staple"),
             .software = "yuragi 0.0.0",
             .ask =
                 [this](const wire::Control& control, bool is_local, const auto& reply) {
@@ -136,6 +137,20 @@ TEST_F(WebServerTest, NobodyElsesPageSeesOrChangesAnything) {
   EXPECT_THAT(other.post("/api/v1/scenes", body, std::string(kJson) + "Origin: http://127.0.0.1\r\n"),
               StartsWith("HTTP/1.1 200"));
   EXPECT_EQ(asked_, "meadow from here;");
+}
+TEST_F(WebServerTest, OthersChangeSomethingWithTheTokenAlone) {
+  Client client(server_.local_endpoint());
+  const std::string body = R"({"scene":"meadow"})";
+  const std::string elsewhere = std::string(kJson) + "X-Forwarded-For: 192.168.1.30\r\n";
+  EXPECT_THAT(client.get("/api/v1/status", elsewhere), StartsWith("HTTP/1.1 200")) << "who reads needs none";
+  EXPECT_THAT(client.post("/api/v1/scenes", body, elsewhere), StartsWith("HTTP/1.1 401"));
+  EXPECT_THAT(client.post("/api/v1/scenes", body, elsewhere + "Authorization: Bearer wrong\r\n"),
+              StartsWith("HTTP/1.1 401"));
+  EXPECT_THAT(client.post("/api/v1/pair", R"({"code":"0000-0000"})", elsewhere), StartsWith("HTTP/1.1 403"));
+  EXPECT_EQ(asked_, "");
+  EXPECT_THAT(client.post("/api/v1/scenes", body, elsewhere + "Authorization: Bearer correct horse battery staple\r\n"),
+              StartsWith("HTTP/1.1 200"));
+  EXPECT_EQ(asked_, "meadow from here;") << "trusted as if it were";
 }
 TEST_F(WebServerTest, GarbageAndWhatIsTooLong) {
   const auto said_to = [this](const std::string& bytes) {

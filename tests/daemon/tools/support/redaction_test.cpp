@@ -67,14 +67,17 @@ TEST(Redaction, LeavesEverythingElse) {
 TEST(KnownSecrets, AreThoseOfTheConfigurationItsFilesAndItsEnvironment) {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "password") << "from-the-file\n";
+  std::ofstream(folder / "token") << "of-the-browsers\n";
   ASSERT_EQ(setenv("YURAGI_TEST_PASSWORD", "from-the-environment", 1), 0);  // NOLINT(concurrency-mt-unsafe)
   const std::string sensor = "[[sensor]]\ndriver = \"mqtt\"\ntopic = \"a\"\nuser = \"u\"\nname = ";
   const settings::Config config = settings::parse_config(
       sensor + "\"a\"\npassword = \"from-the-text\"\n" + sensor + "\"b\"\npassword_file = \"" +
           (folder / "password").string() + "\"\n" + sensor + "\"c\"\npassword_env = \"YURAGI_TEST_PASSWORD\"\n" +
-          sensor + "\"d\"\npassword_file = \"/nonexistent\"\n",
+          sensor + "\"d\"\npassword_file = \"/nonexistent\"\n[http]\ntoken_file = \"" + (folder / "token").string() +
+          "\"\n",
       "test.toml");
-  EXPECT_THAT(known_secrets(config), testing::ElementsAre("from-the-text", "from-the-file", "from-the-environment"));
+  EXPECT_THAT(known_secrets(config), testing::UnorderedElementsAre("from-the-text", "from-the-file",
+                                                                   "from-the-environment", "of-the-browsers"));
 }
 
 }  // namespace

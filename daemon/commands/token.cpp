@@ -1,0 +1,110 @@
+// `yuragi token`: shows a code that lets a browser of another machine in, and makes the token behind it.
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
+#include "daemon/commands/json_output.hpp"
+#include "daemon/settings/config.hpp"
+#include "daemon/settings/output_file.hpp"
+#include "daemon/web/access.hpp"
+#include "drivers/sensor/secret_source.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi::daemon::commands {
+namespace {
+
+constexpr const char* kTokenFooter =
+    "[http] token_file in the configuration names the file of the token. A browser on another machine is let in for a\n"
+    "year by the code, which is another one every ten minutes; scripts send the token itself: Authorization: Bearer "
+    "TOKEN.\n"
+    "  yuragi token --config wall.toml            the code of now\n"
+    "  yuragi token --config wall.toml --new      makes the file of the token; where there was one, it is replaced, "
+    "and\n"
+    "                                             all who knew it are out once the daemon has been started again\n"
+    "A file that is new can be read by its owner and by the group of the configuration's file.\n"
+    "--json: pairing_code, and for how long it is taken (valid_s).\n"
+    "Exit code 0: done; 69: there is no token yet; 73: its file cannot be written; 78: the configuration has a "
+    "mistake,\n"
+    "or names no file.";
+
+struct TokenOptions {
+  std::filesystem::path config_file;
+  bool makes_new = false;
+  bool as_json = false;
+};
+
+/// Nobody else can read it at any moment. Throws FailureError.
+void write_token(const std::filesystem::path& file, const std::filesystem::path& config_file) {
+  settings::OutputFile output(file, true);
+  const std::string path = output.working_path().string();
+  const auto fail = [&path](const char* what) {
+    throw FailureError(
+        {path + ": " + what + ": " + std::generic_category().message(errno), FailureKind::kCannotCreate});
+  };
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (descriptor < 0) fail("cannot be created");
+  const std::string line = web::Access::new_token().reveal() + "\n";
+  struct stat config {};
+  const bool is_written = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+  // The daemon's group, where it may be given away to it.
+  const bool is_given = ::stat(config_file.c_str(), &config) == 0 &&
+                        ::fchown(descriptor, static_cast<uid_t>(-1), config.st_gid) == 0 &&
+                        ::fchmod(descriptor, S_IRUSR | S_IWUSR | S_IRGRP) == 0;
+  const bool is_on_disk = is_written && ::fsync(descriptor) == 0;
+  if (::close(descriptor) != 0 || !is_on_disk) fail("cannot be written");
+  if (const auto done = output.commit(); !done) throw FailureError(done.error());
+  fmt::print(stderr, "{}: a new token, for {}; start the daemon again\n", file.string(),
+             is_given ? "its owner and the configuration's group" : "its owner alone");
+}
+
+void show_token(const TokenOptions& options) {
+  const settings::Config config = settings::load_config(options.config_file);
+  const std::filesystem::path file = config.http.token_file;
+  if (file.empty()) {
+    throw ExitError(kExitConfig, options.config_file.string() +
+                                     ": has no [http] token_file: name a file in which the token is to be, such as "
+                                     "token_file = \"/etc/yuragi/token\"");
+  }
+  if (options.makes_new) write_token(file, options.config_file);
+  const auto token = drivers::sensor::secret_in_file(file);
+  if (!token)
+    throw ExitError(kExitUnavailable, "token_file: " + token.error().message + "; `yuragi token --new` makes one");
+
+  const double utc_s = seconds(std::chrono::system_clock::now().time_since_epoch());
+  const double step_s = web::Access::kCodeStep_s;
+  const double left_s = 2.0 * step_s - std::fmod(utc_s, step_s);
+  const std::string code = web::Access(*token).pairing_code(utc_s);
+  if (options.as_json) return print_json({{"pairing_code", code}, {"valid_s", left_s}});
+  fmt::print("pairing code: {}, for {:.0f} minutes\n", code, std::floor(left_s / 60.0));
+}
+
+void add_token_command(CLI::App& app) {
+  const auto options = std::make_shared<TokenOptions>();
+  CLI::App* token = app.add_subcommand("token", "let browsers of other machines change something");
+  token->add_option("--config", options->config_file, "the daemon's configuration (TOML)")
+      ->required()
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile);
+  token->add_flag("--new", options->makes_new, "make a new token first");
+  add_json(*token, options->as_json);
+  token->footer(kTokenFooter);
+  token->callback([options] { show_token(*options); });
+}
+
+}  // namespace
+
+extern const Command kTokenCommand;
+const Command kTokenCommand{add_token_command};
+
+}  // namespace yuragi::daemon::commands
