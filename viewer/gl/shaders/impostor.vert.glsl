@@ -6,13 +6,14 @@ uniform int is_by_sun;
 
 layout(location = 0) in vec4 foot_scale;
 layout(location = 1) in vec4 turn_sway;
-layout(location = 2) in float drawn_share;
+layout(location = 2) in vec3 share_hanging_chance;
 
 out vec2 at;  // in the picture, -1 to 1
 out vec3 place_m;
 flat out vec3 toward;     // the eye
 flat out vec3 turn_side;  // cosine and sine; and the side, not a whole number
 flat out vec2 row_share;
+flat out vec2 hanging_chance;
 
 const float kSides = 8.0;
 const float kRows = 3.0;
@@ -40,10 +41,12 @@ void main() {
   place_m.xz += scale * turn_sway.zw * lever;
   gl_Position = to_clip * vec4(place_m, 1.0);
   // While it fades in, it is before the leaves over which it does.
+  float drawn_share = share_hanging_chance.x;
   if (drawn_share < 1.0 && is_by_sun == 0) {
     vec4 before = to_clip * vec4(place_m + scale * half_m.x * to_eye, 1.0);
     gl_Position.z = before.z / before.w * gl_Position.w;
   }
   turn_side = vec3(turn, side < 0.0 ? side + kSides : side);
   row_share = vec2(row, drawn_share);
+  hanging_chance = share_hanging_chance.yz;
 }
