@@ -36,6 +36,7 @@ void make_atlas(GLint unit, const gl::GlTexture& texture) {
 void LeafColors::set(const gl::GlProgram& program) const {
   glUniform1i(glGetUniformLocation(program.name(), "has_palette"), has_palette ? 1 : 0);
   glUniform1f(glGetUniformLocation(program.name(), "turns_red"), turns_red);
+  glUniform1f(glGetUniformLocation(program.name(), "silver"), silver);
 }
 
 TreeImpostors::TreeImpostors(const meshes::ImpostorBox& box, const glm::vec3& foot_m, meshes::SprayShape::Kind kind,
@@ -107,7 +108,7 @@ void TreeImpostors::end() {
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-void TreeImpostors::draw(std::span<const meshes::TreeImpostor> trees, bool is_by_sun) {
+void TreeImpostors::draw(std::span<const meshes::TreeImpostor> trees, float blown, bool is_by_sun) {
   if (trees.empty()) return;
   glActiveTexture(GL_TEXTURE0 + gl::kImpostorUnit);
   glBindTexture(GL_TEXTURE_2D, looks_.name());
@@ -120,6 +121,7 @@ void TreeImpostors::draw(std::span<const meshes::TreeImpostor> trees, bool is_by
   glUniform1i(glGetUniformLocation(program_.name(), "is_by_sun"), is_by_sun ? 1 : 0);
   glUniform1i(glGetUniformLocation(program_.name(), "kind"), static_cast<GLint>(kind_));
   colors_.set(program_);
+  glUniform1f(glGetUniformLocation(program_.name(), "blown"), blown);
   glUniform1f(glGetUniformLocation(program_.name(), "side_px"), static_cast<float>(kPicture_px));
   glBindVertexArray(array_.name());
   gl::stream_to(GL_ARRAY_BUFFER, trees_, trees);

@@ -14,6 +14,7 @@ namespace yuragi::viewer::looks {
 struct LeafColors {
   bool has_palette = false;  ///< they take the palette's
   float turns_red = 0.0F;    ///< how far they turn in autumn, 0 to 1
+  float silver = 0.0F;       ///< how pale their lower faces are, 0 to 1
   void set(const gl::GlProgram& program) const;
 };
 
@@ -36,7 +37,8 @@ class TreeImpostors {
   }
 
   /// Draws sheets, which face the eye or, for their shadows, the sun.
-  void draw(std::span<const meshes::TreeImpostor> trees, bool is_by_sun);
+  /// `blown`: how far the wind has turned their sprays from rest (SprayPlace), on average.
+  void draw(std::span<const meshes::TreeImpostor> trees, float blown, bool is_by_sun);
 
  private:
   void begin();

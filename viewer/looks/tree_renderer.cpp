@@ -147,7 +147,9 @@ float hanging_of(float tree_chance, float leaves) {
 }
 
 LeafColors colors_of(const pose::TreeSkeleton& tree) {
-  LeafColors colors{.has_palette = tree.foliage == pose::FoliageColor::kGreen, .turns_red = 0.2F};
+  LeafColors colors{.has_palette = tree.foliage == pose::FoliageColor::kGreen,
+                    .turns_red = 0.2F,
+                    .silver = meshes::spray_shape(tree).silver};
   switch (meshes::leaf_species(tree)) {
     case meshes::LeafSpecies::kCherry:
       colors.turns_red = 1.0F;
@@ -379,7 +381,8 @@ std::unique_ptr<TreeImpostors> TreeRenderer::pictures_of(gl::ViewBuffer& views, 
   auto pictures = std::make_unique<TreeImpostors>(
       box_, own.from_m, is_bare ? meshes::SprayShape::Kind::kTwigs : foliages_.front()->shape.kind, colors_);
   pictures->make(views, [&](const meshes::View& picture) {
-    draw_tree({bark, leaf, {}, kPictureTwig_px}, picture, kPictureDetail, kPictureRing_px, *at_rest, own, hanging);
+    draw_tree({bark, leaf, {.silver = colors_.silver}, kPictureTwig_px}, picture, kPictureDetail, kPictureRing_px,
+              *at_rest, own, hanging);
   });
   return pictures;
 }
@@ -425,13 +428,14 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail&
     }
   }
   if (far_trees_.empty()) return;
-  if (moment_.hanging_leaves > 0.0F || !bare_impostors_) impostors_->draw(far_trees_, is_shadow);
+  const float blown = foliages_.empty() ? 0.0F : trees_.front()->crowns.front().blown();
+  if (moment_.hanging_leaves > 0.0F || !bare_impostors_) impostors_->draw(far_trees_, blown, is_shadow);
   if (!bare_impostors_) return;
   // Behind what is left of the leaves; nothing of those that have enough.
   const auto& twigs = *foliages_.back();
   std::erase_if(far_trees_, [&](const meshes::TreeImpostor& tree) { return shown_share(twigs, tree.hanging) == 0.0F; });
   for (meshes::TreeImpostor& tree : far_trees_) tree.hanging = shown_share(twigs, tree.hanging);
-  bare_impostors_->draw(far_trees_, is_shadow);
+  bare_impostors_->draw(far_trees_, 0.0F, is_shadow);
 }
 
 void TreeRenderer::draw_tree(const Programs& programs, const meshes::View& view, const meshes::SprayDetail& detail,
@@ -510,7 +514,6 @@ void TreeRenderer::draw_sprays(const gl::GlProgram& program, const Foliage& foli
   if (crown.places().empty()) return;
   glUseProgram(program.name());
   set_int(program, "kind", static_cast<std::size_t>(foliage.shape.kind));
-  glUniform1f(glGetUniformLocation(program.name(), "silver"), foliage.shape.silver);
   gl::stream_to(GL_ARRAY_BUFFER, foliage.place_buffer, crown.places());
   for (const meshes::SprayGroup& group : crown.groups()) {
     if (group.count == 0) continue;

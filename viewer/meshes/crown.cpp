@@ -187,6 +187,7 @@ void Crown::move_to(const pose::TreeJoints& joints) {
   const pose::TreeLevel& level = tree_->levels[level_];
   const std::size_t links = level.strands.links_per_strand;
   const pose::JointPositions& own = joints.level(level_);
+  blown_ = 0.0F;
   for (std::size_t block = 0; block < balls_.size(); ++block) {
     glm::vec3 sum_m(0.0F);
     const std::size_t first = block * pose::kStrandsPerBlock;
@@ -210,6 +211,7 @@ void Crown::move_to(const pose::TreeJoints& joints) {
       const glm::vec3 to = direction_to(spray.root_m, spray.tip_m);
       spray.upper = turned(vector_of(parts_[i].facing), rest, to);
       spray.blown = glm::dot(to - rest, to - rest);
+      blown_ += spray.blown;
       sum_m += spray.root_m + spray.tip_m;
     }
     Ball& ball = balls_[block];
@@ -221,6 +223,7 @@ void Crown::move_to(const pose::TreeJoints& joints) {
     }
     ball.radius_m += 2.0F * leaf_m_;
   }
+  blown_ /= static_cast<float>(std::max<std::size_t>(parts_.size(), 1));
 }
 
 void Crown::choose(const View& view, const SprayDetail& detail, const TreePlace& place) {

@@ -56,6 +56,9 @@ class Crown {
 
   void move_to(const pose::TreeJoints& joints);
 
+  /// The mean of SprayPlace::blown.
+  float blown() const { return blown_; }
+
   /// Those in view of the tree, or of a copy of it.
   void choose(const View& view, const SprayDetail& detail, const TreePlace& place = {});
   std::span<const SprayPlace> places() const { return std::span(chosen_).first(chosen_count_); }
@@ -88,6 +91,7 @@ class Crown {
   std::vector<SprayGroup> groups_;
   std::vector<SprayPlace> chosen_;
   std::size_t chosen_count_ = 0;
+  float blown_ = 0.0F;
 };
 
 /// How much light comes to each strand of a level of leaves through the others, from all around: see SprayPlace::open.

@@ -118,8 +118,11 @@ TEST_F(CrownTest, ShownBareItHasStiffTwigsInThePlaceOfItsLeaves) {
   bare.move_to(joints_);
   bare.choose(view_at(middle_m(), 8.0), {});
   const std::vector<SprayPlace> before(bare.places().begin(), bare.places().end());
+  EXPECT_LT(crown_.blown(), 1e-3F) << "at rest";
   ASSERT_EQ(job.run(), pose::TreeKinematicsJob::Problem::kNone);
   bare.move_to(joints_);
+  crown_.move_to(joints_);
+  EXPECT_GT(crown_.blown(), 0.05F);
   bare.choose(view_at(middle_m(), 8.0), {});
   ASSERT_EQ(bare.places().size(), before.size());
   for (std::size_t i = 0; i < before.size(); ++i) {

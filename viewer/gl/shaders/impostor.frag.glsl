@@ -4,6 +4,7 @@
 uniform sampler2D looks;   // the square root of what is reflected, less the palette's factor
 uniform sampler2D facing;  // the normal; below one half: wood, above: leaves, and how much light comes to them
 uniform int kind;          // SprayShape::Kind
+uniform float blown;        // the mean of its sprays (SprayPlace)
 uniform float side_px;     // of a picture
 
 in vec2 at;
@@ -44,6 +45,8 @@ void main() {
     }
     float twig = 0.5 + 0.5 * sin(at.x * 9.0 + 40.0 * hanging_chance.y) * sin(at.y * 11.0 + 3.0 * side);
     paint *= mix(vec3(1.0), palette_of(hanging_chance.y, twig, open), is_leaf);
+    // In a storm leaves are turned over, some sprays before others: of them one sees the lower faces.
+    paint = mix(paint, lower_face(paint), 0.6 * is_leaf * turned_over(blown * (0.5 + twig), 0.3 * fract(chance + 0.53)));
   }
   // The mean of the leaves of a pixel: the shorter, the more they differ.
   vec3 normal = shape.xyz * 2.0 - 1.0;
@@ -53,7 +56,7 @@ void main() {
   vec3 right = vec3(toward.z, 0.0, -toward.x) * inversesqrt(max(dot(toward.xz, toward.xz), 1e-6));
   float depth = sqrt(max(1.0 - dot(at, at), 0.0));
   vec3 outward = normalize(at.x * right + at.y * cross(toward, right) + (0.2 + depth) * toward);
-  float sun_seen = clamp(open * (0.40 + 0.55 * open + 0.65 * dot(outward, to_sun.xyz)), 0.02, 1.0);
+  float sun_seen = clamp(open * (0.32 + 0.95 * open + 0.55 * dot(outward, to_sun.xyz)), 0.02, 1.0);
   float sky_seen = clamp(open * (1.0 + 0.45 * outward.y), 0.32, 1.0);
   vec3 sum = paint * soft_light(normal) * sky_seen;
   float facing_sun = dot(normal, to_sun.xyz);

@@ -10,7 +10,6 @@ uniform float hanging; // how many of the leaves are left; of twigs that leaves 
 uniform float leafy;   // how many leaves there are around, 0 to 1
 uniform float tree_chance;  // TreePlace::chance()
 uniform float thinnest_px;  // half as wide is a twig at least
-uniform float silver;  // how pale the lower faces of its leaves are: 0 hardly, 1 like a poplar's
 
 // SprayPlace (viewer/meshes/crown.hpp).
 layout(location = 0) in vec4 root_length;  // metres
@@ -31,13 +30,6 @@ out float own_open;
 const float kStalkRadius_m = 0.0011;
 const float kTwigRadius_m = 0.0022;
 const float kPedicel_m = 0.030;
-
-// The lower face's color: brighter than the upper one's, and greyer, because of hairs and wax.
-vec3 lower_face(vec3 upper_face) {
-  float grey = dot(upper_face, vec3(0.21, 0.72, 0.07));
-  vec3 pale = mix(upper_face, grey * vec3(0.98, 1.0, 0.92), 0.30 + 0.45 * silver) * (1.6 + 1.3 * silver);
-  return min(pale, vec3(0.55));
-}
 
 // Three numbers from 0 to 1 that stay with a leaf (after M. Jarzynski and M. Olano 2020, "Hash functions for GPU
 // rendering", pcg3d).
@@ -102,7 +94,7 @@ void main() {
     vec3 leaf_across = normalize(cross(to, upper));
     vec3 leaf_up = cross(leaf_across, to);
     // The harder it blows, the more of them are turned over, so that their lower faces stream in the gust.
-    float over = smoothstep(0.0, 0.25, smoothstep(0.04, 0.75, blown) - chance.y);
+    float over = turned_over(blown, chance.y);
     float roll = 1.7 * (chance.z - 0.5) + 2.0 * (chance.y - 0.5) * blown + (chance.x < 0.5 ? -2.5 : 2.5) * over;
     normal = cos(roll) * leaf_up + sin(roll) * leaf_across;
     leaf_across = cross(to, normal);
