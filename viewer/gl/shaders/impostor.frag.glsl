@@ -4,7 +4,6 @@
 uniform sampler2D looks;   // the square root of what is reflected, less the palette's factor
 uniform sampler2D facing;  // the normal; below one half: wood, above: leaves, and how much light comes to them
 uniform int kind;          // SprayShape::Kind
-uniform float blown;        // the mean of its sprays (SprayPlace)
 uniform float side_px;     // of a picture
 
 in vec2 at;
@@ -13,6 +12,7 @@ flat in vec3 toward;
 flat in vec3 turn_side;
 flat in vec2 row_share;
 flat in vec2 hanging_chance;
+flat in float lower_share;
 out vec4 color;
 
 void main() {
@@ -43,10 +43,9 @@ void main() {
       mixed_up = (mixed_up ^ (mixed_up >> 15u)) * 2654435769u;
       if (hangs(hanging_chance.x, float(mixed_up >> 8u) / 16777216.0) < 0.5) discard;
     }
-    float twig = 0.5 + 0.5 * sin(at.x * 9.0 + 40.0 * hanging_chance.y) * sin(at.y * 11.0 + 3.0 * side);
+    float twig = abs(abs(2.0 * fract(1.4 * at.x + 6.4 * hanging_chance.y) - 1.0) - abs(2.0 * fract(1.75 * at.y + 0.48 * side) - 1.0));
     paint *= mix(vec3(1.0), palette_of(hanging_chance.y, twig, open), is_leaf);
-    // In a storm leaves are turned over, some sprays before others: of them one sees the lower faces.
-    paint = mix(paint, lower_face(paint), 0.6 * is_leaf * turned_over(blown * (0.5 + twig), 0.3 * fract(chance + 0.53)));
+    paint = mix(paint, lower_face(paint), is_leaf * lower_share);
   }
   // The mean of the leaves of a pixel: the shorter, the more they differ.
   vec3 normal = shape.xyz * 2.0 - 1.0;

@@ -1,8 +1,10 @@
+#include "foliage.part.glsl"
 // The sheet of a far tree's impostor (viewer/meshes/tree_impostor.hpp): it faces the eye, or the sun, and shows the
 // picture of the side from which that sees the tree.
 uniform vec3 to_middle_m;  // from the tree's foot to the middle of its pictures
 uniform vec2 half_m;       // of their width and height
 uniform int is_by_sun;
+uniform float blown;  // the mean of its sprays (SprayPlace)
 
 layout(location = 0) in vec4 foot_scale;
 layout(location = 1) in vec4 turn_sway;
@@ -14,6 +16,7 @@ flat out vec3 toward;     // the eye
 flat out vec3 turn_side;  // cosine and sine; and the side, not a whole number
 flat out vec2 row_share;
 flat out vec2 hanging_chance;
+flat out float lower_share;  // how much more than at rest one sees of the lower faces of leaves
 
 const float kSides = 8.0;
 const float kRows = 3.0;
@@ -49,4 +52,6 @@ void main() {
   turn_side = vec3(turn, side < 0.0 ? side + kSides : side);
   row_share = vec2(row, drawn_share);
   hanging_chance = share_hanging_chance.yz;
+  // In a storm leaves are turned over, of some trees before others.
+  lower_share = 0.6 * turned_over(blown * (0.75 + 0.5 * hanging_chance.y), 0.15);
 }
