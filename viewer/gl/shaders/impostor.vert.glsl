@@ -53,5 +53,5 @@ void main() {
   row_share = vec2(row, drawn_share);
   hanging_chance = share_hanging_chance.yz;
   // In a storm leaves are turned over, of some trees before others.
-  lower_share = 0.6 * turned_over(blown * (0.75 + 0.5 * hanging_chance.y), 0.15);
+  lower_share = 0.14 * turned_over(blown * (0.75 + 0.5 * hanging_chance.y), 0.15);
 }
