@@ -28,10 +28,11 @@ glm::vec4 turned(const glm::vec4& a, const glm::vec4& b, float share) {
 Light mixed(const Light& a, const Light& b, float share) {
   Light light;
   constexpr glm::vec4 Light::*kPlain[] = {
-      &Light::sun_light,   &Light::sky_light,  &Light::turf_light,  &Light::zenith,     &Light::horizon_near,
-      &Light::horizon_far, &Light::glow_wide,  &Light::glow_narrow, &Light::glow_disc,  &Light::cloud_light,
-      &Light::cloud_glow,  &Light::air,        &Light::colors,      &Light::grass_lush, &Light::grass_fresh,
-      &Light::grass_straw, &Light::grass_foot, &Light::leaves,      &Light::woods,      &Light::earth};
+      &Light::sun_light,    &Light::sky_light,  &Light::turf_light,  &Light::zenith,     &Light::horizon_near,
+      &Light::horizon_far,  &Light::glow_wide,  &Light::glow_narrow, &Light::glow_disc,  &Light::cloud_light,
+      &Light::cloud_glow,   &Light::air,        &Light::colors,      &Light::grass_lush, &Light::grass_fresh,
+      &Light::grass_straw,  &Light::grass_foot, &Light::leaves,      &Light::woods,      &Light::earth,
+      &Light::turned_leaves};
   for (glm::vec4 Light::*const part : kPlain) light.*part = glm::mix(a.*part, b.*part, share);
   for (std::size_t i = 0; i < a.petals.size(); ++i)
     light.petals.at(i) = glm::mix(a.petals.at(i), b.petals.at(i), share);

@@ -35,9 +35,10 @@ struct Light {
   glm::vec4 grass_straw{0.0F};  ///< where it is dry
   glm::vec4 grass_foot{0.0F};   ///< near the ground
   std::array<glm::vec4, 3> petals{};
-  glm::vec4 leaves{1.0F};  ///< factor on leaves of trees
-  glm::vec4 woods{1.0F};   ///< factor on far woods; w: snow on hills, 0 to 1
-  glm::vec4 earth{0.0F};   ///< the ground where nothing grows; w: how uneven it looks
+  glm::vec4 leaves{1.0F};         ///< factor on leaves of trees; w: the share of them that hang, 0 in winter
+  glm::vec4 woods{1.0F};          ///< factor on far woods; w: snow on hills, 0 to 1
+  glm::vec4 earth{0.0F};          ///< the ground where nothing grows; w: how uneven it looks
+  glm::vec4 turned_leaves{1.0F};  ///< factor on those leaves that have turned the farthest; w: free
 };
 
 /// From `a` (share 0) to `b` (share 1). Where their suns stand far apart, the one's light ends before the other's

@@ -17,7 +17,9 @@ struct Palette {
   float dryness;    ///< more straw above 0, less below it; -1 to 1
   float flowers;    ///< how many there are: 1 as in a meadow
   std::array<glm::vec3, 3> petals;
-  glm::vec3 leaves;   ///< factor on the leaves of trees, but not on blossom
+  glm::vec3 leaves;   ///< factor on the leaves of trees, but not on blossom,
+  glm::vec3 turned;   ///< and on those that have turned the farthest
+  float hanging;      ///< the share of leaves that hang: 0 is a bare tree
   glm::vec3 woods;    ///< factor on the woods far away
   float snow;         ///< on hills and mountains, 0 to 1
   float colorful;     ///< of the whole picture: 0 is black and white
@@ -35,6 +37,8 @@ constexpr std::array<Palette, 6> kPalettes{{
      .flowers = 1.0F,
      .petals = {{{0.72F, 0.70F, 0.62F}, {0.70F, 0.45F, 0.05F}, {0.34F, 0.14F, 0.42F}}},
      .leaves = {1.0F, 1.0F, 1.0F},
+     .turned = {1.12F, 1.0F, 0.95F},
+     .hanging = 1.0F,
      .woods = {1.0F, 1.0F, 1.0F},
      .snow = 0.0F,
      .colorful = 1.0F,
@@ -48,6 +52,8 @@ constexpr std::array<Palette, 6> kPalettes{{
      .flowers = 2.6F,
      .petals = {{{0.80F, 0.78F, 0.72F}, {0.80F, 0.60F, 0.04F}, {0.62F, 0.26F, 0.40F}}},
      .leaves = {1.25F, 1.30F, 0.85F},
+     .turned = {1.40F, 1.30F, 0.85F},
+     .hanging = 1.0F,
      .woods = {1.35F, 1.45F, 0.85F},
      .snow = 0.0F,
      .colorful = 1.0F,
@@ -60,7 +66,9 @@ constexpr std::array<Palette, 6> kPalettes{{
      .dryness = 0.30F,
      .flowers = 0.35F,
      .petals = {{{0.62F, 0.55F, 0.40F}, {0.60F, 0.36F, 0.06F}, {0.26F, 0.20F, 0.44F}}},
-     .leaves = {1.20F, 1.0F, 0.70F},
+     .leaves = {1.10F, 1.0F, 0.72F},
+     .turned = {1.75F, 1.05F, 0.60F},
+     .hanging = 1.0F,
      .woods = {1.55F, 1.15F, 0.75F},
      .snow = 0.0F,
      .colorful = 1.0F,
@@ -73,7 +81,9 @@ constexpr std::array<Palette, 6> kPalettes{{
      .dryness = 0.12F,
      .flowers = 0.3F,
      .petals = {{{0.50F, 0.38F, 0.36F}, {0.58F, 0.20F, 0.04F}, {0.36F, 0.10F, 0.22F}}},
-     .leaves = {3.9F, 1.05F, 0.35F},
+     .leaves = {2.5F, 1.40F, 0.42F},
+     .turned = {5.0F, 0.72F, 0.32F},
+     .hanging = 0.75F,
      .woods = {3.6F, 1.45F, 0.75F},
      .snow = 0.0F,
      .colorful = 1.0F,
@@ -87,6 +97,8 @@ constexpr std::array<Palette, 6> kPalettes{{
      .flowers = 0.0F,
      .petals = {{{0.70F, 0.70F, 0.70F}, {0.70F, 0.70F, 0.70F}, {0.70F, 0.70F, 0.70F}}},
      .leaves = {2.2F, 1.35F, 1.3F},
+     .turned = {2.2F, 1.35F, 1.3F},
+     .hanging = 0.0F,
      .woods = {1.9F, 1.35F, 1.8F},
      .snow = 0.85F,
      .colorful = 0.85F,
@@ -100,6 +112,8 @@ constexpr std::array<Palette, 6> kPalettes{{
      .flowers = 0.5F,
      .petals = {{{0.80F, 0.80F, 0.80F}, {0.70F, 0.70F, 0.70F}, {0.05F, 0.05F, 0.05F}}},
      .leaves = {0.7F, 0.7F, 0.7F},
+     .turned = {0.7F, 0.7F, 0.7F},
+     .hanging = 1.0F,
      .woods = {0.8F, 0.8F, 0.8F},
      .snow = 0.0F,
      .colorful = 0.06F,
@@ -129,7 +143,8 @@ void set_colors(const look::Look& look, Light& light) {
   light.grass_straw = {palette.straw, 0.0F};
   light.grass_foot = {palette.foot, 0.0F};
   for (std::size_t i = 0; i < palette.petals.size(); ++i) light.petals.at(i) = {palette.petals.at(i), 0.0F};
-  light.leaves = {palette.leaves, 0.0F};
+  light.leaves = {palette.leaves, palette.hanging};
+  light.turned_leaves = {palette.turned, 0.0F};
   light.woods = {palette.woods, palette.snow};
   const Earth& earth = kEarths.at(static_cast<std::size_t>(look.ground));
   light.earth = {earth.color, earth.relief};

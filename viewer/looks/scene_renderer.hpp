@@ -24,12 +24,13 @@ class SceneRenderer {
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
-  /// What move_to() is to go by besides: the stream's time, the wind toward east and south, and how bright flames are
-  /// in the picture (light::flame_brightness). Called before it.
+  /// What move_to() is to go by besides: the stream's time, the wind toward east and south, how bright flames are in
+  /// the picture (light::flame_brightness), and the share of leaves that hang on trees. Called before it.
   struct Moment {
     double time_s = 0.0;
     glm::vec2 wind_m_s{0.0F};
     float flame_brightness = 1.0F;
+    float hanging_leaves = 1.0F;
   };
   virtual void set_moment(const Moment&) {}
 

@@ -217,7 +217,8 @@ void Stage::move_to(const stream::PoseMoment& moment) {
   const SceneRenderer::Moment now{
       .time_s = moment.time_s,
       .wind_m_s = {static_cast<float>(moment.wind.wind.u_m_s), -static_cast<float>(moment.wind.wind.v_m_s)},
-      .flame_brightness = light::flame_brightness(light_.air.x)};
+      .flame_brightness = light::flame_brightness(light_.air.x),
+      .hanging_leaves = light_.leaves.w};
   fires_.clear();
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     const Seen& seen = seen_[scene];

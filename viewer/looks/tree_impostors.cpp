@@ -33,10 +33,18 @@ void make_atlas(GLint unit, const gl::GlTexture& texture) {
 
 }  // namespace
 
-TreeImpostors::TreeImpostors(const meshes::ImpostorBox& box, const glm::vec3& foot_m, meshes::SprayShape::Kind kind)
+void LeafColors::set(const gl::GlProgram& program) const {
+  glUniform1i(glGetUniformLocation(program.name(), "has_palette"), has_palette ? 1 : 0);
+  glUniform1f(glGetUniformLocation(program.name(), "turns_red"), turns_red);
+  glUniform1f(glGetUniformLocation(program.name(), "silver"), silver);
+}
+
+TreeImpostors::TreeImpostors(const meshes::ImpostorBox& box, const glm::vec3& foot_m, meshes::SprayShape::Kind kind,
+                             const LeafColors& colors)
     : box_(box),
       to_middle_m_(box.middle_m - foot_m),
       kind_(kind),
+      colors_(colors),
       program_(gl::link_program("impostor", gl::shaders::kImpostorVert, gl::shaders::kImpostorFrag)) {
   make_atlas(gl::kImpostorUnit, looks_);
   make_atlas(gl::kImpostorFacingUnit, facing_);
@@ -52,7 +60,7 @@ TreeImpostors::TreeImpostors(const meshes::ImpostorBox& box, const glm::vec3& fo
   }
   glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(Tree), offset_in_tree(offsetof(Tree, foot_scale)));
   glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(Tree), offset_in_tree(offsetof(Tree, turn_sway)));
-  glVertexAttribPointer(2, 1, GL_FLOAT, GL_FALSE, sizeof(Tree), offset_in_tree(offsetof(Tree, share)));
+  glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, sizeof(Tree), offset_in_tree(offsetof(Tree, share)));
 }
 
 void TreeImpostors::begin() {
@@ -100,7 +108,7 @@ void TreeImpostors::end() {
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-void TreeImpostors::draw(std::span<const meshes::TreeImpostor> trees, bool is_by_sun) {
+void TreeImpostors::draw(std::span<const meshes::TreeImpostor> trees, float blown, bool is_by_sun) {
   if (trees.empty()) return;
   glActiveTexture(GL_TEXTURE0 + gl::kImpostorUnit);
   glBindTexture(GL_TEXTURE_2D, looks_.name());
@@ -112,6 +120,8 @@ void TreeImpostors::draw(std::span<const meshes::TreeImpostor> trees, bool is_by
   glUniform2f(glGetUniformLocation(program_.name(), "half_m"), box_.half_width_m, box_.half_height_m);
   glUniform1i(glGetUniformLocation(program_.name(), "is_by_sun"), is_by_sun ? 1 : 0);
   glUniform1i(glGetUniformLocation(program_.name(), "kind"), static_cast<GLint>(kind_));
+  colors_.set(program_);
+  glUniform1f(glGetUniformLocation(program_.name(), "blown"), blown);
   glUniform1f(glGetUniformLocation(program_.name(), "side_px"), static_cast<float>(kPicture_px));
   glBindVertexArray(array_.name());
   gl::stream_to(GL_ARRAY_BUFFER, trees_, trees);

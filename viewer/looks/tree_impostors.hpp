@@ -10,12 +10,21 @@
 
 namespace yuragi::viewer::looks {
 
+/// How the leaves of a tree take on colors (foliage.part.glsl).
+struct LeafColors {
+  bool has_palette = false;  ///< they take the palette's
+  float turns_red = 0.0F;    ///< how far they turn in autumn, 0 to 1
+  float silver = 0.0F;       ///< how pale their lower faces are, 0 to 1
+  void set(const gl::GlProgram& program) const;
+};
+
 /// The pictures of a tree from all sides, and the sheets far away that show them: one draw call for a whole grove. The
 /// pictures hold colors and normals, so that the sheets are in the light of each moment. Needs a current context.
 class TreeImpostors {
  public:
   /// `box` and `foot_m`: of the tree where it stands.
-  TreeImpostors(const meshes::ImpostorBox& box, const glm::vec3& foot_m, meshes::SprayShape::Kind kind);
+  TreeImpostors(const meshes::ImpostorBox& box, const glm::vec3& foot_m, meshes::SprayShape::Kind kind,
+                const LeafColors& colors);
 
   /// Makes all pictures: draw(view) is called for each, with a framebuffer of color and normal bound.
   template <class Draw>
@@ -28,7 +37,8 @@ class TreeImpostors {
   }
 
   /// Draws sheets, which face the eye or, for their shadows, the sun.
-  void draw(std::span<const meshes::TreeImpostor> trees, bool is_by_sun);
+  /// `blown`: how far the wind has turned their sprays from rest (SprayPlace), on average.
+  void draw(std::span<const meshes::TreeImpostor> trees, float blown, bool is_by_sun);
 
  private:
   void begin();
@@ -38,6 +48,7 @@ class TreeImpostors {
   meshes::ImpostorBox box_;
   glm::vec3 to_middle_m_;
   meshes::SprayShape::Kind kind_;
+  LeafColors colors_;
   gl::GlTexture looks_, facing_;
   /// What the pictures are drawn into, besides these two.
   struct Canvas {

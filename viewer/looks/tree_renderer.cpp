@@ -38,6 +38,7 @@ constexpr float kImpostorHeight = 0.3F;
 constexpr meshes::SprayDetail kPictureDetail{
     .leaf_px = 3.0F, .largest = 3.0F, .shaped_leaf_px = 1e6F, .speck_px = 4.0F, .hidden_share = 0.4F};
 constexpr float kPictureRing_px = 12.0F;
+constexpr float kPictureTwig_px = 0.04F;  // that thin, they cover what they do near by
 
 /// Shadows are soft, and hide what a leaf is like.
 meshes::SprayDetail shadow_detail_of(const meshes::SprayDetail& detail) {
@@ -132,6 +133,36 @@ std::vector<meshes::TreePlace> places_of(const pose::TreeSkeleton& tree) {
   return places;
 }
 
+/// Blossom and bare trees are what they are in every season.
+bool loses_leaves(const pose::TreeSkeleton& tree) {
+  return tree.foliage == pose::FoliageColor::kGreen || tree.foliage == pose::FoliageColor::kAutumn;
+}
+
+/// Below this share of leaves one sees the twigs.
+constexpr float kTwigsSeenBelow = 0.5F;
+
+/// How many of a tree's leaves hang where so many do on the whole: some trees lose them earlier. None at 0, all at 1.
+float hanging_of(float tree_chance, float leaves) {
+  return std::pow(leaves, glm::mix(0.6F, 1.7F, tree_chance));
+}
+
+LeafColors colors_of(const pose::TreeSkeleton& tree) {
+  LeafColors colors{.has_palette = tree.foliage == pose::FoliageColor::kGreen,
+                    .turns_red = 0.2F,
+                    .silver = meshes::spray_shape(tree).silver};
+  switch (meshes::leaf_species(tree)) {
+    case meshes::LeafSpecies::kCherry:
+      colors.turns_red = 1.0F;
+      break;
+    case meshes::LeafSpecies::kZelkova:
+      colors.turns_red = 0.7F;
+      break;
+    case meshes::LeafSpecies::kPoplar:
+      break;
+  }
+  return colors;
+}
+
 bool fits(const pose::TreePose& pose, const pose::TreeSkeleton& tree) {
   return std::ranges::equal(pose.levels, tree.levels, [](const pose::StrandPose& bends, const pose::TreeLevel& level) {
     return bends.bend_east_rad.size() == level.strands.padded_count() &&
@@ -162,20 +193,14 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
       detail_(detail_of(quality)),
       ring_px_(ring_px_of(quality)),
       impostor_px_(impostor_px_of(quality)),
+      colors_(colors_of(tree)),
       bark_(gl::link_program("bark", gl::shaders::kBarkVert, gl::shaders::kBarkFrag)),
       leaf_(gl::link_program("leaf", gl::shaders::kLeafVert, gl::shaders::kShadeFrag)),
       contact_(gl::link_program("contact", gl::shaders::kContactVert, gl::shaders::kContactFrag)) {
   for (std::size_t i = 0; i < tree.levels.size(); ++i) {
     if (tree.levels[i].is_leaves) {
-      Foliage& foliage = *foliages_.emplace_back(std::make_unique<Foliage>());
-      foliage.level = i;
-      foliage.shape = meshes::spray_shape(tree);
-      make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kSpeck)),
-                 meshes::speck_spray(foliage.shape));
-      make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kFar)),
-                 meshes::far_spray(foliage.shape));
-      make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kNear)),
-                 meshes::near_spray(foliage.shape));
+      add_foliage(i, tree.foliage);
+      if (loses_leaves(tree)) add_foliage(i, pose::FoliageColor::kBare);
       continue;
     }
     Wood& wood = *woods_.emplace_back(std::make_unique<Wood>());
@@ -193,8 +218,26 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
   box_ = meshes::impostor_box(bounds_without_grove(tree));
   far_trees_.reserve(1 + tree.copies.x_m.size());
   if (woods_.empty()) impostor_px_ = 0.0F;
-  move(*trees_.front());
+  move(*trees_.front(), moment_.hanging_leaves);
   middle_at_rest_m_ = middle_m(*trees_.front());
+}
+
+void TreeRenderer::add_foliage(std::size_t level, pose::FoliageColor color) {
+  Foliage& foliage = *foliages_.emplace_back(std::make_unique<Foliage>());
+  foliage.level = level;
+  foliage.color = color;
+  foliage.shape = meshes::spray_shape(*tree_, color);
+  make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kSpeck)),
+             meshes::speck_spray(foliage.shape));
+  make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kFar)), meshes::far_spray(foliage.shape));
+  make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kNear)), meshes::near_spray(foliage.shape));
+}
+
+/// How much is seen of a foliage, where so many of the leaves hang: leaves, while there are any, twigs when they have
+/// got few. Blossom, and a tree that was bare before, stay.
+float TreeRenderer::shown_share(const Foliage& foliage, float hanging) const {
+  if (!loses_leaves(*tree_)) return 1.0F;
+  return foliage.color == tree_->foliage ? hanging : 1.0F - glm::smoothstep(0.0F, kTwigsSeenBelow, hanging);
 }
 
 void TreeRenderer::add_place(const meshes::TreePlace& place) {
@@ -228,7 +271,8 @@ std::unique_ptr<TreeRenderer::Alike> TreeRenderer::tree_at(const meshes::TreePla
     tree->branches.push_back(first == nullptr ? meshes::Branches(*tree_, woods_[i]->level) : first->branches[i]);
   }
   for (std::size_t i = 0; i < foliages_.size(); ++i) {
-    tree->crowns.push_back(first == nullptr ? meshes::Crown(*tree_, foliages_[i]->level) : first->crowns[i]);
+    tree->crowns.push_back(first == nullptr ? meshes::Crown(*tree_, foliages_[i]->level, foliages_[i]->color)
+                                            : first->crowns[i]);
   }
   glBindBuffer(GL_TEXTURE_BUFFER, tree->joint_buffer.name());  // creates the buffer, even if no pose is ever taken
   return tree;
@@ -252,7 +296,7 @@ void TreeRenderer::move_to(const pose::Pose& pose) {
   const auto* const bends = std::get_if<pose::TreePose>(&pose);
   if (bends == nullptr || !fits(*bends, *tree_)) return;
   for (const auto& alike : trees_) turn_back(*alike, *bends);
-  move(*trees_.front());
+  move(*trees_.front(), moment_.hanging_leaves);
   const glm::vec3 sway_m = middle_m(*trees_.front()) - middle_at_rest_m_;
   sway_.add(moment_.time_s, {sway_m.x, sway_m.z}, moment_.wind_m_s);
 }
@@ -283,12 +327,16 @@ glm::vec3 TreeRenderer::middle_m(const Alike& alike) const {
   return sum_m / static_cast<float>(std::max<std::size_t>(strands.strand_count, 1));
 }
 
-/// Gives its joints the bends.
-void TreeRenderer::move(Alike& alike) {
+/// Gives its joints the bends, and what is seen of its foliage where so many of the leaves hang.
+void TreeRenderer::move(Alike& alike, float hanging_leaves) {
   alike.is_moved = true;
   const pose::TreeKinematicsJob job{.skeleton = tree_, .pose = &alike.bends, .row = {}, .joints = &alike.joints};
   if (job.run() != pose::TreeKinematicsJob::Problem::kNone) return;
-  for (meshes::Crown& crown : alike.crowns) crown.move_to(alike.joints);
+  // None of them has fewer.
+  const float fewest = hanging_of(1.0F, hanging_leaves);
+  for (std::size_t i = 0; i < foliages_.size(); ++i) {
+    if (shown_share(*foliages_[i], fewest) > 0.0F) alike.crowns[i].move_to(alike.joints);
+  }
   for (meshes::Branches& branches : alike.branches) branches.move_to(alike.joints);
 
   // The wood's joints, level behind level, in a new buffer each time, since the GPU may still read the old one.
@@ -315,18 +363,28 @@ void TreeRenderer::prepare(const meshes::View& view, gl::ViewBuffer& views) {
   const bool is_far = std::ranges::any_of(trees_, [&](const auto& alike) {
     return std::ranges::any_of(alike->places, [&](const auto& place) { return impostor_share(view, place) > 0.0F; });
   });
-  if (!is_far || impostors_) return;
+  if (!is_far) return;
+  if (!impostors_) impostors_ = pictures_of(views, 1.0F);
+  const bool has_bare = loses_leaves(*tree_) && hanging_of(1.0F, moment_.hanging_leaves) < kTwigsSeenBelow;
+  if (has_bare && !bare_impostors_) bare_impostors_ = pictures_of(views, 0.0F);
+}
+
+/// The pictures of the tree at rest with these of its leaves.
+std::unique_ptr<TreeImpostors> TreeRenderer::pictures_of(gl::ViewBuffer& views, float hanging) {
   const gl::GlProgram bark = gl::link_program("bark's picture", gl::shaders::kBarkVert, gl::shaders::kImpostorLookFrag);
   const gl::GlProgram leaf = gl::link_program("leaf's picture", gl::shaders::kLeafVert, gl::shaders::kImpostorLookFrag);
   gl::set_sampler(bark, "joints", 0);
   const meshes::TreePlace& own = trees_.front()->places.front();
   const std::unique_ptr<Alike> at_rest = tree_at(own);
-  move(*at_rest);
-  impostors_.emplace(box_, own.from_m,
-                     foliages_.empty() ? meshes::SprayShape::Kind::kTwigs : foliages_.front()->shape.kind);
-  impostors_->make(views, [&](const meshes::View& picture) {
-    draw_tree({bark, leaf}, picture, kPictureDetail, kPictureRing_px, *at_rest, own);
+  move(*at_rest, hanging);
+  const bool is_bare = foliages_.empty() || hanging == 0.0F;
+  auto pictures = std::make_unique<TreeImpostors>(
+      box_, own.from_m, is_bare ? meshes::SprayShape::Kind::kTwigs : foliages_.front()->shape.kind, colors_);
+  pictures->make(views, [&](const meshes::View& picture) {
+    draw_tree({bark, leaf, {.silver = colors_.silver}, kPictureTwig_px}, picture, kPictureDetail, kPictureRing_px,
+              *at_rest, own, hanging);
   });
+  return pictures;
 }
 
 void TreeRenderer::draw(const meshes::View& view) {
@@ -353,7 +411,8 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail&
   for (const auto& alike : trees_) {
     for (const meshes::TreePlace& place : alike->places) {
       const float share = impostors_ ? impostor_share(view, place) : 0.0F;
-      if (share < 1.0F) draw_tree({bark_, leaf_}, view, detail, ring_px, *alike, place);
+      const float hanging = loses_leaves(*tree_) ? hanging_of(place.chance(), moment_.hanging_leaves) : 1.0F;
+      if (share < 1.0F) draw_tree({bark_, leaf_, colors_}, view, detail, ring_px, *alike, place, hanging);
       const glm::vec4 middle_m(place.moved(box_.middle_m), 1.0F);
       const bool is_seen = std::all_of(planes.begin(), planes.end(), [&](const glm::vec4& plane) {
         return glm::dot(plane, middle_m) >= -1.2F * place.scale * radius_m;
@@ -362,25 +421,47 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail&
         const glm::vec2 sway_m = sway_.sway_m(sway_.delay_s(downwind_m(place) - first_m));
         far_trees_.push_back({.foot_scale = glm::vec4(place.to_m, place.scale),
                               .turn_sway = {place.cosine, place.sine, sway_m.x, sway_m.y},
-                              .share = share});
+                              .share = share,
+                              .hanging = hanging,
+                              .chance = place.chance()});
       }
     }
   }
-  if (impostors_) impostors_->draw(far_trees_, is_shadow);
+  if (far_trees_.empty()) return;
+  const float blown = foliages_.empty() ? 0.0F : trees_.front()->crowns.front().blown();
+  if (moment_.hanging_leaves > 0.0F || !bare_impostors_) impostors_->draw(far_trees_, blown, is_shadow);
+  if (!bare_impostors_) return;
+  // Behind what is left of the leaves; nothing of those that have enough.
+  const auto& twigs = *foliages_.back();
+  std::erase_if(far_trees_, [&](const meshes::TreeImpostor& tree) { return shown_share(twigs, tree.hanging) == 0.0F; });
+  for (meshes::TreeImpostor& tree : far_trees_) tree.hanging = shown_share(twigs, tree.hanging);
+  bare_impostors_->draw(far_trees_, 0.0F, is_shadow);
 }
 
 void TreeRenderer::draw_tree(const Programs& programs, const meshes::View& view, const meshes::SprayDetail& detail,
-                             float ring_px, Alike& alike, const meshes::TreePlace& place) {
-  if (!alike.is_moved) move(alike);
+                             float ring_px, Alike& alike, const meshes::TreePlace& place, float hanging) {
+  if (!alike.is_moved) move(alike, moment_.hanging_leaves);
+  // The light in a tree that was bare before, or blossoms, does not change.
+  const float leafy = loses_leaves(*tree_) ? hanging : 1.0F;
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_BUFFER, alike.joint_texture.name());
   glTexBuffer(GL_TEXTURE_BUFFER, GL_R32F, alike.joint_buffer.name());
   for (std::size_t i = 0; i < woods_.size(); ++i) {
     alike.branches[i].choose(view, ring_px, place);
+    glUseProgram(programs.bark.name());
+    glUniform1f(glGetUniformLocation(programs.bark.name(), "leafy"), leafy);
     draw_branches(programs.bark, *woods_[i], alike.branches[i], place);
   }
   for (std::size_t i = 0; i < foliages_.size(); ++i) {
+    const float share = shown_share(*foliages_[i], hanging);
+    if (share == 0.0F) continue;
     alike.crowns[i].choose(view, detail, place);
+    glUseProgram(programs.leaf.name());
+    programs.colors.set(programs.leaf);
+    glUniform1f(glGetUniformLocation(programs.leaf.name(), "leafy"), leafy);
+    glUniform1f(glGetUniformLocation(programs.leaf.name(), "thinnest_px"), programs.thinnest_px);
+    glUniform1f(glGetUniformLocation(programs.leaf.name(), "hanging"), share);
+    glUniform1f(glGetUniformLocation(programs.leaf.name(), "tree_chance"), place.chance());
     draw_sprays(programs.leaf, *foliages_[i], alike.crowns[i]);
   }
 }
@@ -433,7 +514,6 @@ void TreeRenderer::draw_sprays(const gl::GlProgram& program, const Foliage& foli
   if (crown.places().empty()) return;
   glUseProgram(program.name());
   set_int(program, "kind", static_cast<std::size_t>(foliage.shape.kind));
-  glUniform1f(glGetUniformLocation(program.name(), "silver"), foliage.shape.silver);
   gl::stream_to(GL_ARRAY_BUFFER, foliage.place_buffer, crown.places());
   for (const meshes::SprayGroup& group : crown.groups()) {
     if (group.count == 0) continue;

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "engine/pose/tree_kinematics.hpp"
@@ -38,6 +37,8 @@ class TreeRenderer : public SceneRenderer {
   struct Programs {
     const gl::GlProgram& bark;
     const gl::GlProgram& leaf;
+    LeafColors colors;
+    float thinnest_px = 0.11F;  // half as wide are twigs at least
   };
 
   /// A level of wood.
@@ -57,9 +58,10 @@ class TreeRenderer : public SceneRenderer {
     std::size_t leaf_indices = 0;
   };
 
-  /// A level of leaves.
+  /// A level of leaves; or, of a tree that loses them, the twigs that are seen then.
   struct Foliage {
     std::size_t level = 0;
+    pose::FoliageColor color = pose::FoliageColor::kGreen;
     meshes::SprayShape shape = {};
     gl::GlBuffer place_buffer = {};
     std::array<SprayOnGpu, 3> sprays = {};  // by SprayKind
@@ -82,16 +84,19 @@ class TreeRenderer : public SceneRenderer {
   void add_place(const meshes::TreePlace& place);
   std::unique_ptr<Alike> tree_at(const meshes::TreePlace& place) const;
   static void turn_back(Alike& alike, const pose::TreePose& bends);
-  void move(Alike& alike);
+  void move(Alike& alike, float hanging_leaves);
   float impostor_share(const meshes::View& view, const meshes::TreePlace& place) const;
   glm::vec3 middle_m(const Alike& alike) const;
   static void make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh);
   void draw_all(const meshes::View& view, const meshes::SprayDetail& detail, float ring_px, bool is_shadow);
   void draw_tree(const Programs& programs, const meshes::View& view, const meshes::SprayDetail& detail, float ring_px,
-                 Alike& alike, const meshes::TreePlace& place);
+                 Alike& alike, const meshes::TreePlace& place, float hanging);
   void draw_branches(const gl::GlProgram& program, const Wood& wood, const meshes::Branches& branches,
                      const meshes::TreePlace& place);
+  void add_foliage(std::size_t level, pose::FoliageColor color);
+  float shown_share(const Foliage& foliage, float hanging) const;
   static void draw_sprays(const gl::GlProgram& program, const Foliage& foliage, const meshes::Crown& crown);
+  std::unique_ptr<TreeImpostors> pictures_of(gl::ViewBuffer& views, float hanging);
 
   const pose::TreeSkeleton* tree_;
   meshes::Bounds crown_bounds_;  // of the leaves, or of all where there are none
@@ -100,6 +105,7 @@ class TreeRenderer : public SceneRenderer {
   meshes::SprayDetail detail_;
   float ring_px_;
   float impostor_px_;
+  LeafColors colors_;
   gl::GlProgram bark_;
   gl::GlProgram leaf_;
   gl::GlProgram contact_;
@@ -108,8 +114,9 @@ class TreeRenderer : public SceneRenderer {
   meshes::ImpostorBox box_;
   glm::vec3 middle_at_rest_m_{0.0F};  // of the tips of the thinnest wood
   meshes::SwayHistory sway_;
-  std::optional<TreeImpostors> impostors_;       // made when first needed
-  std::vector<meshes::TreeImpostor> far_trees_;  // of a picture
+  std::unique_ptr<TreeImpostors> impostors_;       // made when first needed
+  std::unique_ptr<TreeImpostors> bare_impostors_;  // of a tree that has lost its leaves
+  std::vector<meshes::TreeImpostor> far_trees_;    // of a picture
 };
 
 }  // namespace yuragi::viewer::looks

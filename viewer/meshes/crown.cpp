@@ -12,6 +12,9 @@ namespace {
 
 constexpr float kNearest_m = 0.3F;
 
+/// A bare twig goes on more along the one that bears it than a strand of leaves does.
+constexpr float kTwigAlong = 0.3F;
+
 /// A spray of which this share is seen through the others has all of its leaves; one that is hidden, fewer, at most so
 /// many times as large.
 constexpr float kHardlySeen = 0.35F;
@@ -127,12 +130,15 @@ std::vector<glm::vec4> crown_openness(const pose::TreeSkeleton& tree, std::size_
   return open;
 }
 
-Crown::Crown(const pose::TreeSkeleton& tree, std::size_t level)
+Crown::Crown(const pose::TreeSkeleton& tree, std::size_t level) : Crown(tree, level, tree.foliage) {}
+
+Crown::Crown(const pose::TreeSkeleton& tree, std::size_t level, pose::FoliageColor foliage)
     : tree_(&tree),
       level_(level),
-      shape_(spray_shape(tree)),
+      shape_(spray_shape(tree, foliage)),
+      is_stiff_(foliage == pose::FoliageColor::kBare && tree.foliage != foliage && level > 0),
       leaf_m_(shape_.leaf_length * mean_length_m(tree.levels[level].strands)),
-      parts_(tree_parts(tree, level)),
+      parts_(tree_parts(tree, level, foliage)),
       sprays_(parts_.size()),
       balls_((parts_.size() + pose::kStrandsPerBlock - 1) / pose::kStrandsPerBlock),
       choices_(balls_.size()),
@@ -163,10 +169,25 @@ std::size_t Crown::strands_in(std::size_t block) const {
   return std::min(pose::kStrandsPerBlock, parts_.size() - block * pose::kStrandsPerBlock);
 }
 
+/// A twig in the place of a strand of leaves: it does not hang, and it is turned as the link that it grows from.
+void Crown::straighten(SprayPlace& spray, std::size_t strand, const pose::TreeJoints& joints) const {
+  const pose::TreeLevel& level = tree_->levels[level_];
+  const std::size_t parent = level.parent[strand];
+  const std::size_t link = level.parent_link[strand];
+  const glm::vec3 before = link_at_rest(tree_->levels[level.parent_level].strands, parent, link);
+  const glm::vec3 foot_m =
+      link == 0 ? spray.root_m : vector_of(joints.level(level.parent_level).joint(parent, link - 1));
+  const glm::vec3 now = link == 0 ? before : direction_to(foot_m, spray.root_m);
+  const glm::vec3 grown = glm::normalize(glm::mix(link_at_rest(level.strands, strand, 0), before, kTwigAlong) + 1e-4F);
+  spray.tip_m = spray.root_m + spray.length_m * turned(grown, before, now);
+  spray.bow_m = glm::vec3(0.0F);
+}
+
 void Crown::move_to(const pose::TreeJoints& joints) {
   const pose::TreeLevel& level = tree_->levels[level_];
   const std::size_t links = level.strands.links_per_strand;
   const pose::JointPositions& own = joints.level(level_);
+  blown_ = 0.0F;
   for (std::size_t block = 0; block < balls_.size(); ++block) {
     glm::vec3 sum_m(0.0F);
     const std::size_t first = block * pose::kStrandsPerBlock;
@@ -185,10 +206,12 @@ void Crown::move_to(const pose::TreeJoints& joints) {
         const glm::vec3 middle_m = vector_of(own.joint(i, half - 1));
         spray.bow_m = (middle_m - glm::mix(spray.root_m, spray.tip_m, u)) / (u * (1.0F - u));
       }
+      if (is_stiff_) straighten(spray, i, joints);
       const glm::vec3 rest = vector_of(parts_[i].rest);
       const glm::vec3 to = direction_to(spray.root_m, spray.tip_m);
       spray.upper = turned(vector_of(parts_[i].facing), rest, to);
       spray.blown = glm::dot(to - rest, to - rest);
+      blown_ += spray.blown;
       sum_m += spray.root_m + spray.tip_m;
     }
     Ball& ball = balls_[block];
@@ -200,6 +223,7 @@ void Crown::move_to(const pose::TreeJoints& joints) {
     }
     ball.radius_m += 2.0F * leaf_m_;
   }
+  blown_ /= static_cast<float>(std::max<std::size_t>(parts_.size(), 1));
 }
 
 void Crown::choose(const View& view, const SprayDetail& detail, const TreePlace& place) {

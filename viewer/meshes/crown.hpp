@@ -47,12 +47,17 @@ struct SprayGroup {
 /// made, never afterwards.
 class Crown {
  public:
-  /// `tree` must outlive this.
+  /// `tree` must outlive this. As what it shows itself, or with another foliage: a tree with leaves that is shown bare
+  /// has stiff twigs in their place, which go with the wood that bears them.
   Crown(const pose::TreeSkeleton& tree, std::size_t level);
+  Crown(const pose::TreeSkeleton& tree, std::size_t level, pose::FoliageColor foliage);
 
   const SprayShape& shape() const { return shape_; }
 
   void move_to(const pose::TreeJoints& joints);
+
+  /// The mean of SprayPlace::blown.
+  float blown() const { return blown_; }
 
   /// Those in view of the tree, or of a copy of it.
   void choose(const View& view, const SprayDetail& detail, const TreePlace& place = {});
@@ -72,10 +77,12 @@ class Crown {
   };
 
   std::size_t strands_in(std::size_t block) const;
+  void straighten(SprayPlace& spray, std::size_t strand, const pose::TreeJoints& joints) const;
 
   const pose::TreeSkeleton* tree_;
   std::size_t level_;
   SprayShape shape_;
+  bool is_stiff_;  // its strands do not bend, other than those of the stream
   float leaf_m_ = 0.0F;
   std::vector<TreePart> parts_;
   std::vector<SprayPlace> sprays_;
@@ -84,6 +91,7 @@ class Crown {
   std::vector<SprayGroup> groups_;
   std::vector<SprayPlace> chosen_;
   std::size_t chosen_count_ = 0;
+  float blown_ = 0.0F;
 };
 
 /// How much light comes to each strand of a level of leaves through the others, from all around: see SprayPlace::open.

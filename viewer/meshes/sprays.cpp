@@ -212,15 +212,19 @@ LeafSpecies leaf_species(const pose::TreeSkeleton& tree) {
 }
 
 SprayShape spray_shape(const pose::TreeSkeleton& tree) {
+  return spray_shape(tree, tree.foliage);
+}
+
+SprayShape spray_shape(const pose::TreeSkeleton& tree, pose::FoliageColor foliage) {
   // Sprays are 26 to 28 cm long.
-  if (tree.foliage == pose::FoliageColor::kBlossom) {  // flowers of 3.1 cm
+  if (foliage == pose::FoliageColor::kBlossom) {  // flowers of 3.1 cm
     return {.leaves = kFlowers,
             .leaf_length = 0.112F,
             .leaf_width = 1.0F,
             .widest_at = 0.5F,
             .kind = SprayShape::Kind::kFlowers};
   }
-  if (tree.foliage == pose::FoliageColor::kBare) {
+  if (foliage == pose::FoliageColor::kBare) {
     return {.leaves = kTwigs,
             .leaf_length = 0.45F,
             .leaf_width = 0.02F,

@@ -28,8 +28,9 @@ struct SprayShape {
   bool has_flowers() const { return kind == Kind::kFlowers; }
 };
 
-/// The shape of a tree's sprays, by its species and its foliage.
+/// The shape of a tree's sprays, by its species and its foliage, or another one.
 SprayShape spray_shape(const pose::TreeSkeleton& tree);
+SprayShape spray_shape(const pose::TreeSkeleton& tree, pose::FoliageColor foliage);
 
 /// A corner of a spray's mesh, in the layout that the leaves' shader reads. The mesh is bent along the strand there.
 struct SprayCorner {

@@ -36,8 +36,8 @@ LeafTints autumn_of(LeafSpecies species) {
   return {{0.36F, 0.22F, 0.020F}, {0.62F, 0.46F, 0.045F}};
 }
 
-LeafTints tints_of(const pose::TreeSkeleton& tree) {
-  switch (tree.foliage) {
+LeafTints tints_of(const pose::TreeSkeleton& tree, pose::FoliageColor foliage) {
+  switch (foliage) {
     case pose::FoliageColor::kBlossom:
       return {{0.74F, 0.55F, 0.60F}, {0.86F, 0.76F, 0.79F}};
     case pose::FoliageColor::kAutumn:
@@ -53,15 +53,10 @@ LeafTints tints_of(const pose::TreeSkeleton& tree) {
 
 /// The vector from a strand's foot to its tip at rest.
 glm::vec3 rest_direction(const pose::StrandSkeleton& strands, std::size_t i) {
-  const glm::vec3 rest(strands.rest_x[i], strands.rest_y[i], strands.rest_z[i]);
-  const glm::vec3 curl(strands.curl_x[i], strands.curl_y[i], strands.curl_z[i]);
   glm::vec3 sum(0.0F);
-  for (std::size_t link = 0; link < strands.links_per_strand; ++link) {
-    const float curled_rad = static_cast<float>(link) * strands.rest_curl_rad[i];
-    sum += std::cos(curled_rad) * rest + std::sin(curled_rad) * curl;
-  }
+  for (std::size_t link = 0; link < strands.links_per_strand; ++link) sum += link_at_rest(strands, i, link);
   const float length = glm::length(sum);
-  return length > 1e-3F ? sum / length : rest;
+  return length > 1e-3F ? sum / length : link_at_rest(strands, i, 0);
 }
 
 /// The middle of the strands' roots.
@@ -88,9 +83,20 @@ std::size_t first_joint_at(const pose::TreeSkeleton& tree, std::size_t level) {
   return first;
 }
 
+glm::vec3 link_at_rest(const pose::StrandSkeleton& strands, std::size_t strand, std::size_t link) {
+  const glm::vec3 rest(strands.rest_x[strand], strands.rest_y[strand], strands.rest_z[strand]);
+  const glm::vec3 curl(strands.curl_x[strand], strands.curl_y[strand], strands.curl_z[strand]);
+  const float curled_rad = static_cast<float>(link) * strands.rest_curl_rad[strand];
+  return std::cos(curled_rad) * rest + std::sin(curled_rad) * curl;
+}
+
 std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level) {
+  return tree_parts(tree, level, tree.foliage);
+}
+
+std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level, pose::FoliageColor foliage) {
   const pose::TreeLevel& from = tree.levels[level];
-  const LeafTints tints = tints_of(tree);
+  const LeafTints tints = tints_of(tree, foliage);
   const math::RandomStream chance(level, math::stream_id("viewer tree"));
   const math::RandomStream twigs(level, math::stream_id("viewer tree's twigs"));
   const pose::StrandSkeleton& strands = from.strands;

@@ -27,8 +27,12 @@ struct TreePart {
 /// The index in that array at which the joints of a level begin.
 std::size_t first_joint_at(const pose::TreeSkeleton& tree, std::size_t level);
 
-/// The parts of a level, one a strand, leaves in the colours of the tree's foliage. The same tree always makes the same
-/// parts.
+/// The parts of a level, one a strand, leaves in the colours of the tree's foliage, or of another. The same tree always
+/// makes the same parts.
 std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level);
+std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t level, pose::FoliageColor foliage);
+
+/// The direction of a link of a strand at rest.
+glm::vec3 link_at_rest(const pose::StrandSkeleton& strands, std::size_t strand, std::size_t link);
 
 }  // namespace yuragi::viewer::meshes

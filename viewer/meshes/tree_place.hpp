@@ -1,5 +1,6 @@
 #pragma once
 
+#include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
 namespace yuragi::viewer::meshes {
@@ -12,6 +13,12 @@ struct TreePlace {
   float sine = 0.0F;
   float scale = 1.0F;
 
+  /// From 0 to 1: by it trees differ, the one that is copied from its copies. Spread as evenly as places are (M.
+  /// Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
+  float chance() const {
+    const glm::vec3 way_m = to_m - from_m;
+    return glm::fract(0.5F + 7.548777F * way_m.x + 5.698403F * way_m.z);
+  }
   glm::vec3 turned(const glm::vec3& v) const { return {cosine * v.x - sine * v.z, v.y, sine * v.x + cosine * v.z}; }
   glm::vec3 moved(const glm::vec3& place_m) const { return to_m + scale * turned(place_m - from_m); }
 };

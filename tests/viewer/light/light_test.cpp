@@ -96,6 +96,16 @@ TEST(Palettes, AreAllOfColorsThatThingsCanHave) {
   }
 }
 
+TEST(Palettes, LeavesFallInAutumnAndNoneHangInWinter) {
+  const auto hanging = [](look::Palette palette) { return light_of({.palette = palette}, 0.0).leaves.w; };
+  EXPECT_EQ(hanging(look::Palette::kMeadow), 1.0F);
+  EXPECT_LT(hanging(look::Palette::kAutumn), 0.9F);
+  EXPECT_GT(hanging(look::Palette::kAutumn), 0.5F);
+  EXPECT_EQ(hanging(look::Palette::kWinter), 0.0F);
+  const Light autumn = light_of({.palette = look::Palette::kAutumn}, 0.0);
+  EXPECT_GT(autumn.turned_leaves.r, 1.5F * autumn.leaves.r) << "not all turn as far";
+}
+
 TEST(Palettes, InkHasHardlyAnyColor) {
   EXPECT_LT(light_of({.palette = look::Palette::kInk}, kDay_s).colors.x, 0.1F);
   EXPECT_EQ(light_of({}, kDay_s).colors.x, 1.0F);

@@ -470,6 +470,47 @@ TEST_F(StageTest, ShowsFarTreesByPicturesInTheirPlaceAndLight) {
   }
 }
 
+TEST_F(StageTest, TreesLoseTheirLeavesOneAfterTheOtherNearAndFar) {
+  // The copy at 60 m is an impostor, with quality low by its distance.
+  wire::SceneModel tree = test_model("tree");
+  std::get<pose::TreeSkeleton>(tree.skeleton).copies = {
+      .x_m = {60.0F}, .z_m = {0.0F}, .turn_rad = {1.5F}, .scale = {1.0F}};
+  light::Light light = light::light_of({}, 0.0);
+  for (const double x_m : {0.0, 60.0}) {
+    show({tree});
+    camera_.frame({{x_m, 1.5, 0.0}, 0.0, 5.0, x_m == 0.0 ? 7.0 : 25.0});
+    const auto picture = [&](float hanging) {
+      light.leaves.w = hanging;
+      stage_->set_light(light);
+      return draw(0.0, 1.0F);
+    };
+    const Pixels summer = picture(1.0F);
+    const Pixels winter = picture(0.0F);
+    const std::size_t all = changed(summer, winter);
+    EXPECT_GT(all, x_m == 0.0 ? 1000U : 30U) << x_m;
+    Pixels before = summer;
+    for (int step = 1; step <= 20; ++step) {
+      Pixels now = picture(1.0F - static_cast<float>(step) / 20.0F);
+      EXPECT_LT(changed(before, now), all / 3) << "a leap at step " << step << " of the tree at " << x_m;
+      before = std::move(now);
+    }
+    EXPECT_EQ(changed(before, winter), 0U);
+  }
+}
+
+TEST_F(StageTest, BlossomAndBareTreesAreTheSameInEverySeason) {
+  for (const pose::FoliageColor foliage : {pose::FoliageColor::kBlossom, pose::FoliageColor::kBare}) {
+    wire::SceneModel tree = test_model("tree");
+    std::get<pose::TreeSkeleton>(tree.skeleton).foliage = foliage;
+    show({tree});
+    light::Light light = light::light_of({}, 0.0);
+    const Pixels summer = draw(0.0, 1.0F);
+    light.leaves.w = 0.0F;
+    stage_->set_light(light);
+    EXPECT_EQ(changed(summer, draw(0.0, 1.0F)), 0U);
+  }
+}
+
 TEST_F(StageTest, IsDarkerByNightThanAtNoonAndShowsBoth) {
   show({test_model("tree")});
   const auto brightness = [&](double sun_height_deg) {

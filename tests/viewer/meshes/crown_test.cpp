@@ -108,6 +108,29 @@ TEST_F(CrownTest, SpraysOutOfViewAreLeftOut) {
   EXPECT_LT(crown_.places().size(), all / 2) << "from inside of the crown";
 }
 
+TEST_F(CrownTest, ShownBareItHasStiffTwigsInThePlaceOfItsLeaves) {
+  Crown bare(tree_, kLeafLevel, pose::FoliageColor::kBare);
+  EXPECT_EQ(bare.shape().kind, SprayShape::Kind::kTwigs);
+  // The wind turns the leaves alone.
+  auto blown = std::get<pose::TreePose>(pose::rest_pose(tree_));
+  std::ranges::fill(blown.levels[kLeafLevel].bend_east_rad, 0.8F);
+  const pose::TreeKinematicsJob job{.skeleton = &tree_, .pose = &blown, .row = {}, .joints = &joints_};
+  bare.move_to(joints_);
+  bare.choose(view_at(middle_m(), 8.0), {});
+  const std::vector<SprayPlace> before(bare.places().begin(), bare.places().end());
+  EXPECT_LT(crown_.blown(), 1e-3F) << "at rest";
+  ASSERT_EQ(job.run(), pose::TreeKinematicsJob::Problem::kNone);
+  bare.move_to(joints_);
+  crown_.move_to(joints_);
+  EXPECT_GT(crown_.blown(), 0.05F);
+  bare.choose(view_at(middle_m(), 8.0), {});
+  ASSERT_EQ(bare.places().size(), before.size());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_LT(glm::distance(before[i].tip_m, bare.places()[i].tip_m), 1e-4F);
+    EXPECT_NEAR(glm::distance(before[i].root_m, before[i].tip_m), before[i].length_m, 1e-3F);
+  }
+}
+
 TEST_F(CrownTest, ACopyStandsTurnedAndScaledAtItsPlace) {
   const TreePlace place{
       .from_m = {0.0F, 0.0F, 0.0F}, .to_m = {30.0F, 0.0F, 5.0F}, .cosine = 0.6F, .sine = 0.8F, .scale = 0.5F};

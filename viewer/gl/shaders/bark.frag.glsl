@@ -2,6 +2,7 @@
 // Bark: plates between furrows that run along the branch and meet; darker inside the crown.
 uniform vec3 crown_middle_m;
 uniform vec3 crown_radius_m;
+uniform float leafy;  // how many leaves there are around, 0 to 1
 
 in vec3 place_m;
 in vec3 normal;
@@ -30,7 +31,7 @@ void main() {
   paint *= mix(0.45, 1.0, smoothstep(0.0, 0.22, above_foot_m));
 
   vec3 in_crown = (place_m - crown_middle_m) / crown_radius_m;
-  float open = smoothstep(0.35, 1.15, length(in_crown));
+  float open = mix(1.0, smoothstep(0.35, 1.15, length(in_crown)), 0.2 + 0.8 * leafy);
   vec3 light = paint * soft_light(facing) * (0.45 + 0.55 * open);
   light += paint * sun_light.rgb * mix(0.15, 1.0, sunlight_near(place_m + 0.35 * to_sun.xyz)) * max(dot(facing, to_sun.xyz), 0.0) * (0.25 + 0.75 * open);
   light += paint * fire_light(place_m, facing);

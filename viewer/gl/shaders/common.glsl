@@ -35,9 +35,10 @@ layout(std140) uniform Light {
   vec4 grass_straw;
   vec4 grass_foot;
   vec4 petals[3];
-  vec4 leaves;        // factors
+  vec4 leaves;        // factor; w: the share of them that hang
   vec4 woods;         // w: snow on hills
   vec4 earth;         // the bare ground; w: how uneven it looks
+  vec4 turned_leaves; // factor on those that have turned the farthest
 };
 
 // The fires that are nearest to the eye (viewer/light/fire_light.hpp).

@@ -1,18 +1,22 @@
+#include "foliage.part.glsl"
 // The sheet of a far tree's impostor (viewer/meshes/tree_impostor.hpp): it faces the eye, or the sun, and shows the
 // picture of the side from which that sees the tree.
 uniform vec3 to_middle_m;  // from the tree's foot to the middle of its pictures
 uniform vec2 half_m;       // of their width and height
 uniform int is_by_sun;
+uniform float blown;  // the mean of its sprays (SprayPlace)
 
 layout(location = 0) in vec4 foot_scale;
 layout(location = 1) in vec4 turn_sway;
-layout(location = 2) in float drawn_share;
+layout(location = 2) in vec3 share_hanging_chance;
 
 out vec2 at;  // in the picture, -1 to 1
 out vec3 place_m;
 flat out vec3 toward;     // the eye
 flat out vec3 turn_side;  // cosine and sine; and the side, not a whole number
 flat out vec2 row_share;
+flat out vec2 hanging_chance;
+flat out float lower_share;  // how much more than at rest one sees of the lower faces of leaves
 
 const float kSides = 8.0;
 const float kRows = 3.0;
@@ -40,10 +44,14 @@ void main() {
   place_m.xz += scale * turn_sway.zw * lever;
   gl_Position = to_clip * vec4(place_m, 1.0);
   // While it fades in, it is before the leaves over which it does.
+  float drawn_share = share_hanging_chance.x;
   if (drawn_share < 1.0 && is_by_sun == 0) {
     vec4 before = to_clip * vec4(place_m + scale * half_m.x * to_eye, 1.0);
     gl_Position.z = before.z / before.w * gl_Position.w;
   }
   turn_side = vec3(turn, side < 0.0 ? side + kSides : side);
   row_share = vec2(row, drawn_share);
+  hanging_chance = share_hanging_chance.yz;
+  // In a storm leaves are turned over, of some trees before others.
+  lower_share = 0.14 * turned_over(blown * (0.75 + 0.5 * hanging_chance.y), 0.15);
 }

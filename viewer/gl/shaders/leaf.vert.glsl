@@ -1,3 +1,4 @@
+#include "foliage.part.glsl"
 // A spray: leaves at alternate sides of a stalk that follows a strand, flowers on stalks of their own, or bare twigs.
 // With their light: the sun's on them and through them, the sky's, less of each inside the crown. A leaf's two faces
 // turn with it, and the lower one is paler, so that the crown brightens where the wind turns leaves over.
@@ -5,7 +6,10 @@
 // Of light a green leaf reflects some 5 % of blue, 12 % of green and 6 % of red, and lets through as much of green and
 // red but hardly any blue (S. Jacquemoud and F. Baret 1990, "PROSPECT: a model of leaf optical properties spectra").
 uniform int kind;      // SprayShape::Kind: 0 leaves, 1 flowers, 2 twigs
-uniform float silver;  // how pale the lower faces of its leaves are: 0 hardly, 1 like a poplar's
+uniform float hanging; // how many of the leaves are left; of twigs that leaves hide, how far they are seen, 0 to 1
+uniform float leafy;   // how many leaves there are around, 0 to 1
+uniform float tree_chance;  // TreePlace::chance()
+uniform float thinnest_px;  // half as wide is a twig at least
 
 // SprayPlace (viewer/meshes/crown.hpp).
 layout(location = 0) in vec4 root_length;  // metres
@@ -26,13 +30,6 @@ out float own_open;
 const float kStalkRadius_m = 0.0011;
 const float kTwigRadius_m = 0.0022;
 const float kPedicel_m = 0.030;
-
-// The lower face's color: brighter than the upper one's, and greyer, because of hairs and wax.
-vec3 lower_face(vec3 upper_face) {
-  float grey = dot(upper_face, vec3(0.21, 0.72, 0.07));
-  vec3 pale = mix(upper_face, grey * vec3(0.98, 1.0, 0.92), 0.30 + 0.45 * silver) * (1.6 + 1.3 * silver);
-  return min(pale, vec3(0.55));
-}
 
 // Three numbers from 0 to 1 that stay with a leaf (after M. Jarzynski and M. Olano 2020, "Hash functions for GPU
 // rendering", pcg3d).
@@ -58,7 +55,13 @@ void main() {
   vec3 chance = chances(uint(tint_number.w), uint(edge_leaf.y));
   float part = clamp(tip_leaves.w - edge_leaf.y, 0.0, 1.0);
   float size = root_length.w * upper_size.w * part * (0.75 + 0.5 * chance.x);
-  vec3 tint = tint_number.rgb * (kind == 0 ? leaves.rgb : vec3(1.0)) * (0.82 + 0.36 * chance.z);
+  vec3 tint = tint_number.rgb * (0.82 + 0.36 * chance.z);
+  if (kind == 0) {
+    uint twig = uint(tint_number.w) >> 4u;
+    if (hanging < 1.0) size *= hangs(hanging, chances(uint(tint_number.w) + 7919u, uint(edge_leaf.y)).y);
+    tint *= palette_of(tree_chance, float((twig * 2654435769u) >> 8u) / 16777216.0, open.w);
+  }
+  vec4 open_now = mix(vec4(0.0, 0.0, 0.0, 1.0), open, leafy);
   vec3 place = stem;
   vec3 normal = upper;
   float thin = 1.0;  // how much light comes through
@@ -67,8 +70,8 @@ void main() {
     float turn = corner.y * (0.55 + 0.45 * chance.x);
     vec3 to = normalize(cos(turn) * along + sin(turn) * across + (1.4 * chance.y - 0.7) * abs(corner.y) * upper);
     vec3 aside = cross(to, normalize(eye_m.xyz - stem));
-    place += to * (corner.z * root_length.w * part * (0.6 + 0.8 * chance.z));
-    place += aside * (inversesqrt(max(dot(aside, aside), 1e-6)) * corner.w * max(kTwigRadius_m * edge_leaf.x, 0.11 * pixel_m));
+    place = mix(root, stem, hanging) + to * (corner.z * root_length.w * part * hanging * (0.6 + 0.8 * chance.z));
+    place += aside * (inversesqrt(max(dot(aside, aside), 1e-6)) * corner.w * min(hanging * 8.0, 1.0) * max(kTwigRadius_m * edge_leaf.x, thinnest_px * pixel_m));
     normal = normalize(eye_m.xyz - stem);
     thin = 0.0;
   } else if (corner.y > 1.5) {
@@ -91,7 +94,7 @@ void main() {
     vec3 leaf_across = normalize(cross(to, upper));
     vec3 leaf_up = cross(leaf_across, to);
     // The harder it blows, the more of them are turned over, so that their lower faces stream in the gust.
-    float over = smoothstep(0.0, 0.25, smoothstep(0.04, 0.75, blown) - chance.y);
+    float over = turned_over(blown, chance.y);
     float roll = 1.7 * (chance.z - 0.5) + 2.0 * (chance.y - 0.5) * blown + (chance.x < 0.5 ? -2.5 : 2.5) * over;
     normal = cos(roll) * leaf_up + sin(roll) * leaf_across;
     leaf_across = cross(to, normal);
@@ -113,14 +116,14 @@ void main() {
   vec3 face = is_below && kind == 0 ? lower_face(tint) : tint;
   normal *= is_below ? -1.0 : 1.0;
 
-  own_color = kind == 0 ? face / max(leaves.rgb, vec3(0.05)) : face;
+  own_color = face;
   own_normal = normal;
-  own_open = 0.5 + 0.5 * clamp(open.w + 0.45 * dot(open.xyz, normal), 0.0, 1.0);
+  own_open = 0.5 + 0.5 * clamp(open_now.w + 0.45 * dot(open_now.xyz, normal), 0.0, 1.0);
 
   // What the crown lets through to here. With a map of shadows that knows the leaves as they are now.
-  float sun_seen = clamp(open.w + dot(open.xyz, to_sun.xyz), 0.02, 1.0);
+  float sun_seen = clamp(open_now.w + dot(open_now.xyz, to_sun.xyz), 0.02, 1.0);
   if (shadow.x > 0.0) sun_seen = mix(sun_seen, sunlight_near(place + 0.12 * to_sun.xyz), 0.6);
-  float sky_seen = clamp(open.w + 0.45 * dot(open.xyz, normal + vec3(0.0, 0.3, 0.0)), 0.32, 1.0);
+  float sky_seen = clamp(open_now.w + 0.45 * dot(open_now.xyz, normal + vec3(0.0, 0.3, 0.0)), 0.32, 1.0);
   vec3 sum = face * soft_light(normal) * sky_seen;
   if (fire_count.x > 0.0) sum += face * (fire_light(place, normal) + 0.4 * fire_light(place, -normal));
 
@@ -132,7 +135,7 @@ void main() {
   sum += sun_light.rgb * sun_seen * sunlit;
   // And light that other leaves, which the sun reaches, have reflected and let through: it comes from all around, the
   // more the nearer the sun, and fades with the depth in the crown.
-  float from_others = (0.10 + 0.30 * sun_seen) * (0.35 + 0.65 * min(2.5 * open.w, 1.0)) * (1.0 - 0.5 * open.w);
+  float from_others = (0.10 + 0.30 * sun_seen) * (0.35 + 0.65 * min(2.5 * open_now.w, 1.0)) * (1.0 - 0.5 * open_now.w);
   sum += sun_light.rgb * (0.35 * tint + 0.65 * through_leaf) * (0.42 * from_others * thin);
 
   float shine = max(dot(normal, normalize(to_sun.xyz + to_eye)), 0.0);
