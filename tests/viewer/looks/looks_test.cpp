@@ -560,8 +560,8 @@ TEST_F(StageTest, APictureLiesOnTheBareGround) {
     }
   }
   ground.cloth.image = std::make_shared<look::Image>(halves);
-  camera_.frame({{0.0, 0.0, 0.0}, 0.0, 89.0, 4.0});
   const auto share_of = [&](std::size_t channel, double width_m, float opacity) {
+    camera_.frame({{0.0, 0.0, 0.0}, 0.0, 89.0, 4.0});  // north is up
     std::vector<std::string> look{"ground=stone", "ground_image_width=" + std::to_string(width_m)};
     stage_->set_light(light::light_of(look::edited({}, look).value(), 0.0));
     stream::PoseMoment moment = stream::rest_moment(models_);
