@@ -44,7 +44,9 @@ wire::ParameterGroup look_group(const settings::Config& running, const settings:
     state.value = value_in(running.by_name.look, parameter.name);
     state.configured = value_in(configured.by_name.look, parameter.name);
     const bool is_live = settings::change_of("look", parameter.name) == settings::KeyChange::kApplied;
-    state.change = is_live ? wire::ParameterChange::kAtOnce : wire::ParameterChange::kTakesRestart;
+    state.change = look::names_file(parameter.name) ? wire::ParameterChange::kTakesReload
+                   : is_live                        ? wire::ParameterChange::kAtOnce
+                                                    : wire::ParameterChange::kTakesRestart;
   }
   return group;
 }

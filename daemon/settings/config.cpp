@@ -1,5 +1,6 @@
 #include "daemon/settings/config.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <map>
@@ -13,6 +14,7 @@
 #include <toml++/toml.h>
 #include <unistd.h>
 
+#include "daemon/pictures/picture_file.hpp"
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
 #include "engine/output/output_tables.hpp"
@@ -26,6 +28,7 @@ constexpr std::string_view kCalibrationKey = "calibration";
 constexpr std::string_view kBlendKey = "blend";
 constexpr std::string_view kJudgeKey = "judge";
 constexpr std::string_view kCameraList = "camera";
+constexpr std::string_view kGroundKind = "ground";
 
 /// The scenes of a file without any.
 std::vector<SceneConfig> default_scenes();
@@ -90,6 +93,7 @@ class ConfigReader {
                      config.scenes.back().cloth = read_cloth(entry, values);
                    });
     if (config.scenes.empty()) config.scenes = default_scenes();
+    read_ground_image(root, config);
     read_cameras(root, config);
     config.outputs = output::read_outputs(root, mistakes_);
 
@@ -115,6 +119,27 @@ class ConfigReader {
       sensor.blend.length_m = gust_length_at_height_m(*sensor.heights.sensor_m, sensor.calibration);
     }
     return sensor;
+  }
+
+  /// The picture that lies on the ground: that of every scene "ground".
+  void read_ground_image(const toml::table& root, Config& config) {
+    constexpr const char* kKey = "ground_image";
+    if (!config.by_name.look.has(kKey)) return;
+    const auto refuse = [&](const std::string& what) {
+      mistake(root["look"][kKey].node()->source(), std::string("look.") + kKey, what);
+    };
+    const auto is_ground = [](const SceneConfig& scene) { return scene.kind->name == kGroundKind; };
+    if (std::ranges::none_of(config.scenes, is_ground)) {
+      return refuse("is for a scene that is not there; add [[scene]] with kind = \"ground\"");
+    }
+    if (!folder_) return;
+    const std::string& file = config.by_name.look.text(kKey);
+    constexpr look::Color kEarth{92, 78, 60};
+    const auto picture = pictures::read_picture(*folder_ / file, kEarth);
+    if (!picture) return refuse("\"" + file + "\" " + picture.error().message);
+    for (SceneConfig& scene : config.scenes) {
+      if (is_ground(scene)) scene.cloth.image = *picture;
+    }
   }
 
   /// What a cloth looks like; of other scenes nothing.

@@ -35,6 +35,9 @@ std::optional<ParameterError> edit_look(Config& config, const Config& configured
   if (change_of("look", edit.key) == KeyChange::kTakesRestart) {
     return ParameterError{"look." + edit.key, "takes a restart: write it into the configuration"};
   }
+  if (look::names_file(edit.key)) {
+    return ParameterError{"look." + edit.key, "is read with the configuration: write it there, then: yuragi reload"};
+  }
   auto values = with_edit(look::look_parameters(), config.by_name.look, &configured.by_name.look, edit);
   if (!values) return error_in("look", values.error());
   const auto look = look::look_of(*values);

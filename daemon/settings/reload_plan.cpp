@@ -85,6 +85,8 @@ constexpr std::array kKeyRules = {
     KeyRule{"look", "quality", kApplied},
     KeyRule{"look", "palette", kApplied},
     KeyRule{"look", "ground", kApplied},
+    KeyRule{"look", "ground_image", kApplied},
+    KeyRule{"look", "ground_image_width", kApplied},
     KeyRule{"look", "density", kApplied},
 
     KeyRule{"log", "level", kApplied},

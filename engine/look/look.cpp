@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 6> kPalettes{"meadow", "spring", "summer-
 constexpr std::array<std::string_view, 5> kGrounds{"grass", "lawn", "sand", "stone", "snow"};
 constexpr Look kDefault{};
 
-const std::array<Parameter, 13> kParameters{{
+const std::array<Parameter, 15> kParameters{{
     {.name = "sun",
      .unit = "",
      .default_value = std::string("evening"),
@@ -93,6 +93,19 @@ const std::array<Parameter, 13> kParameters{{
      .default_value = std::string("grass"),
      .help = "What the ground is around the scenes; \"lawn\" is short everywhere",
      .choices = kGrounds},
+    {.name = "ground_image",
+     .unit = "",
+     .default_value = std::string(),
+     .help = "A PNG or JPEG file, from the configuration's folder on: it lies on the ground, again and again, where no "
+             "grass grows; with ground = \"sand\", \"stone\" or \"snow\" that is everywhere. Needs a scene of the kind "
+             "\"ground\"",
+     .left_out = "the ground as it is built in"},
+    {.name = "ground_image_width",
+     .unit = "m",
+     .default_value = kDefault.ground_image_width_m,
+     .min = 0.1,
+     .max = 200.0,
+     .help = "How wide ground_image is on the ground, from west to east; its upper edge is north"},
     {.name = "density",
      .unit = "",
      .default_value = kDefault.density,
@@ -121,6 +134,7 @@ std::optional<ParameterError> change(Look& look, std::string_view name, const Pa
   if (name == "quality") look.quality = choice_of<Quality>(kQualities, text());
   if (name == "palette") look.palette = choice_of<Palette>(kPalettes, text());
   if (name == "ground") look.ground = choice_of<GroundKind>(kGrounds, text());
+  if (name == "ground_image_width") look.ground_image_width_m = number();
   if (name == "density") look.density = number();
   if (name == "latitude") look.latitude_deg = number();
   if (name == "longitude") look.longitude_deg = number();
@@ -169,6 +183,10 @@ std::span<const Parameter> look_parameters() {
   return kParameters;
 }
 
+bool names_file(std::string_view key) noexcept {
+  return key == "ground_image";
+}
+
 Result<Look, ParameterError> look_of(const ParameterValues& values) {
   return changed({}, values.all());
 }
@@ -179,6 +197,9 @@ Result<Look, ParameterError> edited(const Look& look, std::span<const std::strin
     const std::size_t equals = std::min(edit.find('='), edit.size());
     const std::string name = edit.substr(0, equals);
     const std::string text = edit.substr(std::min(equals + 1, edit.size()));
+    if (names_file(name)) {
+      return ParameterError{name, "is a file that the daemon reads: write it into [look] of its configuration"};
+    }
     const auto parameter = std::ranges::find(kParameters, name, &Parameter::name);
     given.insert_or_assign(name, parameter == kParameters.end() ? ParameterValue(text) : typed_value(*parameter, text));
   }
@@ -194,6 +215,7 @@ Look within_limits(const Look& look) {
   if (static_cast<std::size_t>(look.quality) >= kQualities.size()) to.quality = kDefault.quality;
   if (static_cast<std::size_t>(look.palette) >= kPalettes.size()) to.palette = kDefault.palette;
   if (static_cast<std::size_t>(look.ground) >= kGrounds.size()) to.ground = kDefault.ground;
+  to.ground_image_width_m = limited(look.ground_image_width_m, "ground_image_width", kDefault.ground_image_width_m);
   to.density = limited(look.density, "density", kDefault.density);
   to.latitude_deg = limited(look.latitude_deg, "latitude", kDefault.latitude_deg);
   to.longitude_deg = limited(look.longitude_deg, "longitude", kDefault.longitude_deg);

@@ -53,6 +53,8 @@ struct Look {
   Quality quality = Quality::kAuto;
   Palette palette = Palette::kMeadow;
   GroundKind ground = GroundKind::kGrass;
+  /// How wide the picture is that lies on the ground, again and again, where the scene `ground` has one (ClothLook)
+  double ground_image_width_m = 4.0;
   double density = 1.0;  ///< of the blades that are drawn, as a part of what the quality draws
 
   friend bool operator==(const Look&, const Look&) = default;
@@ -61,11 +63,15 @@ struct Look {
 /// What the table [look] may hold, and `--look KEY=VALUE` of the viewer.
 std::span<const Parameter> look_parameters();
 
+/// Is the value of this key a file, which is read with the configuration?
+bool names_file(std::string_view key) noexcept;
+
 /// From values of look_parameters(). Where they do not say which sun it is, a place or a time means kTime, a height or
 /// an azimuth kFixed.
 Result<Look, ParameterError> look_of(const ParameterValues& values);
 
-/// `look`, changed by texts such as "time=06:30" and "clouds=1". Keys and values as in look_parameters().
+/// `look`, changed by texts such as "time=06:30" and "clouds=1". Keys and values as in look_parameters(),
+/// but for those that name a file.
 Result<Look, ParameterError> edited(const Look& look, std::span<const std::string> edits);
 
 /// The same look with every number finite and within the limits of look_parameters(): for what came from outside.

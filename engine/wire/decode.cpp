@@ -183,6 +183,7 @@ void read(const fb::Look* from, look::Look& to) {
                   .quality = static_cast<look::Quality>(from->quality()),
                   .palette = static_cast<look::Palette>(from->palette()),
                   .ground = static_cast<look::GroundKind>(from->ground()),
+                  .ground_image_width_m = from->ground_image_width_m(),
                   .density = from->density()};
   if (const auto hour = from->solar_time_h()) look.solar_time_h = *hour;
   to = look::within_limits(look);

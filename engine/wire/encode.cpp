@@ -201,6 +201,7 @@ flatbuffers::Offset<fb::Look> add_look(Builder& builder, const look::Look& look)
   table.add_palette(static_cast<fb::Palette>(look.palette));
   table.add_ground(static_cast<fb::GroundKind>(look.ground));
   table.add_density(look.density);
+  table.add_ground_image_width_m(look.ground_image_width_m);
   return table.Finish();
 }
 

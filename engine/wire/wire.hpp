@@ -81,7 +81,8 @@ struct SceneModel {
   std::string name;
   std::string kind;
   pose::Skeleton skeleton;
-  look::ClothLook cloth = {};  ///< of a cloth; its picture is as large as it says, and within Image's limits
+  look::ClothLook cloth =
+      {};  ///< of a cloth, or a ground's picture; it is as large as it says, and within Image's limits
 };
 
 struct Scenes {

@@ -33,7 +33,7 @@ struct Light {
   glm::vec4 grass_lush{0.0F};   ///< where it is moist; w: more straw above 0, less below
   glm::vec4 grass_fresh{0.0F};  ///< in between; w: how many flowers, 1 as in a meadow
   glm::vec4 grass_straw{0.0F};  ///< where it is dry
-  glm::vec4 grass_foot{0.0F};   ///< near the ground
+  glm::vec4 grass_foot{0.0F};   ///< near the ground; w: 1 / the width of the picture on the ground, per metre
   std::array<glm::vec4, 3> petals{};
   glm::vec4 leaves{1.0F};         ///< factor on leaves of trees; w: the share of them that hang, 0 in winter
   glm::vec4 woods{1.0F};          ///< factor on far woods; w: snow on hills, 0 to 1

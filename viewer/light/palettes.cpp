@@ -141,7 +141,7 @@ void set_colors(const look::Look& look, Light& light) {
   light.grass_lush = {palette.lush, palette.dryness};
   light.grass_fresh = {palette.fresh, palette.flowers};
   light.grass_straw = {palette.straw, 0.0F};
-  light.grass_foot = {palette.foot, 0.0F};
+  light.grass_foot = {palette.foot, static_cast<float>(1.0 / look.ground_image_width_m)};
   for (std::size_t i = 0; i < palette.petals.size(); ++i) light.petals.at(i) = {palette.petals.at(i), 0.0F};
   light.leaves = {palette.leaves, palette.hanging};
   light.turned_leaves = {palette.turned, 0.0F};

@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include "viewer/gl/shaders.hpp"
+#include "viewer/looks/image_texture.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
@@ -70,21 +71,6 @@ glm::vec4 paint_of(const std::optional<look::Color>& color) {
   return {paint_of(color->red), paint_of(color->green), paint_of(color->blue), 1.0F};
 }
 
-gl::GlTexture texture_of(const look::Image& image) {
-  gl::GlTexture texture;
-  glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, texture.name());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8, static_cast<GLsizei>(image.width_px), static_cast<GLsizei>(image.height_px),
-               0, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
-  glGenerateMipmap(GL_TEXTURE_2D);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  return texture;
-}
-
 /// Of its vertices; `none` where there are none.
 meshes::Bounds bounds_of(const meshes::SolidMesh& mesh, const meshes::Bounds& none) {
   if (mesh.vertices().empty()) return none;
@@ -119,7 +105,7 @@ ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle
   glUniform4fv(glGetUniformLocation(program_.name(), "color_2"), 1, &paint_of(look.color_2)[0]);
   glUniform1i(glGetUniformLocation(program_.name(), "has_picture"), look.image != nullptr ? 1 : 0);
   gl::set_sampler(program_, "picture", 0);
-  if (look.image != nullptr) picture_ = texture_of(*look.image);
+  if (look.image != nullptr) picture_ = image_texture(*look.image, GL_CLAMP_TO_EDGE);
 }
 
 float ClothRenderer::nearest_m(const meshes::View& view) const {

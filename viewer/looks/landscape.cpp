@@ -15,6 +15,7 @@
 #include "viewer/gl/screen_door.hpp"
 #include "viewer/gl/shaders.hpp"
 #include "viewer/looks/ground_maps.hpp"
+#include "viewer/looks/image_texture.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
@@ -73,6 +74,7 @@ Landscape::Landscape()
       hills_(gl::link_program("hills", gl::shaders::kHillsVert, gl::shaders::kHillsFrag)),
       sky_(gl::link_program("sky", gl::shaders::kSkyVert, gl::shaders::kSkyFrag)) {
   GroundMaps::set_samplers(ground_);
+  gl::set_sampler(ground_, "ground_image", gl::kGroundImageUnit);
   sunlight_place_ = glGetUniformLocation(ground_.name(), "sunlight");
   gl::set_sampler(sky_, "noise_tile", 0);
   gl::set_sampler(sky_, "moon_spots", 0);
@@ -94,6 +96,14 @@ void Landscape::set_quality(look::Quality quality) {
   quality_ = quality;
   small_sky_.reset();
   if (quality == look::Quality::kLow) small_sky_.emplace();
+}
+
+void Landscape::set_ground_image(const std::shared_ptr<const look::Image>& image, float share) {
+  image_share_ = image != nullptr ? share : 0.0F;
+  if (image == image_) return;
+  image_ = image;
+  image_texture_.reset();
+  if (image_ != nullptr) image_texture_.emplace(image_texture(*image_, GL_REPEAT));
 }
 
 void Landscape::prepare(const light::Light& light, const meshes::View& view, int width_px, int height_px) {
@@ -132,6 +142,14 @@ void Landscape::draw_far_country(const meshes::View& view) {
 void Landscape::draw_ground() {
   glBindVertexArray(no_attributes_.name());
   glUseProgram(ground_.name());
+  glUniform1i(glGetUniformLocation(ground_.name(), "images"), image_share_ > 0.0F ? 1 : 0);
+  if (image_share_ > 0.0F) {
+    const float tall_per_wide = static_cast<float>(image_->height_px) / static_cast<float>(image_->width_px);
+    glUniform2f(glGetUniformLocation(ground_.name(), "image_form"), image_share_, tall_per_wide);
+    glActiveTexture(GL_TEXTURE0 + gl::kGroundImageUnit);
+    glBindTexture(GL_TEXTURE_2D, image_texture_->name());
+    glActiveTexture(GL_TEXTURE0);
+  }
   glEnable(GL_STENCIL_TEST);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   for (const GLuint shadow : {GLuint{0}, gl::kShadow}) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 
+#include "engine/look/cloth_look.hpp"
 #include "engine/look/look.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/light/light.hpp"
@@ -21,6 +23,9 @@ class Landscape {
 
   /// With low quality the hills have fewer corners, and the sky is a SmallSky.
   void set_quality(look::Quality quality);
+
+  /// The picture that lies on the ground where nothing grows, and how much of it is to be seen, 0 to 1; null: none.
+  void set_ground_image(const std::shared_ptr<const look::Image>& image, float share);
 
   /// Before a picture of this size in this light, whose `view` (ViewBuffer::set) is bound. Binds another framebuffer.
   void prepare(const light::Light& light, const meshes::View& view, int width_px, int height_px);
@@ -43,6 +48,9 @@ class Landscape {
   CloudMap clouds_;
   gl::GlProgram ground_;
   GLint sunlight_place_ = -1;
+  std::shared_ptr<const look::Image> image_;  // on the ground
+  std::optional<gl::GlTexture> image_texture_;
+  float image_share_ = 0.0F;
   gl::GlProgram hills_;
   GLint range_place_ = -1, every_place_ = -1;
   struct Range {

@@ -245,6 +245,8 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
   const pose::StrandPose* near_by = nullptr;
   meshes::BendGrid grid;
   float ground_opacity = 0.0F;
+  std::shared_ptr<const look::Image> image;
+  float image_opacity = 0.0F;
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     const SceneView& view = *views_[scene];
     const bool fits = scene < moment.poses.size() && scene < moment.opacities.size() &&
@@ -255,6 +257,10 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
       nodes = std::get_if<pose::StrandPose>(&moment.poses[scene]);
       grid = view.grid;
       ground_opacity = std::max(ground_opacity, moment.opacities[scene]);
+      if (moment.opacities[scene] > image_opacity) {
+        image = view.scene.cloth.image;
+        image_opacity = moment.opacities[scene];
+      }
       continue;
     }
     is_bare = is_bare && !is_chosen(scene);
@@ -286,6 +292,8 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
     tall_ = ground_opacity;
     stand_ = {};
   }
+  // While one picture follows another, the bare ground is seen between them.
+  landscape_.set_ground_image(image, std::clamp(2.0F * image_opacity - 1.0F, 0.0F, 1.0F));
   ground_.set_standing(standing_, light_.colors.z);
   ground_.move_to(grid, nodes, near_by);
   ground_.bind(stand_, tall_, tall_door_);

@@ -101,6 +101,7 @@ TEST_F(ParameterTest, EveryParameterIsListedAsItsTableDescribesIt) {
   EXPECT_EQ(sun.value, std::nullopt);
   EXPECT_THAT(sun.left_out, HasSubstr("evening"));
   EXPECT_FALSE(sun.choices.empty());
+  EXPECT_EQ(listed("", "ground_image").change, wire::ParameterChange::kTakesReload);
   EXPECT_EQ(listed("banner", "gain").change, wire::ParameterChange::kAtOnce);
   EXPECT_EQ(listed("banner", "shown").kind, wire::ParameterKind::kYesNo);
   EXPECT_EQ(listed("grass", "blades_across").kind, wire::ParameterKind::kWholeNumber);

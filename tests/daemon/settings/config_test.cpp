@@ -83,6 +83,40 @@ TEST(Config, HasTheColorsAndThePictureOfACloth) {
               HasSubstr("color: is not a parameter"));
 }
 
+TEST(Config, HasThePictureOfTheGround) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "wall.toml";
+  const auto write = [](const std::filesystem::path& to, std::string_view bytes) {
+    std::ofstream(to, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  };
+  const std::vector<std::uint8_t> png = test::small_png();
+  write(folder.path() / "mats.png", {reinterpret_cast<const char*>(png.data()), png.size()});
+  write(file, "[look]\nground_image = \"mats.png\"\nground_image_width = 1.8\n");
+
+  const Config config = load_config(file);
+  EXPECT_EQ(config.look.ground_image_width_m, 1.8);
+  const auto ground = std::ranges::find(config.scenes, "ground", &SceneConfig::name);
+  ASSERT_NE(ground, config.scenes.end());
+  ASSERT_NE(ground->cloth.image, nullptr);
+  EXPECT_EQ(ground->cloth.image->width_px, 2U);
+  EXPECT_EQ(config.scenes.at(0).cloth.image, nullptr) << "of the grass";
+
+  write(file, "[look]\nground_image = \"gone.png\"\n");
+  EXPECT_THAT([&] { load_config(file); },
+              ThrowsMessage<ConfigError>(
+                  HasSubstr("wall.toml:2:16: look.ground_image: \"gone.png\" cannot be read: No such file")));
+  // A PNG that says it has 65,536 x 65,536 pixels is refused before there is memory for them.
+  std::vector<std::uint8_t> huge = png;
+  huge[16] = huge[20] = 0;
+  huge[17] = huge[21] = 1;
+  write(folder.path() / "huge.png", {reinterpret_cast<const char*>(huge.data()), huge.size()});
+  write(file, "[look]\nground_image = \"huge.png\"\n");
+  EXPECT_THAT([&] { load_config(file); },
+              ThrowsMessage<ConfigError>(HasSubstr("wall.toml:2:16: look.ground_image: \"huge.png\" ")));
+  EXPECT_THAT(mistakes_of("[look]\nground_image = \"mats.png\"\n[[scene]]\nkind = \"grass\"\n"),
+              HasSubstr("look.ground_image: is for a scene that is not there; add [[scene]] with kind = \"ground\""));
+}
+
 TEST(Config, HasTheLookWithTheLineOfAMistake) {
   EXPECT_EQ(parse_config("[look]\nlatitude = 52.5\n", "wall.toml").look.sun, look::SunChoice::kTime);
   try {

@@ -211,6 +211,18 @@ TEST(ReloadPlan, NoticesAPictureWhoseFileHasChanged) {
   EXPECT_THAT(plan.applied, testing::Contains("scene flag: image: its file has changed"));
 }
 
+TEST(ReloadPlan, TakesAnotherPictureOfTheGround) {
+  const Config running = parse_config("", "wall.toml");
+  Config wanted = parse_config("[look]\nground_image = \"mats.png\"\nground_image_width = 2\n", "wall.toml");
+  wanted.scenes.back().cloth.image = std::make_shared<look::Image>(look::Image{1, 1, {1, 2, 3}});
+  const ReloadPlan plan = plan_reload(running, wanted, true);
+  EXPECT_TRUE(plan.changes_scenes);
+  EXPECT_EQ(plan.next.scenes.back().cloth, wanted.scenes.back().cloth);
+  EXPECT_EQ(plan.next.look.ground_image_width_m, 2.0);
+  EXPECT_THAT(plan.applied, testing::Contains("[look] ground_image: left out -> \"mats.png\""));
+  EXPECT_THAT(plan.takes_restart, IsEmpty());
+}
+
 TEST(ReloadPlan, TakesScenesAsAWholeOrLeavesThem) {
   const Config running = wall(kTwoSensors);
   Config wanted = wall(

@@ -53,6 +53,8 @@ TEST(Look, TakesEveryValue) {
                           {"quality", std::string("medium")},
                           {"palette", std::string("summer-dry")},
                           {"ground", std::string("stone")},
+                          {"ground_image", std::string("tatami.jpg")},
+                          {"ground_image_width", 1.8},
                           {"density", 0.5}});
   ASSERT_TRUE(look);
   EXPECT_EQ(*look, (Look{.sun = SunChoice::kTime,
@@ -67,6 +69,7 @@ TEST(Look, TakesEveryValue) {
                          .quality = Quality::kMedium,
                          .palette = Palette::kSummerDry,
                          .ground = GroundKind::kStone,
+                         .ground_image_width_m = 1.8,
                          .density = 0.5}));
 }
 

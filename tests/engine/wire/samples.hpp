@@ -384,6 +384,7 @@ inline wire::Sensors sensors() {
                              .quality = look::Quality::kMedium,
                              .palette = look::Palette::kWinter,
                              .ground = look::GroundKind::kSand,
+                             .ground_image_width_m = 1.5,
                              .density = 0.75},
           .cameras = {look::Camera{.name = "dawn", .from_h = 5.5}, look::Camera{.name = "night",
                                                                                 .scene = "fire",

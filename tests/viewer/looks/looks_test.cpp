@@ -591,6 +591,40 @@ TEST_F(StageTest, TheNodesOfTheGroundBendTheGrassAroundAndAreNoThing) {
   EXPECT_GT(changed(calm, target_->read_rgb()), 5000U);
 }
 
+TEST_F(StageTest, APictureLiesOnTheBareGround) {
+  // Its middle is at x = z = 0: red to the west, blue to the east.
+  wire::SceneModel ground = ground_model();
+  look::Image halves{64, 1, {}};
+  for (int i = 0; i < 64; ++i) {
+    for (const int value : {i < 32 ? 220 : 10, 10, i < 32 ? 10 : 220}) {
+      halves.rgb.push_back(static_cast<std::uint8_t>(value));
+    }
+  }
+  ground.cloth.image = std::make_shared<look::Image>(halves);
+  const auto share_of = [&](std::size_t channel, double width_m, float opacity) {
+    camera_.frame({{0.0, 0.0, 0.0}, 0.0, 89.0, 4.0});  // north is up
+    std::vector<std::string> look{"ground=stone", "ground_image_width=" + std::to_string(width_m)};
+    stage_->set_light(light::light_of(look::edited({}, look).value(), 0.0));
+    stream::PoseMoment moment = stream::rest_moment(models_);
+    moment.opacities[0] = opacity;
+    stage_->draw(moment, camera_, *target_);
+    const Pixels pixels = target_->read_rgb();
+    std::size_t left = 0;
+    for (std::size_t i = 0; i + 2 < pixels.size(); i += 3) {
+      const bool is_left = i / 3 % kWidth_px < kWidth_px / 2;
+      if (is_left && pixels[i + channel] > 2 * pixels[i + 2 - channel]) ++left;
+    }
+    return static_cast<double>(left) / (0.5 * kWidth_px * kHeight_px);
+  };
+  show({ground_model()});
+  EXPECT_LT(share_of(0, 4.0, 1.0F) + share_of(2, 4.0, 1.0F), 0.01) << "stone has no color";
+  show({ground});
+  EXPECT_GT(share_of(0, 20.0, 1.0F), 0.8);
+  EXPECT_LT(share_of(2, 20.0, 1.0F), 0.01);
+  EXPECT_GT(share_of(2, 2.0, 1.0F), 0.2) << "it is repeated";
+  EXPECT_LT(share_of(0, 20.0, 0.3F), 0.01) << "it has faded out";
+}
+
 TEST_F(StageTest, ATrunkDarkensTheGroundAtItsFootOnTheSunnySideToo) {
   show({test_model("tree")});
   camera_.frame({{-0.40, 0.0, 0.25}, 0.0, 89.0, 0.6});

@@ -33,7 +33,7 @@ layout(std140) uniform Light {
   vec4 grass_lush;    // w: more straw above 0
   vec4 grass_fresh;   // w: how many flowers
   vec4 grass_straw;
-  vec4 grass_foot;
+  vec4 grass_foot;    // w: 1 / the width of the picture on the ground
   vec4 petals[3];
   vec4 leaves;        // factor; w: the share of them that hang
   vec4 woods;         // w: snow on hills

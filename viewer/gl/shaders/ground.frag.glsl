@@ -1,6 +1,9 @@
 #include "sward.part.glsl"
 // The ground between the blades near by, and the grass itself where blades would be smaller than pixels.
 uniform float sunlight;  // 1, and less in a hard shadow
+uniform int images;              // 1: a picture lies on the ground, 0: none
+uniform sampler2D ground_image;
+uniform vec2 image_form;         // how much of it is seen; its height, in widths of it
 in vec3 place_m;
 out vec4 color;
 
@@ -38,9 +41,17 @@ void main() {
   vec3 light = mix(below, canopy, far);
 
   // Where nothing grows: what is uneven faces the sun or turns away from it.
-  float grain = clamp(earth.w * (1.6 * tufts + 0.8 * patch_at.y + 0.5 * patch_at.x), -0.8, 0.8);
-  vec3 bare = earth.rgb * (sky_light.rgb * (0.85 + 0.3 * grain) + sun_light.rgb * (lit * max(to_sun.y * (0.8 + 0.3 * grain) + 0.25 * grain, 0.0)));
+  // A picture is in place of it; a loop is not run where there is none.
+  vec3 soil = earth.rgb;
+  float relief = earth.w;
+  for (int i = 0; i < images; ++i) {
+    vec3 image = texture(ground_image, at_m * grass_foot.w * vec2(1.0, 1.0 / image_form.y) + 0.5).rgb;
+    soil = mix(soil, 0.012 + 0.768 * image, image_form.x);  // nothing is quite black, nor reflects all (cloth_renderer.cpp)
+    relief *= 1.0 - 0.9 * image_form.x;
+  }
+  float grain = clamp(relief * (1.6 * tufts + 0.8 * patch_at.y + 0.5 * patch_at.x), -0.8, 0.8);
+  vec3 bare = soil * (sky_light.rgb * (0.85 + 0.3 * grain) + sun_light.rgb * (lit * max(to_sun.y * (0.8 + 0.3 * grain) + 0.25 * grain, 0.0)));
   light = mix(bare, light, smoothstep(0.0, 0.1, growth_here));
-  light += mix(earth.rgb, tint_of(patch_at, 0.5), 0.5 * far * smoothstep(0.0, 0.1, growth_here)) * fire_light(place_m, vec3(0.0, 1.0, 0.0));
+  light += mix(soil, tint_of(patch_at, 0.5), 0.5 * far * smoothstep(0.0, 0.1, growth_here)) * fire_light(place_m, vec3(0.0, 1.0, 0.0));
   color = vec4(dithered(seen(light, place_m), gl_FragCoord.xy), 1.0);
 }

@@ -1,0 +1,33 @@
+#include "viewer/looks/image_texture.hpp"
+
+#include <algorithm>
+
+namespace yuragi::viewer::looks {
+namespace {
+
+/// Samples along the longer side of a pixel's footprint: what lies flat is sharp at flat angles, too.
+constexpr float kMostAnisotropy = 8.0F;
+
+}  // namespace
+
+gl::GlTexture image_texture(const look::Image& image, GLint wrap) {
+  gl::GlTexture texture;
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, texture.name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8, static_cast<GLsizei>(image.width_px), static_cast<GLsizei>(image.height_px),
+               0, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
+  if (wrap == GL_REPEAT && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
+    float most = 1.0F;
+    glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &most);
+    glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(most, kMostAnisotropy));
+  }
+  return texture;
+}
+
+}  // namespace yuragi::viewer::looks
