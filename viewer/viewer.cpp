@@ -304,6 +304,7 @@ class Viewer::Show {
     last_s_ = now;
     picture_passed_s_ = passed_s;
     camera_.advance(passed_s);
+    camera_.keep_away(stage_->outside(camera_.place()).distance_m);
     cameras_.advance(passed_s);
     moment_ = &timeline_.advance(now);
     follow_brightness(is_first_status ? kDimming_s : passed_s);

@@ -433,6 +433,18 @@ TEST_F(StageTest, ThrowsShadowsOnTheGround) {
   }
 }
 
+TEST_F(StageTest, SeesABodyFromOutsideWhereverTheCameraStands) {
+  show({test_model("fur")});
+  const meshes::Bounds bounds = stage_->bounds();
+  const meshes::CameraPlace within{glm::dvec3((bounds.low_m + bounds.high_m) / 2.0F), 160.0, 5.0, 0.25};
+  const meshes::CameraPlace outside = stage_->outside(within);
+  EXPECT_GT(outside.distance_m, 0.4);
+  camera_.frame(outside);
+  const Pixels seen = draw(0.0, 1.0F);
+  camera_.frame(within);
+  EXPECT_EQ(draw(0.0, 1.0F), seen);
+}
+
 TEST_F(StageTest, ShowsATreesGroveAndItsShadows) {
   const wire::SceneModel alone = test_model("tree");
   wire::SceneModel grove = alone;
