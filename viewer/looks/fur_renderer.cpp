@@ -29,6 +29,7 @@ void set_body(const gl::GlProgram& program, const meshes::Body& body) {
 FurRenderer::FurRenderer(const pose::StrandSkeleton& strands, look::Quality quality)
     : body_(meshes::body_of(strands)),
       ribbons_(strands, hairs_of(quality)),
+      partings_(strands, body_),
       hair_(gl::link_program("hair", gl::shaders::kHairVert, gl::shaders::kShadeFrag)),
       skin_(gl::link_program("skin", gl::shaders::kSkinVert, gl::shaders::kSkinFrag)),
       noise_(gl::make_noise_texture()),
@@ -87,7 +88,11 @@ void FurRenderer::make_limbs(const meshes::Limbs& limbs) {
 }
 
 void FurRenderer::move_to(const pose::Pose& pose) {
-  if (const auto* const bends = std::get_if<pose::StrandPose>(&pose)) ribbons_.move_to(*bends);
+  const auto* const bends = std::get_if<pose::StrandPose>(&pose);
+  if (bends == nullptr) return;
+  ribbons_.move_to(*bends);
+  partings_.move_to(ribbons_.joints());
+  ribbons_.set_openings(partings_.openings());
 }
 
 void FurRenderer::draw(const meshes::View& view) {

@@ -5,6 +5,7 @@
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/strand_ribbons.hpp"
 #include "viewer/meshes/body.hpp"
+#include "viewer/meshes/partings.hpp"
 #include "viewer/meshes/sleeper.hpp"
 
 namespace yuragi::viewer::looks {
@@ -34,6 +35,7 @@ class FurRenderer : public SceneRenderer {
 
   meshes::Body body_;
   StrandRibbons ribbons_;
+  meshes::Partings partings_;
   gl::GlProgram hair_;
   gl::GlProgram skin_;
   GLsizei skin_count_ = 0;
