@@ -39,6 +39,7 @@ class GlRenderer final : public Renderer {
   void show_only(const std::string& scene) override { stage_.show_only(scene); }
   double aspect() const override { return static_cast<double>(target_.width_px()) / target_.height_px(); }
   meshes::CameraPlace home() const override { return stage_.home(aspect()); }
+  meshes::CameraPlace outside(const meshes::CameraPlace& place) const override { return stage_.outside(place); }
   std::optional<meshes::Bounds> bounds_of(std::string_view scene) const override { return stage_.bounds_of(scene); }
   void set_light(const light::Light& light) override { stage_.set_light(light); }
   void set_quality(look::Quality quality, float density) override;

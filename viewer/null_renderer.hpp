@@ -18,6 +18,7 @@ class NullRenderer final : public Renderer {
   void show_only(const std::string& /*scene*/) override {}
   double aspect() const override { return aspect_; }
   meshes::CameraPlace home() const override { return {}; }
+  meshes::CameraPlace outside(const meshes::CameraPlace& place) const override { return place; }
   std::optional<meshes::Bounds> bounds_of(std::string_view scene) const override;
   void set_light(const light::Light& /*light*/) override {}
   void set_quality(look::Quality /*quality*/, float /*density*/) override {}

@@ -65,6 +65,7 @@ void PictureDirector::advance(double passed_s, double utc_s, const wind::WindVec
   cameras_.advance(passed_s);
   if (utc_s != std::exchange(utc_s_, utc_s)) cameras_.hear_clock(utc_s);
   camera_.advance(passed_s);
+  camera_.keep_away(renderer_.outside(camera_.place()).distance_m);
   renderer_.set_light(sky_.advance(utc_s, passed_s, {wind.u_m_s, -wind.v_m_s}));
   const look::Look& look = sky_.look();
   renderer_.set_quality(look.quality, static_cast<float>(look.density));

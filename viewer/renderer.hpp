@@ -37,6 +37,8 @@ class Renderer {
   virtual double aspect() const = 0;
   /// The camera's first place for what is drawn.
   virtual meshes::CameraPlace home() const = 0;
+  /// The place itself, or so far back along its view that no camera stands within an animal.
+  virtual meshes::CameraPlace outside(const meshes::CameraPlace& place) const = 0;
   /// The box around the scene of this name; nothing where there is none.
   virtual std::optional<meshes::Bounds> bounds_of(std::string_view scene) const = 0;
 

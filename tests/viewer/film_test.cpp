@@ -61,6 +61,7 @@ class WatchedRenderer final : public Renderer {
   void show_only(const std::string& /*scene*/) override {}
   double aspect() const override { return nothing_.aspect(); }
   meshes::CameraPlace home() const override { return nothing_.home(); }
+  meshes::CameraPlace outside(const meshes::CameraPlace& place) const override { return place; }
   std::optional<meshes::Bounds> bounds_of(std::string_view scene) const override { return nothing_.bounds_of(scene); }
   void set_light(const light::Light& /*light*/) override {}
   void set_quality(look::Quality quality, float /*density*/) override { quality_ = quality; }

@@ -8,7 +8,8 @@ namespace yuragi::viewer::looks {
 /// Draws a Floor. Needs a current context.
 class BoardFloor {
  public:
-  explicit BoardFloor(const meshes::Floor& floor);
+  /// `through`: the share of the sun's light that comes through what shades it.
+  BoardFloor(const meshes::Floor& floor, const glm::vec3& through);
 
   /// The View is bound (ViewBuffer::set).
   void draw() const;

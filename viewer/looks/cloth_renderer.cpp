@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
@@ -17,8 +18,9 @@ namespace {
 constexpr float kShadowCell_px = 12.0F;  // of a shadow's mesh
 constexpr float kKeep = 0.15F;           // of a level: so far beyond its bounds it is kept
 constexpr float kNearest_m = 0.1F;
-constexpr std::size_t kLooks = 12;     // joints along each side that are asked how far they are
-constexpr float kHalfHem_m = 0.0015F;  // half the thickness of a hem
+constexpr std::size_t kLooks = 12;            // joints along each side that are asked how far they are
+constexpr float kHalfHem_m = 0.0015F;         // half the thickness of a hem
+const glm::vec3 kLinen{0.70F, 0.63F, 0.51F};  // cloth.frag.glsl's
 constexpr float kDarkestPaint = 0.012F;
 constexpr float kLightestPaint = 0.78F;
 constexpr float kThinnestWire_px = 0.8F;
@@ -71,6 +73,22 @@ glm::vec4 paint_of(const std::optional<look::Color>& color) {
   return {paint_of(color->red), paint_of(color->green), paint_of(color->blue), 1.0F};
 }
 
+/// The share of the sun's light that comes through a curtain, on average over its picture or its stripes: of the
+/// cloth's colour, deeper, as the cloth shader has it.
+glm::vec3 light_through(const look::ClothLook& look) {
+  constexpr float kThrough = 0.62F;
+  glm::vec3 paint(look.color ? glm::vec3(paint_of(look.color)) : kLinen);
+  if (look.color_2) paint = 0.5F * (paint + glm::vec3(paint_of(look.color_2)));
+  if (look.image != nullptr && look.image->rgb.size() >= 3) {
+    paint = glm::vec3(0.0F);
+    const std::size_t pixels = look.image->rgb.size() / 3;
+    for (std::size_t i = 0; i < 3 * pixels; ++i) {
+      paint[static_cast<glm::length_t>(i % 3)] += paint_of(look.image->rgb[i]) / static_cast<float>(pixels);
+    }
+  }
+  return kThrough * 1.25F * paint * glm::sqrt(paint);
+}
+
 /// Of its vertices; `none` where there are none.
 meshes::Bounds bounds_of(const meshes::SolidMesh& mesh, const meshes::Bounds& none) {
   if (mesh.vertices().empty()) return none;
@@ -97,7 +115,7 @@ ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle
       wire_m_(2.0F * holder.wire_radius_m()),
       floor_(meshes::cloth_floor(style_, cloth)),
       program_(gl::link_program("cloth", gl::shaders::kClothVert, gl::shaders::kClothFrag)) {
-  if (floor_) boards_.emplace(*floor_);
+  if (floor_) boards_.emplace(*floor_, light_through(look));
   glUseProgram(program_.name());
   glUniform2f(glGetUniformLocation(program_.name(), "size_m"), lies_.size_m.x, lies_.size_m.y);
   glUniform1i(glGetUniformLocation(program_.name(), "style"), static_cast<GLint>(style_));

@@ -2,12 +2,15 @@
 
 #include <cstddef>
 
+#include <glm/geometric.hpp>
+
 #include "viewer/gl/noise_texture.hpp"
 #include "viewer/gl/shaders.hpp"
-#include "viewer/meshes/body.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
+
+constexpr float kSmallestHair_px = 2.0F;  // of a limb: shorter ones are not seen
 
 /// Hairs a strand.
 GLint hairs_of(look::Quality quality) {
@@ -24,7 +27,9 @@ void set_body(const gl::GlProgram& program, const meshes::Body& body) {
 }  // namespace
 
 FurRenderer::FurRenderer(const pose::StrandSkeleton& strands, look::Quality quality)
-    : ribbons_(strands, hairs_of(quality)),
+    : body_(meshes::body_of(strands)),
+      ribbons_(strands, hairs_of(quality)),
+      partings_(strands, body_),
       hair_(gl::link_program("hair", gl::shaders::kHairVert, gl::shaders::kShadeFrag)),
       skin_(gl::link_program("skin", gl::shaders::kSkinVert, gl::shaders::kSkinFrag)),
       noise_(gl::make_noise_texture()),
@@ -33,15 +38,15 @@ FurRenderer::FurRenderer(const pose::StrandSkeleton& strands, look::Quality qual
   gl::set_sampler(hair_, "blades", gl::kStripsUnit);
   gl::set_sampler(skin_, "noise_tile", 0);
   gl::set_sampler(limb_, "noise_tile", 0);
-  const meshes::Body body = meshes::body_of(strands);
-  limbs_ = meshes::limbs_of(strands, body);
-  if (!limbs_.indices.empty()) make_limbs();
-  set_body(hair_, body);
-  glUniform1f(glGetUniformLocation(hair_.name(), "spacing_m"), body.spacing_m);
-  set_body(skin_, body);
+  is_hair_ = glGetUniformLocation(limb_.name(), "is_hair");
+  const meshes::Limbs limbs = meshes::limbs_of(strands, body_);
+  if (!limbs.indices.empty()) make_limbs(limbs);
+  set_body(hair_, body_);
+  glUniform1f(glGetUniformLocation(hair_.name(), "spacing_m"), body_.spacing_m);
+  set_body(skin_, body_);
 
   if (strands.strand_count == 0) return;
-  const meshes::Skin skin = meshes::skin_of(body);
+  const meshes::Skin skin = meshes::skin_of(body_);
   skin_count_ = static_cast<GLsizei>(skin.triangles.size());
   glBindVertexArray(skin_array_.name());
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, skin_indices_.name());
@@ -54,59 +59,72 @@ FurRenderer::FurRenderer(const pose::StrandSkeleton& strands, look::Quality qual
   glEnableVertexAttribArray(0);
 }
 
-void FurRenderer::make_limbs() {
+void FurRenderer::make_limbs(const meshes::Limbs& limbs) {
   constexpr GLsizei kStride = sizeof(meshes::LimbVertex);
   // OpenGL takes an offset in a buffer as a pointer.
   // NOLINTNEXTLINE(performance-no-int-to-ptr)
   const auto at = [](std::size_t offset) { return reinterpret_cast<const void*>(offset); };
   glBindVertexArray(limb_array_.name());
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, limb_indices_.name());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(limbs_.indices.size() * sizeof(std::uint32_t)),
-               limbs_.indices.data(), GL_STATIC_DRAW);
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(limbs.indices.size() * sizeof(std::uint32_t)),
+               limbs.indices.data(), GL_STATIC_DRAW);
   glBindBuffer(GL_ARRAY_BUFFER, limb_buffer_.name());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(limbs_.vertices.size()) * kStride, limbs_.vertices.data(),
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(limbs.vertices.size()) * kStride, limbs.vertices.data(),
                GL_STATIC_DRAW);
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(meshes::LimbVertex, place_m)));
   glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(meshes::LimbVertex, normal)));
   glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(meshes::LimbVertex, tint)));
   glVertexAttribPointer(3, 2, GL_FLOAT, GL_FALSE, kStride, at(offsetof(meshes::LimbVertex, hair_m)));
   for (const GLuint attribute : {0U, 1U, 2U, 3U}) glEnableVertexAttribArray(attribute);
-}
 
-meshes::Bounds FurRenderer::bounds_with_holder(const meshes::Bounds& bounds) const {
-  meshes::Bounds with_limbs = bounds;
-  for (const meshes::LimbVertex& vertex : limbs_.vertices) {
-    with_limbs = meshes::united(with_limbs, {vertex.place_m, vertex.place_m});
+  limb_count_ = static_cast<GLsizei>(limbs.skin_count);
+  limb_hair_count_ = static_cast<GLsizei>(limbs.indices.size() - limbs.skin_count);
+  limb_hair_m_ = limbs.hair_m;
+  const glm::vec3 first_m = limbs.vertices.front().place_m;
+  limb_bounds_ = meshes::Bounds{first_m, first_m};
+  for (const meshes::LimbVertex& vertex : limbs.vertices) {
+    limb_bounds_ = meshes::united(*limb_bounds_, {vertex.place_m, vertex.place_m});
   }
-  return with_limbs;
 }
 
 void FurRenderer::move_to(const pose::Pose& pose) {
-  if (const auto* const bends = std::get_if<pose::StrandPose>(&pose)) ribbons_.move_to(*bends);
+  const auto* const bends = std::get_if<pose::StrandPose>(&pose);
+  if (bends == nullptr) return;
+  ribbons_.move_to(*bends);
+  partings_.move_to(ribbons_.joints());
+  ribbons_.set_openings(partings_.openings());
 }
 
 void FurRenderer::draw(const meshes::View& view) {
   ribbons_.draw(hair_, view);
-  draw_skin();
+  const float distance_m = glm::distance(glm::vec3(view.eye_m), body_.middle_m);
+  draw_skin(limb_hair_m_ > kSmallestHair_px * view.eye_m.w * distance_m);
 }
 
 void FurRenderer::draw_shadow(const meshes::View& view) {
   // A body's shadow on the ground does as well without its hairs; in a map they shade each other.
   const bool is_map = view.to_clip[0][3] == 0.0F && view.to_clip[1][3] == 0.0F && view.to_clip[2][3] == 0.0F;
   if (is_map) ribbons_.draw(hair_, view);
-  draw_skin();
+  draw_skin(false);
 }
 
-void FurRenderer::draw_skin() const {
+void FurRenderer::draw_skin(bool has_hairs) const {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, noise_.name());
   glUseProgram(skin_.name());
   glBindVertexArray(skin_array_.name());
   glDrawElements(GL_TRIANGLES, skin_count_, GL_UNSIGNED_INT, nullptr);
-  if (limbs_.indices.empty()) return;
+  if (limb_count_ == 0) return;
   glUseProgram(limb_.name());
   glBindVertexArray(limb_array_.name());
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(limbs_.indices.size()), GL_UNSIGNED_INT, nullptr);
+  glUniform1i(is_hair_, 0);
+  glDrawElements(GL_TRIANGLES, limb_count_, GL_UNSIGNED_INT, nullptr);
+  if (!has_hairs) return;
+  glUniform1i(is_hair_, 1);
+  // OpenGL takes an offset in a buffer as a pointer.
+  // NOLINTNEXTLINE(performance-no-int-to-ptr)
+  const auto* const at = reinterpret_cast<const void*>(static_cast<std::size_t>(limb_count_) * sizeof(std::uint32_t));
+  glDrawElements(GL_TRIANGLES, limb_hair_count_, GL_UNSIGNED_INT, at);
 }
 
 }  // namespace yuragi::viewer::looks

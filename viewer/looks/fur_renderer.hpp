@@ -1,14 +1,18 @@
 #pragma once
 
+#include <optional>
+
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/strand_ribbons.hpp"
+#include "viewer/meshes/body.hpp"
+#include "viewer/meshes/partings.hpp"
 #include "viewer/meshes/sleeper.hpp"
 
 namespace yuragi::viewer::looks {
 
 /// Draws strands as the coat of an animal: underhair and guard hairs, several around each strand, over a pale skin that
-/// is seen where the coat parts. A body that is long enough is an animal asleep: it has short-haired limbs besides
-/// (meshes::limbs_of).
+/// is seen where the coat parts. A body that is long enough is an animal asleep: it has limbs with a shorter coat
+/// besides (meshes::limbs_of).
 class FurRenderer : public SceneRenderer {
  public:
   /// `strands` must outlive this. The better the quality, the more hairs.
@@ -17,14 +21,21 @@ class FurRenderer : public SceneRenderer {
   void move_to(const pose::Pose& pose) override;
   void draw(const meshes::View& view) override;
   void draw_shadow(const meshes::View& view) override;
-  meshes::Bounds bounds_with_holder(const meshes::Bounds& bounds) const override;
+  meshes::Bounds bounds_with_holder(const meshes::Bounds& bounds) const override {
+    return limb_bounds_ ? meshes::united(bounds, *limb_bounds_) : bounds;
+  }
+  meshes::CameraPlace outside(const meshes::CameraPlace& place) const override {
+    return skin_count_ > 0 ? meshes::outside(body_, place) : place;
+  }
   bool casts_shadow() const override { return true; }
 
  private:
-  void draw_skin() const;
-  void make_limbs();
+  void draw_skin(bool has_hairs) const;
+  void make_limbs(const meshes::Limbs& limbs);
 
+  meshes::Body body_;
   StrandRibbons ribbons_;
+  meshes::Partings partings_;
   gl::GlProgram hair_;
   gl::GlProgram skin_;
   GLsizei skin_count_ = 0;
@@ -32,8 +43,11 @@ class FurRenderer : public SceneRenderer {
   gl::GlVertexArray skin_array_;
   gl::GlBuffer skin_buffer_, skin_indices_;
 
-  meshes::Limbs limbs_;
+  std::optional<meshes::Bounds> limb_bounds_;
+  GLsizei limb_count_ = 0, limb_hair_count_ = 0;
+  float limb_hair_m_ = 0.0F;
   gl::GlProgram limb_;
+  GLint is_hair_ = -1;
   gl::GlVertexArray limb_array_;
   gl::GlBuffer limb_buffer_, limb_indices_;
 };

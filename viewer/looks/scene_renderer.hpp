@@ -11,6 +11,7 @@
 #include "viewer/light/fire_light.hpp"
 #include "viewer/meshes/bounds.hpp"
 #include "viewer/meshes/floor.hpp"
+#include "viewer/meshes/orbit_camera.hpp"
 #include "viewer/meshes/view.hpp"
 
 namespace yuragi::viewer::looks {
@@ -55,6 +56,9 @@ class SceneRenderer {
 
   /// Fills, in the stencil alone, the part of the ground that is open: under water.
   virtual void draw_hole() {}
+
+  /// A camera's place, or one farther back, that is not within it.
+  virtual meshes::CameraPlace outside(const meshes::CameraPlace& place) const { return place; }
 
   /// Does it light what is around it?
   virtual bool throws_light() const { return false; }

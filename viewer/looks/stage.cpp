@@ -145,6 +145,14 @@ meshes::CameraPlace Stage::home(double aspect) const {
   return meshes::place_around(bounds(), aspect);
 }
 
+meshes::CameraPlace Stage::outside(const meshes::CameraPlace& place) const {
+  meshes::CameraPlace there = place;
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    if (is_chosen(scene)) there = views_[scene]->renderer->outside(there);
+  }
+  return there;
+}
+
 std::optional<meshes::Bounds> Stage::bounds_of(std::string_view scene) const {
   const auto found = std::ranges::find_if(views_, [&](const auto& view) { return view->scene.name == scene; });
   if (found == views_.end()) return std::nullopt;
@@ -392,7 +400,9 @@ void Stage::draw_mirror(const stream::PoseMoment& moment, const meshes::View& vi
 }
 
 void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera, gl::RenderTarget& target) {
-  meshes::View view = meshes::view_of(camera, target.drawn_width_px(), target.drawn_height_px());
+  meshes::OrbitCamera from = camera;
+  from.go_to(outside(camera.place()));
+  meshes::View view = meshes::view_of(from, target.drawn_width_px(), target.drawn_height_px());
   if (clock_ != nullptr) clock_->begin();
   const glm::vec3 to_sun(light_.to_sun);
   const bool has_shadows = to_sun.y > kLowestSun;

@@ -40,6 +40,8 @@ class Stage {
   /// The box around all scenes that are drawn, and the camera's first place for a picture of width / height `aspect`.
   meshes::Bounds bounds() const;
   meshes::CameraPlace home(double aspect) const;
+  /// A camera's place, or one farther back, that is not within a body. What is drawn is seen from there.
+  meshes::CameraPlace outside(const meshes::CameraPlace& place) const;
   /// The box around the scene of this name; nothing where there is none.
   std::optional<meshes::Bounds> bounds_of(std::string_view scene) const;
   /// How many joints move in all scenes.

@@ -21,6 +21,10 @@ class StrandRibbons {
 
   /// Computes and uploads the joints of this pose.
   void move_to(const pose::StrandPose& pose);
+  /// Of that pose.
+  const pose::JointPositions& joints() const { return joints_; }
+  /// meshes::Partings', of that pose.
+  void set_openings(std::span<const float> openings) { sorter_.set_openings(openings); }
   /// Draws what is in view, near ones first, with `program`.
   void draw(const gl::GlProgram& program, const meshes::View& view);
 

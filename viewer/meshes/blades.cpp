@@ -75,6 +75,11 @@ BladeSorter::BladeSorter(const pose::StrandSkeleton& skeleton)
   levels_.push_back({std::min(links, kFarRings), true, {}});
 }
 
+void BladeSorter::set_openings(std::span<const float> openings) {
+  const std::size_t count = std::min(blades_.size(), openings.size());
+  for (std::size_t i = 0; i < count; ++i) blades_[i].opening = openings[i];
+}
+
 void BladeSorter::sort(const View& view) {
   for (DetailLevel& level : levels_) level.blades.clear();
 

@@ -22,7 +22,8 @@ struct Blade {
   float facing_rad = 0.0F;      ///< bearing of its flat side
   float strand = 0.0F;          ///< its number; a whole one
   float length_m = 0.0F;
-  std::array<float, 2> unused{};
+  float opening = 0.0F;  ///< how much the coat parts there (partings.hpp)
+  float unused = 0.0F;
 };
 
 /// A blade (or hair) for each strand: wide enough for the strands' spacing to cover the ground, tinted as a coat is, by
@@ -51,6 +52,9 @@ class BladeSorter {
   explicit BladeSorter(const pose::StrandSkeleton& skeleton);
 
   void sort(const View& view);
+
+  /// Partings', a strand each.
+  void set_openings(std::span<const float> openings);
 
   /// Near ones first.
   std::span<const DetailLevel> levels() const { return levels_; }

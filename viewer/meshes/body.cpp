@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kUnknowns = 7;
 constexpr float kBelow_m = 0.02F;
+constexpr double kHairsAway = 2.5;  // a camera stays so many of their lengths away from the skin
 constexpr std::size_t kSkinRows = 40;
 constexpr std::size_t kSkinColumns = 80;
 using Equations = std::array<std::array<double, kUnknowns + 1>, kUnknowns>;
@@ -85,10 +86,36 @@ Body body_of(const pose::StrandSkeleton& coat) {
     const glm::vec3 inverse = 1.0F / (half_m * half_m);
     body.shape = glm::mat3(inverse.x, 0.0F, 0.0F, 0.0F, inverse.y, 0.0F, 0.0F, 0.0F, inverse.z);
   }
+  for (std::size_t i = 0; i < std::min(coat.strand_count, coat.link_length_m.size()); ++i) {
+    body.hair_m += coat.link_length_m[i] * static_cast<float>(coat.links_per_strand);
+  }
+  body.hair_m /= static_cast<float>(coat.strand_count);
   // What the hairs stand on is nearly an ellipse's area, bulged.
   const float area_m2 = 2.0F * (half_m.x * half_m.y + half_m.y * half_m.z + 1.5F * half_m.z * half_m.x);
   body.spacing_m = std::sqrt(area_m2 / static_cast<float>(coat.strand_count));
   return body;
+}
+
+CameraPlace outside(const Body& body, const CameraPlace& place) {
+  // On the view's line the eye is target + distance * back. Where it leaves an ellipsoid whose half axes are longer by
+  // what it stays away, that is the larger root of a quadratic.
+  const double away_m = kHairsAway * static_cast<double>(body.hair_m);
+  const double half_m =
+      1.0 / std::sqrt(static_cast<double>(std::max({body.shape[0][0], body.shape[1][1], body.shape[2][2]})));
+  const double larger = (half_m + away_m) / half_m;
+  const glm::dmat3 shape(body.shape / static_cast<float>(larger * larger));
+  const glm::dvec3 back = glm::normalize(eye_of(place) - place.target_m);
+  const glm::dvec3 from_middle_m = place.target_m - glm::dvec3(body.middle_m);
+  const double a = glm::dot(back, shape * back);
+  const double b = glm::dot(back, shape * from_middle_m);
+  const double c = glm::dot(from_middle_m, shape * from_middle_m) - 1.0;
+  const double square = b * b - a * c;
+  if (!(square > 0.0)) return place;
+  const double in_m = (-b - std::sqrt(square)) / a;
+  const double out_m = (-b + std::sqrt(square)) / a;
+  CameraPlace there = place;
+  if (place.distance_m > in_m && place.distance_m < out_m) there.distance_m = out_m;
+  return there;
 }
 
 Skin skin_of(const Body& body) {

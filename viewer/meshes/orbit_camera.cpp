@@ -103,6 +103,14 @@ void OrbitCamera::zoom(double notches) {
   wanted_ = limited(wanted_);
 }
 
+void OrbitCamera::keep_away(double distance_m) {
+  if (place_.distance_m >= distance_m) return;
+  place_.distance_m = distance_m;
+  wanted_.distance_m = std::max(wanted_.distance_m, distance_m);
+  place_ = limited(place_);
+  wanted_ = limited(wanted_);
+}
+
 void OrbitCamera::advance(double dt_s) {
   if (is_turning_) wanted_.heading_deg += kTurning_deg_s * dt_s;
   const double share = 1.0 - std::exp(-std::max(0.0, dt_s) / kGlide_s);

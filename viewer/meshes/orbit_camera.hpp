@@ -52,6 +52,9 @@ class OrbitCamera {
   /// Turns of the wheel; above 0 is nearer.
   void zoom(double notches);
 
+  /// It is to be at least so far from its target: zooming in does not go on unseen.
+  void keep_away(double distance_m);
+
   /// Lets it orbit by itself, slowly.
   void set_turning(bool is_turning) { is_turning_ = is_turning; }
   bool is_turning() const { return is_turning_; }

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/base/units.hpp"
+#include "engine/math/philox.hpp"
 
 namespace yuragi::viewer::meshes {
 namespace {
@@ -14,6 +15,14 @@ namespace {
 constexpr float kLongForAnimal = 1.8F;
 constexpr std::size_t kLimbSides = 14;
 constexpr std::size_t kRingsBetween = 5;
+
+/// Of the hairs on limbs: how many there are on a square as wide as the body's half width; how long they are, in radii
+/// of the limb and at least, and how wide, in lengths; and how far they stand up.
+constexpr float kHairsPerSquare = 9000.0F;
+constexpr float kLongHair = 0.34F;
+constexpr float kShortestHair = 0.045F;  // in half widths of the body
+constexpr float kHairWidth = 0.10F;
+constexpr float kHairRise = 0.42F;
 
 constexpr glm::vec3 kCoat{0.42F, 0.215F, 0.095F};
 constexpr glm::vec3 kPale{0.58F, 0.44F, 0.30F};
@@ -77,7 +86,9 @@ class LimbBuilder {
         limbs_->vertices.push_back({origin_m_ + in_world(here.at_m + std::max(here.radius_m, 0.0F) * out),
                                     in_world(facing),
                                     here.tint,
-                                    {along_m, turn_rad * stations[1].radius_m}});
+                                    {along_m, turn_rad * stations[1].radius_m},
+                                    in_world(along),
+                                    std::max(here.radius_m, 0.0F)});
         if (ring + 1 == rings || side == kLimbSides) continue;
         const auto corner = static_cast<std::uint32_t>(base + ring * (kLimbSides + 1) + side);
         constexpr auto kRing = static_cast<std::uint32_t>(kLimbSides + 1);
@@ -102,6 +113,55 @@ glm::vec3 ahead_of(const pose::StrandSkeleton& coat) {
   for (std::size_t i = 0; i < coat.strand_count; ++i) lie += glm::vec3(coat.rest_x[i], 0.0F, coat.rest_z[i]);
   const float length = glm::length(lie);
   return length > 0.0F ? -lie / length : glm::vec3(0.0F);
+}
+
+/// Adds hairs all over the skin, that lie along its limbs; `unit_m`: half the body's width.
+void add_hairs(Limbs& limbs, float unit_m) {
+  limbs.skin_count = limbs.indices.size();
+  const math::RandomStream chance(0, math::stream_id("viewer limb hairs"));
+  std::uint64_t drawn = 0;
+  for (std::size_t first = 0; first < limbs.skin_count; first += 3) {
+    const auto corner = [&](std::size_t i) { return limbs.vertices[limbs.indices[first + i]]; };
+    const LimbVertex a = corner(0);
+    const LimbVertex b = corner(1);
+    const LimbVertex c = corner(2);
+    const float area_m2 = 0.5F * glm::length(glm::cross(b.place_m - a.place_m, c.place_m - a.place_m));
+    const float wanted = kHairsPerSquare * area_m2 / (unit_m * unit_m);
+    const auto count = static_cast<int>(wanted + static_cast<float>(chance.uniform(2 * drawn++)));
+    for (int i = 0; i < count; ++i) {
+      const auto [u, v] = chance.uniform_pair(drawn++);
+      const auto [turn, size] = chance.uniform_pair(drawn++);
+      // Evenly over the triangle (R. Osada and others 2002, "Shape distributions").
+      const auto root = static_cast<float>(std::sqrt(u));
+      const auto part = static_cast<float>(v);
+      const auto mixed = [&](auto LimbVertex::*of) {
+        return (1.0F - root) * (a.*of) + root * (1.0F - part) * (b.*of) + root * part * (c.*of);
+      };
+      const glm::vec3 place_m = mixed(&LimbVertex::place_m);
+      const glm::vec3 normal = glm::normalize(mixed(&LimbVertex::normal));
+      const glm::vec3 lie = mixed(&LimbVertex::lie);
+      const glm::vec3 level = lie - glm::dot(lie, normal) * normal;
+      if (!(glm::length(level) > 1e-3F)) continue;
+      const glm::vec3 along = glm::normalize(level);
+      const glm::vec3 across = glm::cross(along, normal);
+      const auto aside = static_cast<float>(turn) - 0.5F;
+      const float length_m = std::max(kLongHair * mixed(&LimbVertex::radius_m), kShortestHair * unit_m) *
+                             (0.6F + 0.6F * static_cast<float>(size));
+      const glm::vec3 way = glm::normalize(along + 0.7F * aside * across + (kHairRise + 0.3F * aside) * normal);
+      const glm::vec3 half_m = 0.5F * kHairWidth * length_m * across;
+      const glm::vec3 tint = mixed(&LimbVertex::tint) * (0.75F + 0.5F * static_cast<float>(size));
+      const glm::vec2 hair_m = mixed(&LimbVertex::hair_m);
+      const auto at = static_cast<std::uint32_t>(limbs.vertices.size());
+      const float radius_m = mixed(&LimbVertex::radius_m);
+      // Rooted a little below the skin, and paler at the tip.
+      const glm::vec3 foot_m = place_m - 0.1F * length_m * normal;
+      limbs.vertices.push_back({foot_m - half_m, normal, 0.8F * tint, hair_m, lie, radius_m});
+      limbs.vertices.push_back({foot_m + half_m, normal, 0.8F * tint, hair_m, lie, radius_m});
+      limbs.vertices.push_back({foot_m + length_m * way, normal, 1.35F * tint, hair_m, lie, radius_m});
+      limbs.indices.insert(limbs.indices.end(), {at, at + 1, at + 2});
+      limbs.hair_m = std::max(limbs.hair_m, length_m);
+    }
+  }
 }
 
 }  // namespace
@@ -157,6 +217,7 @@ Limbs limbs_of(const pose::StrandSkeleton& coat, const Body& body) {
                           at(-0.40F, 0.0F, 0.30F, 1.78F, 0.35F),     at(0.0F, 0.0F, 0.26F, 1.72F, 0.27F, kPale),
                           at(0.25F, 0.0F, 0.20F, 1.58F, 0.0F, kPale)};
   builder.add(tail);
+  add_hairs(limbs, k);
   return limbs;
 }
 

@@ -370,6 +370,28 @@ TEST_F(StageTest, AClothHasTheColorsAndThePictureThatAreWanted) {
   EXPECT_LT(printed, all * 3 / 4);
 }
 
+TEST_F(StageTest, LightThatComesThroughACurtainHasItsColorOnTheBoards) {
+  // From above, where hardly anything is seen of the curtain itself.
+  const auto draw_in = [&](const look::Color& color) {
+    wire::SceneModel model = test_model("curtain");
+    model.cloth.color = color;
+    show({model});
+    const meshes::Bounds bounds = stage_->bounds();
+    camera_.frame({glm::dvec3((bounds.low_m + bounds.high_m) / 2.0F), 0.0, 88.0, 8.0});
+    return draw(0.0, 1.0F);
+  };
+  for (const look::Quality quality : {look::Quality::kLow, look::Quality::kMedium}) {
+    stage_->set_quality(quality);
+    const Pixels red = draw_in({255, 40, 40});
+    const Pixels blue = draw_in({40, 40, 255});
+    std::size_t redder = 0;
+    for (std::size_t i = 0; i + 2 < red.size(); i += 3) {
+      if (red[i] > blue[i] + 3 && red[i + 2] + 3 < blue[i + 2] && red[i] < 160) ++redder;
+    }
+    EXPECT_GT(redder, 250U) << name_of(quality);
+  }
+}
+
 TEST_F(StageTest, OpensTheGroundOverWater) {
   // Troughs go below the ground, and are seen: no turf in the middle of the pond.
   show({test_model("ripple")});
@@ -431,6 +453,18 @@ TEST_F(StageTest, ThrowsShadowsOnTheGround) {
     }
     EXPECT_GT(darker, 500U) << name_of(quality);
   }
+}
+
+TEST_F(StageTest, SeesABodyFromOutsideWhereverTheCameraStands) {
+  show({test_model("fur")});
+  const meshes::Bounds bounds = stage_->bounds();
+  const meshes::CameraPlace within{glm::dvec3((bounds.low_m + bounds.high_m) / 2.0F), 160.0, 5.0, 0.25};
+  const meshes::CameraPlace outside = stage_->outside(within);
+  EXPECT_GT(outside.distance_m, 0.4);
+  camera_.frame(outside);
+  const Pixels seen = draw(0.0, 1.0F);
+  camera_.frame(within);
+  EXPECT_EQ(draw(0.0, 1.0F), seen);
 }
 
 TEST_F(StageTest, ShowsATreesGroveAndItsShadows) {

@@ -68,5 +68,34 @@ TEST(Body, HasTheModelsRootsOnIt) {
   }
 }
 
+TEST(Body, KeepsACameraOutOfItAndItsHairs) {
+  const auto coat = std::get<pose::StrandSkeleton>(test_model("fur").skeleton);
+  const Body body = body_of(coat);
+  ASSERT_GT(body.hair_m, 0.0F);
+  for (const double heading_deg : {0.0, 77.0, 200.0}) {
+    for (const double distance_m : {0.2, 0.4, 0.8}) {
+      const CameraPlace within{glm::dvec3(body.middle_m), heading_deg, 15.0, distance_m};
+      const CameraPlace there = outside(body, within);
+      EXPECT_EQ(there.target_m, within.target_m);
+      EXPECT_EQ(there.heading_deg, heading_deg);
+      const glm::vec3 off = glm::vec3(eye_of(there)) - body.middle_m;
+      EXPECT_GT(glm::dot(off, body.shape * off), 1.0F);
+      // So far that it sees hairs, and not one of them.
+      const glm::vec3 skin = body.middle_m + off / std::sqrt(glm::dot(off, body.shape * off));
+      EXPECT_GT(glm::distance(skin, body.middle_m + off), 1.5F * body.hair_m);
+    }
+  }
+}
+
+TEST(Body, LeavesACameraThatIsOutsideWhereItIs) {
+  const Body body = body_of(std::get<pose::StrandSkeleton>(test_model("fur").skeleton));
+  const glm::dvec3 middle_m(body.middle_m);
+  EXPECT_EQ(outside(body, {middle_m, 30.0, 10.0, 9.0}).distance_m, 9.0);
+  // Between it and something before it, and past it.
+  const CameraPlace before{middle_m + glm::dvec3(0.0, 0.0, 8.0), 0.0, 10.0, 1.0};
+  EXPECT_EQ(outside(body, before).distance_m, 1.0);
+  EXPECT_EQ(outside(body, {middle_m + glm::dvec3(20.0, 0.0, 0.0), 0.0, 0.0, 5.0}).distance_m, 5.0);
+}
+
 }  // namespace
 }  // namespace yuragi::viewer::meshes

@@ -80,6 +80,19 @@ TEST(OrbitCamera, ZoomsWithinLimits) {
   EXPECT_NEAR(camera.place().distance_m, OrbitCamera::kMaxDistance_m, 1e-6);
 }
 
+TEST(OrbitCamera, DoesNotGoOnUnseenWhereItIsKeptAway) {
+  OrbitCamera camera = camera_at({{0.0, 1.0, 0.0}, 0.0, 10.0, 3.0});
+  for (int i = 0; i < 200; ++i) {
+    camera.zoom(1.0);
+    camera.advance(0.02);
+    camera.keep_away(1.0);
+  }
+  EXPECT_NEAR(camera.place().distance_m, 1.0, 1e-9);
+  camera.zoom(-1.0);
+  settle(camera);
+  EXPECT_GT(camera.place().distance_m, 1.05);  // at the first notch
+}
+
 TEST(OrbitCamera, GlidesWithoutAJump) {
   OrbitCamera camera = camera_at({{0.0, 0.5, 0.0}, 0.0, 20.0, 5.0});
   camera.orbit(1.0, 0.0);

@@ -70,6 +70,22 @@ TEST(Sleeper, HasTrianglesOfItsVertices) {
   for (const std::uint32_t index : limbs.indices) ASSERT_LT(index, limbs.vertices.size());
 }
 
+TEST(Sleeper, HasAShortCoatOnItsLimbs) {
+  const Limbs limbs = limbs_on({0.55F, 0.5F, 0.25F}, 0.4F);
+  ASSERT_GT(limbs.indices.size(), limbs.skin_count);
+  ASSERT_EQ((limbs.indices.size() - limbs.skin_count) % 3, 0U);
+  std::size_t out = 0;
+  for (std::size_t i = limbs.skin_count; i < limbs.indices.size(); i += 3) {
+    const LimbVertex& foot = limbs.vertices[limbs.indices[i]];
+    const LimbVertex& tip = limbs.vertices[limbs.indices[i + 2]];
+    const glm::vec3 way_m = tip.place_m - foot.place_m;
+    EXPECT_LT(glm::length(way_m), 1.1F * limbs.hair_m);
+    out += glm::dot(way_m, foot.normal) > 0.0F ? 1U : 0U;
+  }
+  EXPECT_EQ(out, (limbs.indices.size() - limbs.skin_count) / 3);
+  EXPECT_LT(limbs.hair_m, 0.09F);  // no longer than the coat's
+}
+
 TEST(Sleeper, IsNoBackThatFillsThePicture) {
   EXPECT_TRUE(limbs_on({1.5F, 0.75F, 1.0F}, 0.0F).indices.empty());
   EXPECT_TRUE(limbs_of({}, body_of({})).indices.empty());

@@ -4,10 +4,12 @@
 uniform vec3 middle_m;
 uniform vec2 along;
 uniform vec2 half_m;
-uniform float sunlight;  // 1, and less in a hard shadow
+uniform vec3 through;  // the share of the sun's light that comes through the cloth that shades it
 
 in vec3 place_m;
 in vec3 normal;
+in float unshaded;  // 0 where the cloth is known to be before the sun
+in float thin;      // how much of what comes through is left, where the cloth is folded
 out vec4 color;
 
 const vec3 kCedar = vec3(0.185, 0.125, 0.080);
@@ -47,8 +49,8 @@ void main() {
   }
   paint *= 1.0 - 0.92 * dark;
 
-  float lit = sunlight * sunlight_at(place_m + 0.008 * to_sun.xyz, pixel_chance(gl_FragCoord.xy));
-  vec3 sun = sun_light.rgb * mix(0.20, 1.0, lit);
+  float lit = unshaded * sunlight_at(place_m + 0.008 * to_sun.xyz, pixel_chance(gl_FragCoord.xy));
+  vec3 sun = sun_light.rgb * mix(thin * through, vec3(1.0), lit);
   vec3 light = paint * (0.95 * soft_light(facing) + 0.85 * sun * max(dot(facing, to_sun.xyz), 0.0));
   light += paint * fire_light(place_m, facing);
 

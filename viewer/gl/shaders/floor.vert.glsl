@@ -5,11 +5,15 @@ uniform vec2 half_m;    // along it, and along its boards
 
 out vec3 place_m;
 out vec3 normal;
+out float unshaded;
+out float thin;
 
 // Of each of its sides but the lower one: two triangles.
 const vec2 kAround[6] = vec2[6](vec2(-1.0, -1.0), vec2(1.0, -1.0), vec2(-1.0, 1.0), vec2(-1.0, 1.0), vec2(1.0, -1.0), vec2(1.0, 1.0));
 
 void main() {
+  unshaded = 1.0;
+  thin = 0.7;  // what holds the cloth lets nothing through
   int side = gl_VertexID / 6;
   vec2 at = kAround[gl_VertexID % 6];
   vec3 corner = vec3(at.x, 0.0, at.y);

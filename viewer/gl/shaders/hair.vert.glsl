@@ -10,7 +10,7 @@ uniform vec3 body_middle_m;
 uniform mat3 body_shape;
 uniform float spacing_m;  // of the strands
 
-uniform samplerBuffer blades;  // three texels each: root and width, metres; the coat's colour here; number, length in metres
+uniform samplerBuffer blades;  // three texels each: root and width, metres; the coat's colour here; number, length in metres, how much the coat parts
 
 out vec3 shade;
 
@@ -29,7 +29,7 @@ void main() {
   int copy = ribbon - blade * copies;
   vec4 root_width = texelFetch(blades, 3 * blade);
   vec3 tint = texelFetch(blades, 3 * blade + 1).rgb;
-  vec2 traits = texelFetch(blades, 3 * blade + 2).xy;
+  vec3 traits = texelFetch(blades, 3 * blade + 2).xyz;
   uint strand = uint(traits.x);
   float whole_m = traits.y;
   int ring = (gl_VertexID & 255) >> 1;
@@ -41,6 +41,9 @@ void main() {
   bool is_guard = copy == 0 || which > 0.72;
 
   // Farther away one hair stands for more and more of them.
+  // Where the wind parts the coat, one sees down to its wool; where it presses hairs together, their dark tips alone.
+  float parted = smoothstep(0.02, 0.17, traits.z);
+  float pressed = smoothstep(0.02, 0.17, -traits.z);
   float height_px = whole_m / (eye_m.w * distance(eye_m.xyz, root_width.xyz));
   float near = smoothstep(20.0, 50.0, height_px);
   float shown = copies > 1 ? 1.0 + float(copies - 1) * near : 1.0;
@@ -77,6 +80,8 @@ void main() {
   vec3 aside = cross(out_of_body, along);
   vec3 place = mix(own_root, root, 0.30 * t) + grown * longer + (is_guard ? 0.12 * (1.0 - near) : 0.12) * length_m * t * out_of_body + aside * (stray * length_m);
 
+  place -= out_of_body * (0.40 * parted * max(dot(place - own_root, out_of_body), 0.0));
+
   vec3 to_eye = eye_m.xyz - place;
   float distance_m = length(to_eye);
   to_eye /= distance_m;
@@ -88,15 +93,17 @@ void main() {
   // Pale at the root; a guard hair has a light band below its dark tip.
   vec3 wool = vec3(0.52, 0.38, 0.245) * (0.85 + 0.3 * other);
   vec3 coat = tint * (0.80 + 0.4 * fract(other * 13.0));
-  vec3 albedo = mix(wool, coat, smoothstep(0.12, 0.50, t));
+  vec3 albedo = mix(wool, coat, smoothstep(0.12 + 0.45 * parted, 0.50 + 0.50 * parted, t));
   if (is_guard) {
     float band = 0.80 + 0.10 * (other - 0.5);
     // Far away the bands run together.
     albedo = mix(albedo, vec3(0.66, 0.49, 0.29), mix(0.22, 0.85, near) * smoothstep(band - 0.20, band - 0.05, t));
-    albedo = mix(albedo, vec3(0.050, 0.032, 0.022), mix(0.25, 0.90, near) * smoothstep(band + 0.01, band + 0.10, t) * step(0.35, fract(which * 7.0)));
+    albedo = mix(albedo, vec3(0.050, 0.032, 0.022), mix(0.25, 0.90, near) * smoothstep(band + 0.01, band + 0.10, t) * step(0.35, fract(which * 7.0)) * (1.0 - 0.8 * parted));
   } else {
     albedo = mix(albedo, mix(coat, vec3(0.52, 0.36, 0.20), 0.45), smoothstep(0.55, 1.0, t));
   }
+
+  albedo *= 1.0 + 0.22 * parted - 0.35 * pressed;
 
   // How deep in the coat it is, and how far the light comes to it there: less from low above the skin.
   float sun_up = dot(out_of_body, to_sun.xyz);

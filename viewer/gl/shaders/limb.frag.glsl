@@ -1,5 +1,6 @@
 // Short hair: streaks along it, a soft outline where it stands against what is behind, and light that comes through there.
 uniform sampler2D noise_tile;
+uniform bool is_hair;  // one that stands on the skin
 in vec3 place_m;
 in vec3 normal;
 in vec3 tint;
@@ -14,8 +15,8 @@ void main() {
   float fine = texture(noise_tile, hair_m * vec2(4.3, 17.0) + vec2(0.37, 0.25 * locks)).r;
   float rim = 1.0 - abs(dot(facing, from_eye));
   // The last hairs of the outline stand apart.
-  if (rim > 0.70 + 0.55 * fine) discard;
-  vec3 albedo = tint * (0.45 + 0.45 * locks + 0.75 * fine);
+  if (!is_hair && rim > 0.70 + 0.55 * fine) discard;
+  vec3 albedo = tint * (0.58 + 0.20 * locks + 0.75 * fine);
   float deep = 1.0 - 0.55 * smoothstep(0.75, 0.30, fine);
   float sun_up = dot(facing, to_sun.xyz);
   vec3 sun = sun_light.rgb * mix(0.2, 1.0, sunlight_near(place_m + 0.08 * facing));
