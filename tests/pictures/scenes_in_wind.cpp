@@ -19,6 +19,10 @@ constexpr double kWindFrom_deg = 250.0;
 daemon::settings::Config config_of(std::string_view scene, double mean_speed_m_s) {
   const auto read = [&] {
     if (scene == "garden") return daemon::settings::load_config(test::source_path("config/garden.toml"));
+    // Reeds, and gusts that touch the water, are moved by the streamed ground.
+    if (scene == "ripple") {
+      return daemon::settings::parse_config("[[scene]]\nkind = \"ripple\"\n[[scene]]\nkind = \"ground\"\n", "water");
+    }
     const bool is_tree = scene == "cherry" || scene == "zelkova" || scene == "poplar";
     const std::string table = is_tree ? "[[scene]]\nkind = \"tree\"\nspecies = \"" + std::string(scene) + "\"\n"
                                       : "[[scene]]\nkind = \"" + std::string(scene) + "\"\n";

@@ -18,7 +18,7 @@ constexpr meshes::Bounds kPartOfGround{glm::vec3(-4.0F, 0.0F, -4.0F), glm::vec3(
 constexpr int kMediumTexels = 1024;
 constexpr int kHighTexels = 2048;
 constexpr int kMirror = 2;           // a mirror's pixel is as large as so many of the picture, across and upright
-constexpr int kLowMirror = 4;        // with quality low
+constexpr int kLowMirror = 3;        // with quality low
 constexpr float kLowestSun = 0.02F;  // the sine of its height: below it shadows have no end
 
 constexpr float kShadowPixels = 2.5F;  // a shadow on the ground is drawn as coarsely as if pixels were so large

@@ -2,7 +2,7 @@
 // moments from left to right and then downward. Everything is played in lock-step, so that the same recording,
 // configuration and build give the same poses.
 //
-//   film_strip RECORDING.windlog STRIP.png --from 600 --camera 350,12,20 --camera 0,89,12
+//   film_strip RECORDING.windlog STRIP.png --from 600 --camera 350,12,20 --camera 0,89,12 --look time=12:00
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,9 @@
 
 #include "daemon/animation/animation.hpp"
 #include "daemon/tools/offline/lockstep_replay.hpp"
+#include "engine/look/look.hpp"
 #include "viewer/gl/headless_context.hpp"
+#include "viewer/light/sky_keeper.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/picture_file.hpp"
 
@@ -35,21 +37,28 @@ struct StripOptions {
   int height_px = 225;
   bool is_lean_shown = false;
   std::vector<std::string> cameras{"350,14,20", "0,60,26"};
+  std::vector<std::string> look_edits;
 };
 
 constexpr int kGap_px = 4;
 constexpr double kBefore_s = 120.0;  // the recording is heard from so long before the first picture
 
 /// "HEADING,PITCH,DISTANCE" around the middle of what is shown, a little above the ground; or with ",HEIGHT" that high.
-viewer::meshes::OrbitCamera camera_of(const std::string& text) {
+/// "home": where the viewer begins.
+viewer::meshes::OrbitCamera camera_of(const std::string& text, const viewer::looks::Stage& stage, double aspect) {
+  viewer::meshes::OrbitCamera camera;
+  if (text == "home") {
+    camera.frame(stage.home(aspect));
+    return camera;
+  }
   viewer::meshes::CameraPlace place;
   double height_m = 0.4;
   if (std::sscanf(text.c_str(), "%lf,%lf,%lf,%lf", &place.heading_deg, &place.pitch_deg, &place.distance_m, &height_m) <
       3) {
-    throw std::runtime_error("--camera: is \"" + text + "\"; allowed: HEADING,PITCH,DISTANCE or with ,HEIGHT behind");
+    throw std::runtime_error("--camera: is \"" + text +
+                             "\"; allowed: home, HEADING,PITCH,DISTANCE or with ,HEIGHT behind");
   }
   place.target_m.y = static_cast<float>(height_m);
-  viewer::meshes::OrbitCamera camera;
   camera.frame(place);
   return camera;
 }
@@ -157,11 +166,12 @@ void make_strip(const StripOptions& options) {
   viewer::gl::report_gl_errors();
   viewer::looks::Stage stage;
   viewer::gl::RenderTarget target(options.width_px, options.height_px, 4);
+  constexpr double kDay_s = 1790208000.0;  // 2026-09-24
+  stage.set_light(viewer::light::light_of(look::edited({}, options.look_edits).value(), kDay_s));
   std::vector<viewer::meshes::OrbitCamera> cameras;
-  for (const std::string& text : options.cameras) cameras.push_back(camera_of(text));
   // Each camera's block begins with a row of its own.
   const int rows = (options.moments + options.columns - 1) / options.columns;
-  const int blocks = static_cast<int>(cameras.size()) + (options.is_lean_shown ? 1 : 0);
+  const int blocks = static_cast<int>(options.cameras.size()) + (options.is_lean_shown ? 1 : 0);
   Sheet sheet(options, blocks * rows * options.columns);
 
   const daemon::settings::Config config =
@@ -172,7 +182,7 @@ void make_strip(const StripOptions& options) {
   drivers::windlog::PlayerOptions player;
   player.playback.start = fmt::format("{}", start_s);
   int taken = 0;
-  std::vector<std::vector<Picture>> pictures(cameras.size());
+  std::vector<std::vector<Picture>> pictures(options.cameras.size());
   std::optional<LeanMap> lean;
   viewer::stream::PoseMoment moment;
   const daemon::tools::offline::UseTick take = [&](const daemon::tools::offline::ReplayTick& tick) {
@@ -183,9 +193,12 @@ void make_strip(const StripOptions& options) {
       const std::vector<wire::SceneModel> scenes = animation.describe().scenes;
       stage.set_scenes(scenes);
       moment = viewer::stream::rest_moment(scenes);
+      const double aspect = static_cast<double>(options.width_px) / options.height_px;
+      for (const std::string& text : options.cameras) cameras.push_back(camera_of(text, stage, aspect));
       if (options.is_lean_shown) lean.emplace(std::get<pose::StrandSkeleton>(stage.scenes()[0]->skeleton));
     }
     moment.time_s = time_s;
+    moment.wind = tick.wind;
     for (std::size_t scene = 0; scene < moment.poses.size(); ++scene) moment.poses[scene] = *animation.poses()[scene];
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       stage.draw(moment, cameras[i], target);
@@ -227,7 +240,9 @@ int main(int argc, char** argv) {
     app.add_option("--height", options.height_px)->check(CLI::Range(16, 4096));
     app.add_flag("--lean", options.is_lean_shown, "and how far the first scene's blades lean, as a map");
     app.add_option("--camera", options.cameras,
-                   "HEADING,PITCH,DISTANCE[,HEIGHT] as yuragi-viewer has it; can be given again")
+                   "HEADING,PITCH,DISTANCE[,HEIGHT] as yuragi-viewer has it, or home; can be given again")
+        ->allow_extra_args(false);
+    app.add_option("--look", options.look_edits, "KEY=VALUE of the light, as yuragi-viewer has it; can be given again")
         ->allow_extra_args(false);
     CLI11_PARSE(app, argc, argv);
     make_strip(options);

@@ -659,6 +659,32 @@ TEST_F(StageTest, APictureLiesOnTheBareGround) {
   EXPECT_LT(share_of(0, 20.0, 0.3F), 0.01) << "it has faded out";
 }
 
+TEST_F(StageTest, WaterIsDarkerWhereAGustTouchesIt) {
+  show({test_model("ripple"), ground_model()});
+  camera_.frame({{0.0, -0.1, 0.0}, 200.0, 14.0, 5.0});
+  // The mean light of the water's middle while the grass around it is bent so much more than on the average.
+  const auto water_light = [&](float gust_rad) {
+    stream::PoseMoment moment = stream::rest_moment(models_);
+    moment.poses[0] = test_pose(models_[0], 2.0, 0.5);
+    auto& nodes = std::get<pose::StrandPose>(moment.poses[1]);
+    std::ranges::fill(nodes.bend_east_rad, 0.3F);
+    for (const std::size_t near : {27U, 28U, 35U, 36U}) nodes.bend_east_rad[near] += gust_rad;
+    stage_->draw(moment, camera_, *target_);
+    const Pixels pixels = target_->read_rgb();
+    double sum = 0.0;
+    for (int row = kHeight_px / 2 - 4; row < kHeight_px / 2 + 4; ++row) {
+      for (int column = kWidth_px / 2 - 20; column < kWidth_px / 2 + 20; ++column) {
+        sum += pixels[3 * static_cast<std::size_t>(row * kWidth_px + column) + 2];
+      }
+    }
+    return sum / (8.0 * 40.0);
+  };
+  const double lull = water_light(-0.2F);
+  const double gust = water_light(0.2F);
+  std::printf("water in a lull %.1f, in a gust %.1f\n", lull, gust);
+  EXPECT_LT(gust, 0.95 * lull);
+}
+
 TEST_F(StageTest, ATrunkDarkensTheGroundAtItsFootOnTheSunnySideToo) {
   show({test_model("tree")});
   camera_.frame({{-0.40, 0.0, 0.25}, 0.0, 89.0, 0.6});

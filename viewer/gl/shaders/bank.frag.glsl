@@ -1,3 +1,4 @@
+#include "sward.part.glsl"
 #include "shore.part.glsl"
 // The bank of a pond: earth and stones, wet at the water, with moss and turf at its upper edge.
 uniform float water_m;  // the water's height

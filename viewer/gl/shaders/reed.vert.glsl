@@ -35,7 +35,7 @@ void main() {
   vec3 grown = vec3(cos(traits.x * 3.0), 0.0, sin(traits.x * 3.0));
   grown *= dot(grown, across_eye) < 0.0 ? -1.0 : 1.0;
   vec3 across = normalize(mix(across_eye, grown, is_mace ? 0.0 : 0.45));
-  float half_width_m = max(0.5 * traits.z * profile, 0.40 * eye_m.w * distance_m * min(1.0, 4.0 * (1.0 - t)));
+  float half_width_m = max(0.5 * traits.z * profile, 0.50 * eye_m.w * distance_m * min(1.0, 4.0 * (1.0 - t)));
   place += across * (side * half_width_m);
   gl_Position = to_clip * vec4(place, 1.0);
 

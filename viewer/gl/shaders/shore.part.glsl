@@ -1,6 +1,4 @@
-// The earth at a shore, dry and wet: the bank, and the bed that is seen through the water.
-uniform sampler2D noise_tile;
-
+// Behind sward.part.glsl: the earth at a shore, dry and wet: the bank, and the bed that is seen through the water.
 float chance_of(vec2 cell) { return fract(sin(dot(cell, vec2(127.1, 311.7))) * 43758.5453); }
 
 // Stones of a size that is seen in pixels of `pixel_m`, one in a cell at most: how far up one looks on a stone (0: on the earth), and its tint.

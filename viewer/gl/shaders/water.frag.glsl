@@ -1,3 +1,4 @@
+#include "sward.part.glsl"
 #include "shore.part.glsl"
 // Water: the streamed waves, and ripples that are too small for their grid on them; sky and things mirrored in it, the
 // bed seen through it, and the sun's glitter.
@@ -36,10 +37,16 @@ void main() {
 
   vec2 uv = mat2(grid_axes.xy, grid_axes.zw) * (place_m.xz - grid_place.xy);
   vec3 waves = textureLod(slopes, uv, log2(max(pixel_m / grid_place.z, 1e-3))).rgb;
-  float rough = textureLod(slopes, uv, 3.6).b;  // around here: where a gust touches the water
-  // A gust's paw has claws: streaks that run with the wind, finer than the streamed roughness.
+  float rough = textureLod(slopes, uv, 3.6).b;
+  // Where a gust touches the water, as the grass around knows, it wakes ripples at once: a dark paw among smooth water,
+  // which mirrors the sky. It has claws: streaks that run with the wind.
   float claws = textureLod(noise_tile, place_m.xz * 0.11 - drift.xy * 80.0, max(log2(pixel_m * 28.0), 0.0)).r;
-  float fine = kFineShare * rough * mix(0.25, 2.0, smoothstep(0.34, 0.66, claws));
+  float gust = gust_of(bend_at(place_m.xz, 1.0)) / (0.03 + 0.15 * length(bend_mean.xy));
+  float paw = smoothstep(-0.35, 0.55, gust + 1.6 * (claws - 0.5));
+  float fine = kFineShare * rough * mix(0.08, 4.5, paw);
+  // Between the paws it is calmer.
+  float calmed = mix(0.42, 1.15, paw);
+  waves *= vec3(calmed, calmed, calmed * calmed);
 
   // Two layers of ripples run with the wind, one a little aside.
   float lod = log2(max(pixel_m * 128.0 / 0.83, 1e-3));
@@ -62,7 +69,7 @@ void main() {
 
   // What is mirrored. Of a rough surface one sees more of what is turned to the eye: it mirrors what is higher.
   vec3 up_ray = reflect(from_eye, normal);
-  up_ray.y = abs(up_ray.y) + 2.0 * unseen;
+  up_ray.y = abs(up_ray.y) + 2.0 * unseen + 1.2 * deviation * (1.0 - cosine);
   up_ray = normalize(up_ray);
   vec3 image = place_m + up_ray * kMirrored_m;
   image.y = 2.0 * grid_place.w - image.y;
