@@ -66,7 +66,7 @@ void add_film_options(CLI::App& app, ViewerOptions& options) {
           ->type_name("FILE.windlog")
           ->group(film);
   for (const char* other : {"--connect", "--screenshot", "--fullscreen", "--monitor", "--overlay", "--panel",
-                            "--dark-when-closed", "--output", "--test-card"}) {
+                            "--dark-when-closed", "--output", "--test-card", "--age"}) {
     render->excludes(other);
   }
   auto* const out = app.add_option("--out", options.out,
@@ -130,6 +130,8 @@ void add_options(CLI::App& app, ViewerOptions& options) {
       ->type_name("NAME");
   app.add_flag("--test-card", options.has_test_card,
                "Show lines, circles and greys in place of the picture, to set up an [[output]]; needs no daemon");
+  app.add_flag("--age", options.says_age,
+               "Say every 10 s, and at the end, how old the sensor's reading was when its picture was shown");
   app.add_flag("--list-monitors", options.lists_monitors, "List the monitors by number and name, and end");
   app.add_flag("--turn", options.is_turning, "Turn the camera slowly");
   app.add_option("--scene", options.scene, "Show only the scene of this name");

@@ -24,6 +24,7 @@ struct ViewerOptions {
   std::string output;           ///< its name; empty: the first
   bool has_test_card = false;   ///< in place of the picture
   bool lists_monitors = false;  ///< and no more
+  bool says_age = false;        ///< of the readings in the pictures, in the log
   bool is_turning = false;
   bool is_dark_when_closed = false;
   std::vector<std::string> look;  ///< "time=06:30": over the daemon's look

@@ -190,6 +190,11 @@ void write_stream(const OverlayFacts& facts) {
       break;
   }
   write(facts.stream.state == stream::StreamState::kConnected ? kQuiet : kWarn, facts.stream.text);
+  if (!facts.age.empty()) {
+    ImGui::PushTextWrapPos(kReasonWidthInLetters * ImGui::GetFontSize());
+    write(kQuiet, facts.age);
+    ImGui::PopTextWrapPos();
+  }
   write(kQuiet, fmt::format("{} nodes, {:.0f} pictures/s", facts.nodes, facts.pictures_per_s));
 }
 

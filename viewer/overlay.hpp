@@ -29,6 +29,7 @@ struct OverlayFacts {
   look::Quality quality = look::Quality::kHigh;  ///< in which it is drawn
   DrawnPart drawn;                               ///< how much of it
   double heading_deg = 0.0;                      ///< of the camera: up on the compass
+  std::string age;                               ///< of the reading, age_text(); empty: none
   std::string camera;                            ///< which it is, for a person; empty: there is but one
   bool has_texts = true;                         ///< otherwise nothing of the above is shown
   Panel* panel = nullptr;                        ///< with handles that a person can move; null: it is not shown

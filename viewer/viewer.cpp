@@ -15,6 +15,7 @@
 #include "viewer/picture_director.hpp"
 #include "viewer/picture_file.hpp"
 #include "viewer/quality.hpp"
+#include "viewer/stream/picture_age.hpp"
 #include "viewer/stream/scene_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
 #include "viewer/viewer_exit.hpp"
@@ -33,10 +34,16 @@ constexpr int kOverlayPictures = 2;  // the overlay's size is known after the fi
 constexpr int kSamples = 4;          // a pixel
 constexpr double kRateSmoothing = 0.05;
 constexpr double kHandFade_s = 0.3;  // of the light, while a person moves a handle of the panel
-constexpr double kDimming_s = 0.5;   // between two of the daemon's statuses the brightness goes on
+constexpr double kAgeSaid_s = stream::PictureAge::kSpan_s;
+constexpr double kDimming_s = 0.5;  // between two of the daemon's statuses the brightness goes on
 
 double now_s() {
   return seconds(std::chrono::steady_clock::now().time_since_epoch());
+}
+
+/// Since 1970, at a moment of now_s().
+double utc_at(double moment_s) {
+  return seconds(std::chrono::system_clock::now().time_since_epoch()) + moment_s - now_s();
 }
 
 stream::StreamOptions address_of(const ViewerOptions& options) {
@@ -106,11 +113,17 @@ class Viewer::Show {
       }
       draw(size);
       show(size);
+      note_age(display_interval_s());
       if (gl::is_context_lost()) throw ViewerExit(EX_TEMPFAIL, "the graphics card was reset; start the viewer again");
       // Where the processor draws the picture is done now.
       if (is_drawn_for_pace()) pace_.advance(picture_passed_s_, now_s() - last_s_);
       keep_pace();
     }
+  }
+
+  /// At the end.
+  void say_last_age() {
+    if (options_.says_age) say_age();
   }
 
   void run_screenshot() {
@@ -133,12 +146,14 @@ class Viewer::Show {
       ++drawn;
       if (drawn >= (options_.at_s ? kOverlayPictures : options_.frames)) return draw_to_file(size);
       draw(size);
+      note_age(0.0);
     }
   }
 
  private:
   void draw_to_file(const PixelSize& size) {
     draw(size);
+    note_age(0.0);
     write_picture(options_.screenshot, size.width_px, size.height_px, renderer_->read_rgb());
   }
 
@@ -207,9 +222,12 @@ class Viewer::Show {
   void advance() {
     stream::Inbox inbox = connection_.take();
     if (inbox.scenes) timeline_.set_scenes(std::move(*inbox.scenes));
+    const bool is_same_machine = connection_.status().is_same_machine;
     for (stream::TimedFrame& timed : inbox.frames) {
+      const double arrival_s = seconds(timed.arrival.time_since_epoch());
+      age_.take_frame(timed.frame.info, arrival_s, utc_at(arrival_s), is_same_machine);
       utc_s_ = 1e-9 * static_cast<double>(timed.frame.info.utc_ns);
-      timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
+      timeline_.accept(timed.frame, arrival_s);
     }
     advance_panel(inbox);
     const bool is_first_status = inbox.sensors && !sensors_;
@@ -263,6 +281,7 @@ class Viewer::Show {
     dimmer_->draw(static_cast<float>(brightness_));
     if (!has_overlay_ && !has_panel_) return;
     const light::Sky sky = light::sky_of(director_->look(), utc_s_);
+    const auto age = age_.figures(now_s());
     overlay_->draw(size, {.wind = moment_->wind,
                           .playback = timeline_.playback(),
                           .stream = connection_.status(),
@@ -275,6 +294,7 @@ class Viewer::Show {
                           .quality = quality_,
                           .drawn = part,
                           .heading_deg = director_->heading_deg(),
+                          .age = age ? age_text(*age) : std::string(),
                           .camera = director_->camera_text(),
                           .has_texts = has_overlay_,
                           .panel = has_panel_ ? &panel_ : nullptr});
@@ -285,10 +305,25 @@ class Viewer::Show {
     return is_software_ && window_ && quality_ == look::Quality::kLow;
   }
 
+  /// The picture has been handed to the display, which takes so long to show it.
+  void note_age(double display_s) {
+    if (timeline_.playback() == stream::Playback::kLive) age_.take_picture(*moment_, now_s(), display_s);
+    if (options_.says_age && now_s() - age_said_s_ >= kAgeSaid_s) say_age();
+  }
+
+  void say_age() {
+    age_said_s_ = now_s();
+    const auto age = age_.figures(age_said_s_);
+    std::fprintf(stderr, "yuragi-viewer: %s\n", age ? age_text(*age).c_str() : "no reading has been shown");
+  }
+
+  double display_interval_s() const {
+    return wall_ ? wall_->picture_interval_s() : 1.0 / window_->refresh_rate_hz();
+  }
+
   /// Waits where the driver does not wait for the screen: no more pictures than the screen can show.
   void keep_pace() {
-    const double interval_s = wall_ ? wall_->picture_interval_s() : 1.0 / window_->refresh_rate_hz();
-    const double rest_s = 0.95 * interval_s - (now_s() - last_s_);
+    const double rest_s = 0.95 * display_interval_s() - (now_s() - last_s_);
     if (rest_s > 0.0) window_->wait(rest_s);
   }
 
@@ -310,6 +345,8 @@ class Viewer::Show {
   look::Quality quality_ = look::Quality::kAuto;
   double utc_s_ = 0.0;  // the daemon's clock: of the newest frame
   stream::SceneTimeline timeline_;
+  stream::PictureAge age_;
+  double age_said_s_ = now_s();
   const stream::PoseMoment* moment_ = nullptr;
   std::optional<wire::Sensors> sensors_;
   double began_s_;
@@ -330,6 +367,7 @@ Viewer::~Viewer() = default;
 
 void Viewer::run() {
   is_picture_ ? show_->run_screenshot() : show_->run_window();
+  show_->say_last_age();
 }
 
 }  // namespace yuragi::viewer

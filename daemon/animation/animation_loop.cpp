@@ -112,11 +112,15 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
   animation_.step(wind, dt_s);
   if (auto finished = animation_.take_finished_change()) finished_.store(finished.release(), std::memory_order_release);
 
+  // The wind is some milliseconds older than the frame, and with it the age of its newest reading.
+  const Instant now = clock_.now();
+  wind::WindState state = wind.state;
+  if (state.live_weight > 0.0) state.reading_age_s += std::max(0.0, seconds(now.mono - state.time));
   const wire::FrameInfo info{.sequence = sequence_++,
                              .tick = tick.number,
                              .time_s = static_cast<double>(tick.number) / rate_hz_,
-                             .utc_ns = clock_.now().utc.time_since_epoch().count(),
-                             .wind = wind.state};
+                             .utc_ns = now.utc.time_since_epoch().count(),
+                             .wind = state};
   const std::span<const std::uint8_t> frame = animation_.encode(info);
   PublishedFrame& published = frames_.writable();
   animation_.make_room_in(published.bytes);

@@ -3,10 +3,9 @@
 // machine has. It prints a table: the time to the last pixel, the processor time of this thread (with its part of the
 // former) and of all threads, which draw where there is no graphics hardware, what is uploaded, and the same of each
 // pass, whose time is that of the graphics hardware, or of all threads where there is none, with the triangles that it
-// is given: their
-// corners are this thread's work where the processor draws. Poses are made before, and so is the moment between two
-// frames of the stream: what that costs this thread is the first of the passes, but in no sum. All are medians. Of
-// other programs at work, the processor times feel least.
+// is given: their corners are this thread's work where the processor draws. Poses are made before, and so is the moment
+// between two frames of the stream: what that costs this thread is the first of the passes, but in no sum. All are
+// medians. Of other programs at work, the processor times feel least.
 //
 //   yuragi-frame-bench [--size 1280x720] [--pictures 30] [--samples 1] [--quality low] [--step 0] [--software]
 //                      [--only 100,000] [--hour 12]

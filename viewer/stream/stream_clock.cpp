@@ -7,7 +7,8 @@ namespace yuragi::viewer::stream {
 namespace {
 
 constexpr double kClockDrift = 0.001;       // two machines' clocks drift apart by less than this, s/s
-constexpr double kJitterMemory_s = 3.0;     // the time constant with which a late frame is forgotten
+constexpr double kWaitMemory_s = 10.0;      // the time constant with which a long wait is forgotten
+constexpr double kMargin = 0.5;             // of a frame interval
 constexpr double kIntervalSmoothing = 0.1;  // share of a new interval in the average
 constexpr double kMinInterval_s = 0.001;
 constexpr double kMaxInterval_s = 0.25;
@@ -24,14 +25,15 @@ void StreamClock::observe(double sender_s, double local_s) {
     const double interval_s = std::clamp(sender_s - last_sender_s_, kMinInterval_s, kMaxInterval_s);
     interval_s_ += kIntervalSmoothing * (interval_s - interval_s_);
     offset_s_ = std::min(offset_s, offset_s_ + kClockDrift * passed_s);
-    jitter_s_ = std::max(offset_s - offset_s_, jitter_s_ * std::exp(-passed_s / kJitterMemory_s));
+    const double wait_s = offset_s - offset_s_ + std::max(0.0, sender_s - last_sender_s_);
+    wait_s_ = std::max(wait_s, wait_s_ + (wait_s - wait_s_) * -std::expm1(-passed_s / kWaitMemory_s));
   }
   last_sender_s_ = sender_s;
   last_local_s_ = local_s;
 }
 
 double StreamClock::delay_s() const {
-  return std::min(1.5 * interval_s_ + jitter_s_, kMaxDelay_s);
+  return std::min(std::max(wait_s_, interval_s_) + kMargin * interval_s_, kMaxDelay_s);
 }
 
 }  // namespace yuragi::viewer::stream

@@ -4,9 +4,12 @@ namespace yuragi::viewer::stream {
 
 /// Which moment of the sender's time line to show now, estimated from the frames' arrivals.
 ///
-/// The arrivals with the shortest delay give the difference of the two clocks; how much later the others come gives the
-/// jitter. The moment shown stays behind by that and 1.5 frame intervals, so that there is mostly a frame on either
-/// side of it. Thread-safe: no. Never fails: times are finite.
+/// The arrivals with the shortest delay give the difference of the two clocks. A frame is needed until the next one
+/// comes: how late that one is, and how much later than the other its moment is, is what the picture has to stay behind
+/// so that it need not wait. It stays behind by the most of this in the last seconds, whether frames were late or lost,
+/// and half a frame interval, and comes nearer again as that is forgotten. As the playout delay of sound on networks is
+/// made: R. Ramjee, J. Kurose, D. Towsley and H. Schulzrinne, "Adaptive playout mechanisms for packetized audio
+/// applications in wide-area networks", INFOCOM 1994. Thread-safe: no. Never fails: times are finite.
 class StreamClock {
  public:
   static constexpr double kMaxDelay_s = 0.5;
@@ -30,7 +33,7 @@ class StreamClock {
   double last_sender_s_ = 0.0;
   double last_local_s_ = 0.0;
   double offset_s_ = 0.0;  // local - sender of the quickest arrivals
-  double jitter_s_ = 0.0;  // how much later than those frames came of late
+  double wait_s_ = 0.0;    // the longest for the next frame, of late: its lateness and the time between the two
   double interval_s_ = 1.0 / 60.0;
 };
 

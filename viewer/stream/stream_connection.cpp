@@ -87,8 +87,17 @@ class StreamConnection::Session {
 
   void set_status(StreamState state, std::string text) {
     const std::lock_guard lock(mutex_);
-    status_ = {state, std::move(text)};
+    status_ = {state, std::move(text), state == StreamState::kConnected && is_same_machine()};
     announce_change();
+  }
+
+  /// Whoever connects to an address of its own machine has the same address.
+  bool is_same_machine() const {
+    error_code no_local;
+    error_code no_remote;
+    const auto local = socket_.local_endpoint(no_local);
+    const auto remote = socket_.remote_endpoint(no_remote);
+    return !no_local && !no_remote && local.address() == remote.address();
   }
 
   void begin_inbox() {

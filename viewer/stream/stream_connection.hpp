@@ -29,7 +29,8 @@ enum class StreamState : std::uint8_t { kConnecting, kConnected, kWaiting };
 
 struct StreamStatus {
   StreamState state = StreamState::kConnecting;
-  std::string text;  ///< for a person: "connected to 127.0.0.1:7410 (yuragi 0.1.0)"
+  std::string text;              ///< for a person: "connected to 127.0.0.1:7410 (yuragi 0.1.0)"
+  bool is_same_machine = false;  ///< connected by an address of this machine: the daemon, or the end of a tunnel
 };
 
 struct StreamOptions {

@@ -67,6 +67,12 @@ class Theatre {
     run(duration_s, [](auto) { return -1.0; });
   }
 
+  /// It dies, and begins its time at 0, now.
+  void restart_sender() {
+    next_frame_ = 0;
+    sender_offset_s = now_s;
+  }
+
   double now_s = 100.0;
   double sender_offset_s = 100.0 - kSenderEpoch_s;  // ours - the sender's
   PoseTimeline timeline;
@@ -243,6 +249,31 @@ TEST(PoseTimeline, PassesOverToARestartedSenderWhoseTimeBeginsAgain) {
   }
   EXPECT_EQ(theatre.timeline.playback(), Playback::kLive);
   EXPECT_LT(theatre.timeline.advance(theatre.now_s).time_s, 4.0);
+}
+
+TEST(PoseTimeline, LivesForAnHourWithoutTheDaemonAndReturnsWithoutAJump) {
+  Theatre theatre(sway);
+  theatre.run(6.0);
+  theatre.stop(3600.0);
+  EXPECT_EQ(theatre.timeline.playback(), Playback::kReplaying);
+  EXPECT_LE(theatre.largest_step, live_step_bound(1.0 / 144.0));
+  double low = theatre.last_bend;
+  double high = theatre.last_bend;
+  for (int i = 0; i < 100; ++i) {
+    theatre.stop(0.1);
+    low = std::min(low, theatre.last_bend);
+    high = std::max(high, theatre.last_bend);
+  }
+  EXPECT_GT(high - low, kSwing_rad) << "it stands";
+
+  // The daemon was started anew: its time begins again.
+  theatre.restart_sender();
+  theatre.run(0.3);
+  EXPECT_EQ(theatre.timeline.playback(), Playback::kReturning);
+  theatre.run(3.0);
+  EXPECT_EQ(theatre.timeline.playback(), Playback::kLive);
+  EXPECT_LE(theatre.largest_step, fade_step_bound(1.0 / 144.0));
+  EXPECT_LE(theatre.timeline.delay_s(), 2.0 * kTick_s);
 }
 
 TEST(PoseTimeline, DoesNotJumpWhenTheStreamComesAndGoes) {

@@ -111,6 +111,7 @@ TEST(StreamConnection, SubscribesAndHandsOverScenesFramesAndSensors) {
   EXPECT_NEAR(std::get<pose::StrandPose>(viewer.frames[1].poses.at(0)).bend_south_rad.at(0), -0.5F, 1e-3F);
   EXPECT_EQ(viewer.sensors->clients, 7U);
   EXPECT_EQ(viewer.connection.status().state, StreamState::kConnected);
+  EXPECT_TRUE(viewer.connection.status().is_same_machine);
   EXPECT_THAT(viewer.connection.status().text, HasSubstr("a test"));
 }
 
