@@ -1,6 +1,7 @@
 #include "viewer/viewer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "viewer/overlay.hpp"
 #include "viewer/pace_keeper.hpp"
 #include "viewer/panel.hpp"
+#include "viewer/paused_moment.hpp"
 #include "viewer/picture_director.hpp"
 #include "viewer/picture_file.hpp"
 #include "viewer/quality.hpp"
@@ -89,7 +91,14 @@ class Viewer::Show {
     director_.emplace(options_, *renderer_, options_.connect);
     dimmer_.emplace();
     if (options.has_test_card) test_card_.emplace();
-    window_ ? overlay_.emplace(window_->handle(), window_->content_scale()) : overlay_.emplace(nullptr, 1.0);
+    overlay_.emplace(window_ ? window_->handle() : nullptr);
+    pass_clock_.emplace(is_software_ ? gl::PassClock::By::kProcessor : gl::PassClock::By::kGpu);
+    const auto is_shown = [&](const char* panel) {
+      return std::ranges::find(options.shown, panel) != options.shown.end();
+    };
+    has_help_ = is_shown("help");
+    has_wind_ = is_shown("wind");
+    if (is_shown("profiler")) toggle_profiler();
   }
 
   void run_window() {
@@ -188,19 +197,66 @@ class Viewer::Show {
       camera.pan(input.pan_right, input.pan_down, renderer_->aspect());
       camera.zoom(input.zoom_notches);
     }
-    if (input.next_camera) director_->show_next_camera();
-    if (input.reset_camera) director_->reset_camera();
-    if (input.next_scene) {
-      renderer_->stage().show_next();
-      director_->frame_scenes(renderer_->stage().shows_all());
-    }
-    if (input.toggle_turning) {
-      meshes::OrbitCamera& camera = director_->take_camera();
-      camera.set_turning(!camera.is_turning());
-    }
-    if (input.toggle_overlay) has_overlay_ = !has_overlay_;
-    if (input.toggle_panel) has_panel_ = !has_panel_;
+    for (const Key& key : input.keys) use_key(key);
     window_->set_taken(has_panel_ && overlay_->takes_mouse(), has_panel_ && overlay_->takes_keys());
+  }
+
+  void toggle_profiler() {
+    has_profiler_ = !has_profiler_;
+    renderer_->stage().time_passes_with(has_profiler_ ? &*pass_clock_ : nullptr);
+  }
+
+  void use_key(const Key& key) {
+    switch (key.action) {
+      case Action::kHelp:
+        has_help_ = !has_help_;
+        break;
+      case Action::kInfo:
+        has_overlay_ = !has_overlay_;
+        break;
+      case Action::kProfiler:
+        toggle_profiler();
+        break;
+      case Action::kWind:
+        has_wind_ = !has_wind_;
+        break;
+      case Action::kFullScreen:
+        window_->toggle_fullscreen();
+        break;
+      case Action::kPause:
+        paused_.toggle();
+        break;
+      case Action::kHomeCamera:
+        director_->show_home();
+        break;
+      case Action::kCamera:
+        director_->show_camera(static_cast<std::size_t>(key.number));
+        break;
+      case Action::kNextCamera:
+        director_->show_next_camera();
+        break;
+      case Action::kFirstCamera:
+        director_->reset_camera();
+        break;
+      case Action::kTurning: {
+        meshes::OrbitCamera& camera = director_->take_camera();
+        camera.set_turning(!camera.is_turning());
+        break;
+      }
+      case Action::kNextScene:
+        renderer_->stage().show_next();
+        director_->frame_scenes(renderer_->stage().shows_all());
+        break;
+      case Action::kNextQuality:
+        director_->show_next_quality(quality_);
+        break;
+      case Action::kPanel:
+        has_panel_ = !has_panel_;
+        break;
+      case Action::kClose:
+        window_->close();
+        break;
+    }
   }
 
   /// Takes what has arrived, and advances to now.
@@ -209,6 +265,7 @@ class Viewer::Show {
     if (inbox.scenes) timeline_.set_scenes(std::move(*inbox.scenes));
     for (stream::TimedFrame& timed : inbox.frames) {
       utc_s_ = 1e-9 * static_cast<double>(timed.frame.info.utc_ns);
+      wind_trace_.hear(timed.frame.info.time_s, speed_of(timed.frame.info.wind.wind), measured_m_s());
       timeline_.accept(timed.frame, seconds(timed.arrival.time_since_epoch()));
     }
     advance_panel(inbox);
@@ -222,12 +279,35 @@ class Viewer::Show {
     const double passed_s = now - last_s_;
     last_s_ = now;
     picture_passed_s_ = passed_s;
-    moment_ = &timeline_.advance(now);
+    moment_ = &paused_.advance(timeline_.advance(now), passed_s);
     follow_brightness(is_first_status ? kDimming_s : passed_s);
-    if (auto scenes = timeline_.take_new_scenes()) director_->set_scenes(std::move(*scenes));
+    // Scenes that are new while a picture stands still come when it goes on.
+    if (!paused_.is_paused()) {
+      if (auto scenes = timeline_.take_new_scenes()) director_->set_scenes(std::move(*scenes));
+    }
     director_->advance(passed_s, utc_s_, moment_->wind.wind);
     tell_quality();
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
+    std::ranges::rotate(picture_times_ms_, picture_times_ms_.begin() + 1);
+    picture_times_ms_.back() = static_cast<float>(1e3 * passed_s);
+  }
+
+  /// Of the sensors that are believed; nothing where there is none.
+  std::optional<double> measured_m_s() const {
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; sensors_ && i < sensors_->sensors.size(); ++i) {
+      const wire::SensorStatus& sensor = sensors_->sensors[i];
+      if (!is_believed(sensor.state) || !sensor.speed_m_s) continue;
+      sum += *sensor.speed_m_s;
+      ++count;
+    }
+    return count > 0 ? std::optional(sum / count) : std::nullopt;
+  }
+
+  /// Is anything drawn over the picture?
+  bool has_something_over() const {
+    return has_overlay_ || has_panel_ || has_help_ || has_profiler_ || has_wind_ || paused_.is_paused();
   }
 
   /// Nothing is asked of the daemon before a person wants to see the panel.
@@ -261,23 +341,31 @@ class Viewer::Show {
     renderer_->set_drawn(part);
     director_->draw(*moment_);
     dimmer_->draw(static_cast<float>(brightness_));
-    if (!has_overlay_ && !has_panel_) return;
+    if (has_profiler_) passes_ = pass_clock_->end();
+    if (!has_something_over()) return;
     const light::Sky sky = light::sky_of(director_->look(), utc_s_);
-    overlay_->draw(size, {.wind = moment_->wind,
-                          .playback = timeline_.playback(),
-                          .stream = connection_.status(),
-                          .sensors = sensors_ ? &*sensors_ : nullptr,
-                          .pictures_per_s = 1.0 / picture_s_,
-                          .nodes = renderer_->stage().node_count(),
-                          .scenes = renderer_->scenes(),
-                          .opacities = moment_->opacities,
-                          .sky = &sky,
-                          .quality = quality_,
-                          .drawn = part,
-                          .heading_deg = director_->heading_deg(),
-                          .camera = director_->camera_text(),
-                          .has_texts = has_overlay_,
-                          .panel = has_panel_ ? &panel_ : nullptr});
+    const double scale = overlay_scale(window_ ? window_->content_scale() : 1.0, size, options_.scale);
+    overlay_->draw(size, scale,
+                   {.wind = moment_->wind,
+                    .playback = timeline_.playback(),
+                    .stream = connection_.status(),
+                    .sensors = sensors_ ? &*sensors_ : nullptr,
+                    .pictures_per_s = 1.0 / picture_s_,
+                    .nodes = renderer_->stage().node_count(),
+                    .scenes = renderer_->scenes(),
+                    .opacities = moment_->opacities,
+                    .sky = &sky,
+                    .quality = quality_,
+                    .drawn = part,
+                    .heading_deg = director_->heading_deg(),
+                    .camera = director_->camera_text(),
+                    .has_help = has_help_,
+                    .is_paused = paused_.is_paused(),
+                    .wind_trace = has_wind_ ? &wind_trace_ : nullptr,
+                    .passes = has_profiler_ ? &passes_ : nullptr,
+                    .picture_times_ms = picture_times_ms_,
+                    .has_texts = has_overlay_,
+                    .panel = has_panel_ ? &panel_ : nullptr});
   }
 
   /// Is less drawn where that keeps the pace? Where the processor draws into a window, in quality low.
@@ -303,6 +391,7 @@ class Viewer::Show {
   std::optional<gl::Dimmer> dimmer_;
   std::optional<wall::TestCard> test_card_;
   std::optional<Overlay> overlay_;
+  std::optional<gl::PassClock> pass_clock_;
 
   Watchdog watchdog_;
   bool is_software_ = false;
@@ -319,6 +408,13 @@ class Viewer::Show {
   double brightness_;              // of the picture, 0 to 1
   bool has_overlay_;
   bool has_panel_;
+  bool has_help_ = false;
+  bool has_profiler_ = false;
+  bool has_wind_ = false;
+  PausedMoment paused_;
+  WindTrace wind_trace_;
+  std::vector<gl::PassClock::Pass> passes_;
+  std::array<float, 240> picture_times_ms_{};
   Panel panel_;
 };
 
