@@ -29,10 +29,13 @@
 namespace yuragi::viewer {
 namespace {
 
-constexpr double kIdleWait_s = 0.1;  // while there is nothing to draw on
-constexpr double kLookWait_s = 1.0;  // for the daemon's first status, which has its look
-constexpr int kOverlayPictures = 2;  // the overlay's size is known after the first
-constexpr int kSamples = 4;          // a pixel
+constexpr double kIdleWait_s = 0.1;     // while there is nothing to draw on
+constexpr double kBlackWait_s = 0.05;   // between two looks for news while all is black
+constexpr double kBlackAgain_s = 0.5;   // a monitor that has come back is black soon
+constexpr double kDarkest = 1.0 / 512;  // less than a step of a pixel's value
+constexpr double kLookWait_s = 1.0;     // for the daemon's first status, which has its look
+constexpr int kOverlayPictures = 2;     // the overlay's size is known after the first
+constexpr int kSamples = 4;             // a pixel
 constexpr double kRateSmoothing = 0.05;
 constexpr double kHandFade_s = 0.3;  // of the light, while a person moves a handle of the panel
 constexpr double kDimming_s = 0.5;   // between two of the daemon's statuses the brightness goes on
@@ -113,7 +116,14 @@ class Viewer::Show {
         window_->wait(kIdleWait_s);
         continue;
       }
-      draw(size);
+      const bool is_black = is_picture_black();
+      if (is_black && last_s_ < black_until_s_ && size == black_size_) {
+        window_->wait(kBlackWait_s);
+        continue;
+      }
+      black_until_s_ = is_black ? last_s_ + kBlackAgain_s : 0.0;
+      black_size_ = size;
+      is_black ? draw_black(size) : draw(size);
       show(size);
       if (gl::is_context_lost()) throw ViewerExit(EX_TEMPFAIL, "the graphics card was reset; start the viewer again");
       // Where the processor draws the picture is done now.
@@ -156,6 +166,17 @@ class Viewer::Show {
     if (!wall_) return window_->framebuffer_size();
     const output::Size size = wall_->picture_size();
     return wall_->is_dark() ? PixelSize{} : PixelSize{.width_px = size.width_px, .height_px = size.height_px};
+  }
+
+  /// A picture that nobody would see is not drawn. The next news is looked for soon enough that its light, which comes
+  /// slowly, is not late.
+  bool is_picture_black() const {
+    return brightness_ == 0.0 && wanted_brightness() == 0.0 && !has_something_over() && !test_card_;
+  }
+  void draw_black(const PixelSize& size) {
+    renderer_->resize(size.width_px, size.height_px);
+    renderer_->target().bind_resolved();
+    dimmer_->draw(0.0F);
   }
 
   void show(const PixelSize& size) {
@@ -322,7 +343,9 @@ class Viewer::Show {
 
   /// Dark until the first status says whether it is open, so that a wall that starts at night stays dark.
   void follow_brightness(double passed_s) {
-    brightness_ += std::min(1.0, passed_s / kDimming_s) * (wanted_brightness() - brightness_);
+    const double wanted = wanted_brightness();
+    brightness_ += std::min(1.0, passed_s / kDimming_s) * (wanted - brightness_);
+    if (wanted == 0.0 && brightness_ < kDarkest) brightness_ = 0.0;
   }
 
   double wanted_brightness() const {
@@ -405,7 +428,9 @@ class Viewer::Show {
   double last_s_;
   double picture_passed_s_ = 0.0;  // since the picture before
   double picture_s_ = 1.0 / 60.0;  // between pictures, smoothed
-  double brightness_;              // of the picture, 0 to 1
+  double black_until_s_ = 0.0;     // what is shown is black, and need not be shown again before
+  PixelSize black_size_;
+  double brightness_;  // of the picture, 0 to 1
   bool has_overlay_;
   bool has_panel_;
   bool has_help_ = false;
