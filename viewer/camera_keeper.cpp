@@ -45,6 +45,13 @@ void CameraKeeper::take_by_hand() {
   now_.camera.reset();
 }
 
+void CameraKeeper::show(std::size_t number) {
+  if (number < 1 || number > cameras_.size()) return;
+  asked_ = cameras_[number - 1].name;
+  is_by_hand_ = false;
+  next_fade_s_ = kFade_s;
+}
+
 void CameraKeeper::next() {
   if (cameras_.empty()) return;
   const look::Camera* const present = wanted();

@@ -40,6 +40,8 @@ class CameraKeeper {
 
   /// The user moves the camera: it is by hand from now on, without a cross-fade.
   void take_by_hand();
+  /// The daemon's camera of this number, from 1, whatever the hour; nothing changes where there is none.
+  void show(std::size_t number);
   /// On to the next of the daemon's cameras, whatever the hour.
   void next();
   /// Back to the first. Is it one of the daemon's cameras?

@@ -65,7 +65,7 @@ void add_film_options(CLI::App& app, ViewerOptions& options) {
       app.add_option("--render", options.render, "Play FILE.windlog tick by tick, and draw each picture")
           ->type_name("FILE.windlog")
           ->group(film);
-  for (const char* other : {"--connect", "--screenshot", "--fullscreen", "--monitor", "--overlay", "--panel",
+  for (const char* other : {"--connect", "--screenshot", "--fullscreen", "--monitor", "--overlay", "--panel", "--show",
                             "--dark-when-closed", "--output", "--test-card", "--age"}) {
     render->excludes(other);
   }
@@ -115,6 +115,13 @@ void add_options(CLI::App& app, ViewerOptions& options) {
                "Show wind, sensors and stream over the picture (default in windows)");
   app.add_flag("--panel", options.has_panel,
                "Show the panel that lists and sets the values of the daemon's [look] and scenes (P)");
+  app.add_option("--show", options.shown,
+                 "Show this from the start, too: help (F1), profiler (F3) or wind (F4); repeatable")
+      ->allow_extra_args(false)
+      ->type_name("PANEL")
+      ->check(CLI::IsMember({"help", "profiler", "wind"}));
+  app.add_option("--scale", options.scale, "How large the overlay's texts are; default: as suits the monitor")
+      ->check(CLI::Range(0.25, 8.0));
   app.add_flag("--fullscreen", options.is_fullscreen, "Fill the screen");
   app.add_flag("--dark-when-closed", options.is_dark_when_closed,
                "Fade to black outside of the daemon's opening hours ([shaping] hours)");
@@ -176,11 +183,8 @@ void add_options(CLI::App& app, ViewerOptions& options) {
   add_film_options(app, options);
 
   app.footer(
-      "In the window: drag to turn (left button) or move (right), scroll to zoom; R first view, C next of the "
-      "daemon's\n"
-      "cameras, N next scene alone (after the last, all), T turn slowly, H overlay, P panel of values, F11 full "
-      "screen,\n"
-      "Esc or Q quit. If the stream is interrupted, its last seconds are replayed until it returns.\n"
+      "In the window: F1 lists all keys; drag to turn (left button) or move (right), scroll to zoom. If the stream is\n"
+      "interrupted, its last seconds are replayed until it returns.\n"
       "\n"
       "Examples:\n"
       "  yuragi run &                                    the daemon, with a synthetic wind\n"

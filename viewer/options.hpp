@@ -15,9 +15,11 @@ struct ViewerOptions {
   std::string size = "1280x720";
   int width_px = 1280;
   int height_px = 720;
-  std::optional<int> samples;   ///< unset: as many as suit the graphics hardware
-  std::optional<bool> overlay;  ///< unset: in windows yes, in pictures no
-  bool has_panel = false;       ///< shown from the start
+  std::optional<int> samples;      ///< unset: as many as suit the graphics hardware
+  std::optional<bool> overlay;     ///< unset: in windows yes, in pictures no
+  bool has_panel = false;          ///< shown from the start
+  std::vector<std::string> shown;  ///< besides, from the start: "help", "profiler", "wind"
+  std::optional<double> scale;     ///< of the overlay; unset: as suits the monitor
   bool is_fullscreen = false;
   std::optional<int> monitor;
   std::string config;           ///< a file: of its outputs one is shown, of its scenes a film is made; empty: none

@@ -12,6 +12,7 @@
 
 #include "engine/base/compass.hpp"
 #include "engine/base/units.hpp"
+#include "viewer/keys.hpp"
 #include "viewer/panel_view.hpp"
 #include "viewer/quality.hpp"
 #include "viewer/wind_place_text.hpp"
@@ -21,6 +22,7 @@ namespace {
 
 constexpr ImU32 kInk = IM_COL32(250, 248, 240, 255);
 constexpr ImU32 kFaint = IM_COL32(250, 248, 240, 110);
+constexpr ImU32 kMeasured = IM_COL32(130, 200, 255, 255);
 constexpr ImU32 kArrow = IM_COL32(255, 214, 120, 255);
 const ImVec4 kQuiet(0.98F, 0.97F, 0.94F, 0.66F);
 const ImVec4 kDim(0.98F, 0.97F, 0.94F, 0.36F);
@@ -216,21 +218,36 @@ void write_scenes(const OverlayFacts& facts) {
 
 }  // namespace
 
-Overlay::Overlay(GLFWwindow* window, double content_scale) : has_window_(window != nullptr) {
+double overlay_scale(double content_scale, const PixelSize& picture, std::optional<double> asked) {
+  if (asked) return *asked;
+  constexpr double kUsualSide_px = 1080.0;
+  const double quarters = std::floor(4.0 * std::min(picture.width_px, picture.height_px) / kUsualSide_px);
+  return std::max(content_scale, quarters / 4.0);
+}
+
+Overlay::Overlay(GLFWwindow* window) : has_window_(window != nullptr) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // nothing is kept on disk
-  load_font(content_scale);
-  ImGui::StyleColorsDark();
-  ImGuiStyle& style = ImGui::GetStyle();
+  if (has_window_) ImGui_ImplGlfw_InitForOpenGL(window, true);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+void Overlay::set_scale(double scale) {
+  if (scale == scale_) return;
+  scale_ = scale;
+  ImGui_ImplOpenGL3_DestroyDeviceObjects();  // among them the font's picture, which is made again
+  ImGui::GetIO().Fonts->Clear();
+  load_font(scale);
+  ImGuiStyle style;
+  ImGui::StyleColorsDark(&style);
   style.WindowRounding = 8.0F;
   style.WindowBorderSize = 0.0F;
   style.WindowPadding = ImVec2(14.0F, 12.0F);
   style.ItemSpacing = ImVec2(8.0F, 5.0F);
-  style.ScaleAllSizes(static_cast<float>(content_scale));
+  style.ScaleAllSizes(static_cast<float>(scale));
   style.Colors[ImGuiCol_WindowBg] = ImVec4(0.06F, 0.07F, 0.06F, 0.62F);
   style.Colors[ImGuiCol_Text] = ImVec4(0.98F, 0.97F, 0.94F, 1.0F);
-  if (has_window_) ImGui_ImplGlfw_InitForOpenGL(window, true);
-  ImGui_ImplOpenGL3_Init("#version 330 core");
+  ImGui::GetStyle() = style;
 }
 
 Overlay::~Overlay() {
@@ -267,9 +284,115 @@ void draw_texts(const OverlayFacts& facts) {
   ImGui::End();
 }
 
+/// Begins a window whose point `pivot` (parts of its size) is at that of the picture.
+void begin_at(const char* name, const ImVec2& pivot) {
+  const ImVec2 picture = ImGui::GetIO().DisplaySize;
+  const float margin = ImGui::GetFontSize();
+  const ImVec2 at(margin + pivot.x * (picture.x - 2.0F * margin), margin + pivot.y * (picture.y - 2.0F * margin));
+  ImGui::SetNextWindowPos(at, ImGuiCond_Always, pivot);
+  ImGui::Begin(name, nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav);
+}
+
+void draw_help() {
+  begin_at("help", ImVec2(0.5F, 0.5F));
+  if (ImGui::BeginTable("keys", 2, ImGuiTableFlags_SizingFixedFit)) {
+    for (std::size_t line = 0; const auto help = key_help(line); ++line) {
+      ImGui::TableNextColumn();
+      write(help->keys);
+      ImGui::TableNextColumn();
+      write(kQuiet, std::string(help->text));
+    }
+    ImGui::EndTable();
+  }
+  write(kQuiet, "Drag to turn (left button) or to move (right), scroll to come nearer.");
+  ImGui::End();
+}
+
+/// A wall that somebody has stopped must not look like one that is still.
+void draw_pause() {
+  begin_at("pause", ImVec2(0.5F, 1.0F));
+  write(kWarn, "paused; Space goes on");
+  ImGui::End();
+}
+
+void draw_profile(const OverlayFacts& facts) {
+  begin_at("profile", ImVec2(0.0F, 1.0F));
+  const float letter = ImGui::GetFontSize();
+  const auto& times_ms = facts.picture_times_ms;
+  if (!times_ms.empty()) {
+    const float longest_ms = *std::ranges::max_element(times_ms);
+    ImGui::PlotLines("##times", times_ms.data(), static_cast<int>(times_ms.size()), 0, nullptr, 0.0F, 1.1F * longest_ms,
+                     ImVec2(24.0F * letter, 3.0F * letter));
+    write(fmt::format("{:.0f} ms a picture; longest of {}: {:.0f} ms", times_ms.back(), times_ms.size(), longest_ms));
+  }
+  if (ImGui::BeginTable("passes", 4, ImGuiTableFlags_SizingFixedFit)) {
+    const auto row = [](const ImVec4& color, const std::array<std::string, 4>& cells) {
+      for (const std::string& cell : cells) {
+        ImGui::TableNextColumn();
+        write(color, cell);
+      }
+    };
+    row(kDim, {"pass", "ms", "kB sent", "triangles"});
+    for (const gl::PassClock::Pass& pass : *facts.passes) {
+      row(kQuiet,
+          {pass.name, fmt::format("{:.2f}", pass.time_ms),
+           fmt::format("{:.0f}", 1e-3 * static_cast<double>(pass.uploaded_bytes)), fmt::format("{}", pass.triangles)});
+    }
+    ImGui::EndTable();
+  }
+  write(kDim, "Pictures take longer while this is measured.");
+  ImGui::End();
+}
+
+void draw_wind_trace(const WindTrace& trace) {
+  begin_at("trace", ImVec2(1.0F, 1.0F));
+  const float letter = ImGui::GetFontSize();
+  const ImVec2 size(24.0F * letter, 5.0F * letter);
+  const std::vector<float>& speeds = trace.speeds_m_s();
+  const std::vector<float>& measured = trace.measured_m_s();
+  const bool has_both = !speeds.empty();
+  const float most =
+      has_both ? std::max({1.0F, *std::ranges::max_element(speeds), *std::ranges::max_element(measured)}) : 1.0F;
+  write(fmt::format("last minute, 0 to {:.1f} m/s", most));
+  ImDrawList* const list = ImGui::GetWindowDrawList();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::Dummy(size);
+  list->AddRect(corner, ImVec2(corner.x + size.x, corner.y + size.y), kFaint);
+  const auto draw_line = [&](const std::vector<float>& values, ImU32 color) {
+    const auto at = [&](std::size_t i) {
+      const float age = static_cast<float>(values.size() - 1 - i) / static_cast<float>(WindTrace::kSamples - 1);
+      return ImVec2(corner.x + size.x * (1.0F - age), corner.y + size.y * (1.0F - values[i] / most));
+    };
+    for (std::size_t i = 1; i < values.size(); ++i) list->AddLine(at(i - 1), at(i), color, 0.1F * letter);
+  };
+  draw_line(measured, kMeasured);
+  draw_line(speeds, kArrow);
+  write(ImGui::ColorConvertU32ToFloat4(kArrow), "in the scenes");
+  ImGui::SameLine();
+  write(ImGui::ColorConvertU32ToFloat4(kMeasured), "measured (mean of the sensors)");
+
+  const std::vector<SpectrumBand> bands = spectrum_of(speeds);
+  const ImVec2 below = ImGui::GetCursorScreenPos();
+  ImGui::Dummy(size);
+  list->AddRect(below, ImVec2(below.x + size.x, below.y + size.y), kFaint);
+  // Both axes are logarithmic: 1/60 to 4 Hz, and six powers of ten.
+  const auto at = [&](const SpectrumBand& band) {
+    const double right = std::log(band.frequency_hz * 60.0) / std::log(240.0);
+    const double up = (std::log10(std::max(band.density_m2_s, 1e-4)) + 4.0) / 6.0;
+    return ImVec2(below.x + size.x * static_cast<float>(std::clamp(right, 0.0, 1.0)),
+                  below.y + size.y * static_cast<float>(1.0 - std::clamp(up, 0.0, 1.0)));
+  };
+  for (std::size_t i = 1; i < bands.size(); ++i) list->AddLine(at(bands[i - 1]), at(bands[i]), kArrow, 0.1F * letter);
+  write(kQuiet, bands.empty() ? "its spectrum comes after 8 s" : "its spectrum: 1/60 to 4 Hz, 1e-4 to 100 m\u00b2/s");
+  ImGui::End();
+}
+
 }  // namespace
 
-void Overlay::draw(const PixelSize& size, const OverlayFacts& facts) {
+void Overlay::draw(const PixelSize& size, double scale, const OverlayFacts& facts) {
+  set_scale(scale);
   ImGui_ImplOpenGL3_NewFrame();
   if (has_window_) {
     ImGui_ImplGlfw_NewFrame();
@@ -284,6 +407,10 @@ void Overlay::draw(const PixelSize& size, const OverlayFacts& facts) {
   }
   ImGui::NewFrame();
   if (facts.has_texts) draw_texts(facts);
+  if (facts.passes != nullptr) draw_profile(facts);
+  if (facts.wind_trace != nullptr) draw_wind_trace(*facts.wind_trace);
+  if (facts.has_help) draw_help();
+  if (facts.is_paused) draw_pause();
   if (facts.panel != nullptr) draw_panel(*facts.panel);
   ImGui::Render();
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

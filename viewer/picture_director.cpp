@@ -51,6 +51,26 @@ meshes::OrbitCamera& PictureDirector::take_camera() {
   return camera_;
 }
 
+void PictureDirector::show_home() {
+  cameras_.take_by_hand();
+  camera_.reset();
+}
+
+void PictureDirector::show_next_quality(look::Quality present) {
+  switch (quality_.value_or(present)) {
+    case look::Quality::kLow:
+      quality_ = look::Quality::kMedium;
+      break;
+    case look::Quality::kMedium:
+      quality_ = look::Quality::kHigh;
+      break;
+    case look::Quality::kHigh:
+    case look::Quality::kAuto:
+      quality_ = look::Quality::kLow;
+      break;
+  }
+}
+
 void PictureDirector::reset_camera() {
   if (!cameras_.reset()) camera_.reset();
 }
@@ -68,7 +88,7 @@ void PictureDirector::advance(double passed_s, double utc_s, const wind::WindVec
   camera_.keep_away(renderer_.outside(camera_.place()).distance_m);
   renderer_.set_light(sky_.advance(utc_s, passed_s, {wind.u_m_s, -wind.v_m_s}));
   const look::Look& look = sky_.look();
-  renderer_.set_quality(look.quality, static_cast<float>(look.density));
+  renderer_.set_quality(quality_.value_or(look.quality), static_cast<float>(look.density));
 }
 
 void PictureDirector::draw(const stream::PoseMoment& moment) {

@@ -32,6 +32,12 @@ class PictureDirector {
   meshes::OrbitCamera& take_camera();
   /// On to the next of the sender's cameras.
   void show_next_camera() { cameras_.next(); }
+  /// That camera of the sender's, from 1.
+  void show_camera(std::size_t number) { cameras_.show(number); }
+  /// The camera by hand at its first place.
+  void show_home();
+  /// The next quality, whatever the look says: low, medium, high, and low again. `present`: what is drawn.
+  void show_next_quality(look::Quality present);
   void reset_camera();
   /// After the choice of scenes: the camera by hand at its first place for them, or, where all are drawn, the first
   /// camera.
@@ -60,6 +66,7 @@ class PictureDirector {
   CameraKeeper cameras_;
   meshes::OrbitCamera camera_;  // by hand
   light::SkyKeeper sky_;
+  std::optional<look::Quality> quality_;  // that a person has chosen
   double utc_s_ = 0.0;
   bool has_scenes_ = false;
   bool has_status_ = false;

@@ -1,6 +1,7 @@
 #include "viewer/viewer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "viewer/overlay.hpp"
 #include "viewer/pace_keeper.hpp"
 #include "viewer/panel.hpp"
+#include "viewer/paused_moment.hpp"
 #include "viewer/picture_director.hpp"
 #include "viewer/picture_file.hpp"
 #include "viewer/quality.hpp"
@@ -28,10 +30,13 @@
 namespace yuragi::viewer {
 namespace {
 
-constexpr double kIdleWait_s = 0.1;  // while there is nothing to draw on
-constexpr double kLookWait_s = 1.0;  // for the daemon's first status, which has its look
-constexpr int kOverlayPictures = 2;  // the overlay's size is known after the first
-constexpr int kSamples = 4;          // a pixel
+constexpr double kIdleWait_s = 0.1;     // while there is nothing to draw on
+constexpr double kBlackWait_s = 0.05;   // between two looks for news while all is black
+constexpr double kBlackAgain_s = 0.5;   // a monitor that has come back is black soon
+constexpr double kDarkest = 1.0 / 512;  // less than a step of a pixel's value
+constexpr double kLookWait_s = 1.0;     // for the daemon's first status, which has its look
+constexpr int kOverlayPictures = 2;     // the overlay's size is known after the first
+constexpr int kSamples = 4;             // a pixel
 constexpr double kRateSmoothing = 0.05;
 constexpr double kHandFade_s = 0.3;  // of the light, while a person moves a handle of the panel
 constexpr double kAgeSaid_s = stream::PictureAge::kSpan_s;
@@ -96,7 +101,14 @@ class Viewer::Show {
     director_.emplace(options_, *renderer_, options_.connect);
     dimmer_.emplace();
     if (options.has_test_card) test_card_.emplace();
-    window_ ? overlay_.emplace(window_->handle(), window_->content_scale()) : overlay_.emplace(nullptr, 1.0);
+    overlay_.emplace(window_ ? window_->handle() : nullptr);
+    pass_clock_.emplace(is_software_ ? gl::PassClock::By::kProcessor : gl::PassClock::By::kGpu);
+    const auto is_shown = [&](const char* panel) {
+      return std::ranges::find(options.shown, panel) != options.shown.end();
+    };
+    has_help_ = is_shown("help");
+    has_wind_ = is_shown("wind");
+    if (is_shown("profiler")) toggle_profiler();
   }
 
   void run_window() {
@@ -111,7 +123,14 @@ class Viewer::Show {
         window_->wait(kIdleWait_s);
         continue;
       }
-      draw(size);
+      const bool is_black = is_picture_black();
+      if (is_black && last_s_ < black_until_s_ && size == black_size_) {
+        window_->wait(kBlackWait_s);
+        continue;
+      }
+      black_until_s_ = is_black ? last_s_ + kBlackAgain_s : 0.0;
+      black_size_ = size;
+      is_black ? draw_black(size) : draw(size);
       show(size);
       note_age(display_interval_s());
       if (gl::is_context_lost()) throw ViewerExit(EX_TEMPFAIL, "the graphics card was reset; start the viewer again");
@@ -164,6 +183,17 @@ class Viewer::Show {
     return wall_->is_dark() ? PixelSize{} : PixelSize{.width_px = size.width_px, .height_px = size.height_px};
   }
 
+  /// A picture that nobody would see is not drawn. The next news is looked for soon enough that its light, which comes
+  /// slowly, is not late.
+  bool is_picture_black() const {
+    return brightness_ == 0.0 && wanted_brightness() == 0.0 && !has_something_over() && !test_card_;
+  }
+  void draw_black(const PixelSize& size) {
+    renderer_->resize(size.width_px, size.height_px);
+    renderer_->target().bind_resolved();
+    dimmer_->draw(0.0F);
+  }
+
   void show(const PixelSize& size) {
     if (wall_) return wall_->show(renderer_->target(), options_.has_test_card);
     renderer_->target().show(size.width_px, size.height_px);
@@ -203,19 +233,66 @@ class Viewer::Show {
       camera.pan(input.pan_right, input.pan_down, renderer_->aspect());
       camera.zoom(input.zoom_notches);
     }
-    if (input.next_camera) director_->show_next_camera();
-    if (input.reset_camera) director_->reset_camera();
-    if (input.next_scene) {
-      renderer_->stage().show_next();
-      director_->frame_scenes(renderer_->stage().shows_all());
-    }
-    if (input.toggle_turning) {
-      meshes::OrbitCamera& camera = director_->take_camera();
-      camera.set_turning(!camera.is_turning());
-    }
-    if (input.toggle_overlay) has_overlay_ = !has_overlay_;
-    if (input.toggle_panel) has_panel_ = !has_panel_;
+    for (const Key& key : input.keys) use_key(key);
     window_->set_taken(has_panel_ && overlay_->takes_mouse(), has_panel_ && overlay_->takes_keys());
+  }
+
+  void toggle_profiler() {
+    has_profiler_ = !has_profiler_;
+    renderer_->stage().time_passes_with(has_profiler_ ? &*pass_clock_ : nullptr);
+  }
+
+  void use_key(const Key& key) {
+    switch (key.action) {
+      case Action::kHelp:
+        has_help_ = !has_help_;
+        break;
+      case Action::kInfo:
+        has_overlay_ = !has_overlay_;
+        break;
+      case Action::kProfiler:
+        toggle_profiler();
+        break;
+      case Action::kWind:
+        has_wind_ = !has_wind_;
+        break;
+      case Action::kFullScreen:
+        window_->toggle_fullscreen();
+        break;
+      case Action::kPause:
+        paused_.toggle();
+        break;
+      case Action::kHomeCamera:
+        director_->show_home();
+        break;
+      case Action::kCamera:
+        director_->show_camera(static_cast<std::size_t>(key.number));
+        break;
+      case Action::kNextCamera:
+        director_->show_next_camera();
+        break;
+      case Action::kFirstCamera:
+        director_->reset_camera();
+        break;
+      case Action::kTurning: {
+        meshes::OrbitCamera& camera = director_->take_camera();
+        camera.set_turning(!camera.is_turning());
+        break;
+      }
+      case Action::kNextScene:
+        renderer_->stage().show_next();
+        director_->frame_scenes(renderer_->stage().shows_all());
+        break;
+      case Action::kNextQuality:
+        director_->show_next_quality(quality_);
+        break;
+      case Action::kPanel:
+        has_panel_ = !has_panel_;
+        break;
+      case Action::kClose:
+        window_->close();
+        break;
+    }
   }
 
   /// Takes what has arrived, and advances to now.
@@ -227,6 +304,7 @@ class Viewer::Show {
       const double arrival_s = seconds(timed.arrival.time_since_epoch());
       age_.take_frame(timed.frame.info, arrival_s, utc_at(arrival_s), is_same_machine);
       utc_s_ = 1e-9 * static_cast<double>(timed.frame.info.utc_ns);
+      wind_trace_.hear(timed.frame.info.time_s, speed_of(timed.frame.info.wind.wind), measured_m_s());
       timeline_.accept(timed.frame, arrival_s);
     }
     advance_panel(inbox);
@@ -240,12 +318,35 @@ class Viewer::Show {
     const double passed_s = now - last_s_;
     last_s_ = now;
     picture_passed_s_ = passed_s;
-    moment_ = &timeline_.advance(now);
+    moment_ = &paused_.advance(timeline_.advance(now), passed_s);
     follow_brightness(is_first_status ? kDimming_s : passed_s);
-    if (auto scenes = timeline_.take_new_scenes()) director_->set_scenes(std::move(*scenes));
+    // Scenes that are new while a picture stands still come when it goes on.
+    if (!paused_.is_paused()) {
+      if (auto scenes = timeline_.take_new_scenes()) director_->set_scenes(std::move(*scenes));
+    }
     director_->advance(passed_s, utc_s_, moment_->wind.wind);
     tell_quality();
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
+    std::ranges::rotate(picture_times_ms_, picture_times_ms_.begin() + 1);
+    picture_times_ms_.back() = static_cast<float>(1e3 * passed_s);
+  }
+
+  /// Of the sensors that are believed; nothing where there is none.
+  std::optional<double> measured_m_s() const {
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; sensors_ && i < sensors_->sensors.size(); ++i) {
+      const wire::SensorStatus& sensor = sensors_->sensors[i];
+      if (!is_believed(sensor.state) || !sensor.speed_m_s) continue;
+      sum += *sensor.speed_m_s;
+      ++count;
+    }
+    return count > 0 ? std::optional(sum / count) : std::nullopt;
+  }
+
+  /// Is anything drawn over the picture?
+  bool has_something_over() const {
+    return has_overlay_ || has_panel_ || has_help_ || has_profiler_ || has_wind_ || paused_.is_paused();
   }
 
   /// Nothing is asked of the daemon before a person wants to see the panel.
@@ -260,7 +361,9 @@ class Viewer::Show {
 
   /// Dark until the first status says whether it is open, so that a wall that starts at night stays dark.
   void follow_brightness(double passed_s) {
-    brightness_ += std::min(1.0, passed_s / kDimming_s) * (wanted_brightness() - brightness_);
+    const double wanted = wanted_brightness();
+    brightness_ += std::min(1.0, passed_s / kDimming_s) * (wanted - brightness_);
+    if (wanted == 0.0 && brightness_ < kDarkest) brightness_ = 0.0;
   }
 
   double wanted_brightness() const {
@@ -279,25 +382,32 @@ class Viewer::Show {
     renderer_->set_drawn(part);
     director_->draw(*moment_);
     dimmer_->draw(static_cast<float>(brightness_));
-    if (!has_overlay_ && !has_panel_) return;
+    if (has_profiler_) passes_ = pass_clock_->end();
+    if (!has_something_over()) return;
     const light::Sky sky = light::sky_of(director_->look(), utc_s_);
     const auto age = age_.figures(now_s());
-    overlay_->draw(size, {.wind = moment_->wind,
-                          .playback = timeline_.playback(),
-                          .stream = connection_.status(),
-                          .sensors = sensors_ ? &*sensors_ : nullptr,
-                          .pictures_per_s = 1.0 / picture_s_,
-                          .nodes = renderer_->stage().node_count(),
-                          .scenes = renderer_->scenes(),
-                          .opacities = moment_->opacities,
-                          .sky = &sky,
-                          .quality = quality_,
-                          .drawn = part,
-                          .heading_deg = director_->heading_deg(),
-                          .age = age ? age_text(*age) : std::string(),
-                          .camera = director_->camera_text(),
-                          .has_texts = has_overlay_,
-                          .panel = has_panel_ ? &panel_ : nullptr});
+    const double scale = overlay_scale(window_ ? window_->content_scale() : 1.0, size, options_.scale);
+    overlay_->draw(size, scale,
+                   {.wind = moment_->wind,
+                    .playback = timeline_.playback(),
+                    .stream = connection_.status(),
+                    .sensors = sensors_ ? &*sensors_ : nullptr,
+                    .pictures_per_s = 1.0 / picture_s_,
+                    .nodes = renderer_->stage().node_count(),
+                    .scenes = renderer_->scenes(),
+                    .opacities = moment_->opacities,
+                    .sky = &sky,
+                    .quality = quality_,
+                    .drawn = part,
+                    .heading_deg = director_->heading_deg(),
+                    .camera = director_->camera_text(),
+                    .has_help = has_help_,
+                    .is_paused = paused_.is_paused(),
+                    .wind_trace = has_wind_ ? &wind_trace_ : nullptr,
+                    .passes = has_profiler_ ? &passes_ : nullptr,
+                    .picture_times_ms = picture_times_ms_,
+                    .has_texts = has_overlay_,
+                    .panel = has_panel_ ? &panel_ : nullptr});
   }
 
   /// Is less drawn where that keeps the pace? Where the processor draws into a window, in quality low.
@@ -338,6 +448,7 @@ class Viewer::Show {
   std::optional<gl::Dimmer> dimmer_;
   std::optional<wall::TestCard> test_card_;
   std::optional<Overlay> overlay_;
+  std::optional<gl::PassClock> pass_clock_;
 
   Watchdog watchdog_;
   bool is_software_ = false;
@@ -353,9 +464,18 @@ class Viewer::Show {
   double last_s_;
   double picture_passed_s_ = 0.0;  // since the picture before
   double picture_s_ = 1.0 / 60.0;  // between pictures, smoothed
-  double brightness_;              // of the picture, 0 to 1
+  double black_until_s_ = 0.0;     // what is shown is black, and need not be shown again before
+  PixelSize black_size_;
+  double brightness_;  // of the picture, 0 to 1
   bool has_overlay_;
   bool has_panel_;
+  bool has_help_ = false;
+  bool has_profiler_ = false;
+  bool has_wind_ = false;
+  PausedMoment paused_;
+  WindTrace wind_trace_;
+  std::vector<gl::PassClock::Pass> passes_;
+  std::array<float, 240> picture_times_ms_{};
   Panel panel_;
 };
 

@@ -79,35 +79,7 @@ struct Window::State {
 
   void press(int key) {
     if (are_keys_taken) return;
-    switch (key) {
-      case GLFW_KEY_ESCAPE:
-      case GLFW_KEY_Q:
-        glfwSetWindowShouldClose(window, GLFW_TRUE);
-        break;
-      case GLFW_KEY_C:
-        input.next_camera = true;
-        break;
-      case GLFW_KEY_F11:
-        toggle_fullscreen();
-        break;
-      case GLFW_KEY_H:
-        input.toggle_overlay = !input.toggle_overlay;
-        break;
-      case GLFW_KEY_N:
-        input.next_scene = true;
-        break;
-      case GLFW_KEY_P:
-        input.toggle_panel = !input.toggle_panel;
-        break;
-      case GLFW_KEY_R:
-        input.reset_camera = true;
-        break;
-      case GLFW_KEY_T:
-        input.toggle_turning = !input.toggle_turning;
-        break;
-      default:
-        break;
-    }
+    if (const auto found = key_of(key)) input.keys.push_back(*found);
   }
 
   void move(double x, double y) {
@@ -173,6 +145,13 @@ GLFWwindow* Window::handle() const {
 }
 bool Window::is_closing() const {
   return glfwWindowShouldClose(state_->window) == GLFW_TRUE;
+}
+
+void Window::close() {
+  glfwSetWindowShouldClose(state_->window, GLFW_TRUE);
+}
+void Window::toggle_fullscreen() {
+  state_->toggle_fullscreen();
 }
 
 PixelSize Window::framebuffer_size() const {

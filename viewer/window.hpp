@@ -3,6 +3,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "viewer/keys.hpp"
 
 struct GLFWwindow;
 
@@ -23,12 +26,7 @@ struct WindowInput {
   double pan_right = 0.0;
   double pan_down = 0.0;
   double zoom_notches = 0.0;
-  bool reset_camera = false;    ///< R
-  bool toggle_overlay = false;  ///< H
-  bool toggle_turning = false;  ///< T
-  bool next_scene = false;      ///< N
-  bool next_camera = false;     ///< C
-  bool toggle_panel = false;    ///< P
+  std::vector<Key> keys;  ///< that were pressed, in their order
 
   bool moves_camera() const {
     return orbit_right != 0.0 || orbit_down != 0.0 || pan_right != 0.0 || pan_down != 0.0 || zoom_notches != 0.0;
@@ -42,8 +40,8 @@ struct PixelSize {
   friend bool operator==(const PixelSize&, const PixelSize&) = default;
 };
 
-/// A window with a current OpenGL 3.3 core context; F11 toggles full screen, Esc and Q close it. One at a time, on the
-/// main thread. Throws ViewerExit (EX_UNAVAILABLE) where there is no display or no OpenGL 3.3.
+/// A window with a current OpenGL 3.3 core context. One at a time, on the main thread. Throws ViewerExit
+/// (EX_UNAVAILABLE) where there is no display or no OpenGL 3.3.
 class Window {
  public:
   explicit Window(const WindowOptions& options);
@@ -53,6 +51,9 @@ class Window {
 
   GLFWwindow* handle() const;
   bool is_closing() const;
+  void close();
+  /// To full screen and back; a window of a wall stays where it is.
+  void toggle_fullscreen();
 
   /// The size of the framebuffer, in pixels; empty while the window is minimised.
   PixelSize framebuffer_size() const;

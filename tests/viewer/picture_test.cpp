@@ -205,6 +205,18 @@ TEST_F(PictureTest, DrawsTheOverlayWhenAsked) {
   EXPECT_GT(without->difference(*with), 1.0);
 }
 
+TEST_F(PictureTest, ShowsHelpProfilerAndWindAndTheirScale) {
+  const auto without = take("without.png", 0.3, {"--frames", "2", "--samples", "1"});
+  for (const std::string panel : {"help", "profiler", "wind"}) {
+    const auto with = take(panel + ".png", 0.3, {"--frames", "2", "--samples", "1", "--show", panel});
+    ASSERT_TRUE(without->is_there() && with->is_there());
+    EXPECT_GT(without->difference(*with), 1.0) << panel;
+  }
+  const auto small = take("small.png", 0.3, {"--frames", "2", "--samples", "1", "--show", "help", "--scale", "0.5"});
+  ASSERT_TRUE(small->is_there());
+  EXPECT_GT(small->difference(Picture(folder_ / "help.png")), 1.0);
+}
+
 TEST_F(PictureTest, IsSeenByTheDaemonsCameraOfTheHourOrTheOneThatIsAskedFor) {
   wire::Sensors status;
   status.cameras = {look::Camera{.name = "day", .pitch_deg = 4.0, .distance_m = 6.0, .fov_deg = 60.0},
