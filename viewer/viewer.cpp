@@ -400,6 +400,7 @@ class Viewer::Show {
                     .quality = quality_,
                     .drawn = part,
                     .heading_deg = director_->heading_deg(),
+                    .age = age ? age_text(*age) : std::string(),
                     .camera = director_->camera_text(),
                     .has_help = has_help_,
                     .is_paused = paused_.is_paused(),
