@@ -135,7 +135,7 @@ class Viewer::Show {
       note_age(display_interval_s());
       if (gl::is_context_lost()) throw ViewerExit(EX_TEMPFAIL, "the graphics card was reset; start the viewer again");
       // Where the processor draws the picture is done now.
-      if (is_drawn_for_pace()) pace_.advance(picture_passed_s_, now_s() - last_s_);
+      if (!is_black && is_drawn_for_pace()) pace_.advance(picture_passed_s_, now_s() - last_s_);
       keep_pace();
     }
   }

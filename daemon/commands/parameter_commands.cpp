@@ -1,6 +1,7 @@
 #include "daemon/commands/parameter_commands.hpp"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -143,19 +144,19 @@ nlohmann::ordered_json json_of(const wire::ParameterState& state, const std::opt
 }
 
 nlohmann::ordered_json json_of(const wire::ParameterState& state) {
-  constexpr const char* kKinds[] = {"number", "whole number", "true or false", "text"};
-  constexpr const char* kChanges[] = {"at once", "cross-fade", "takes a restart"};
+  constexpr std::array kKinds = {"number", "whole number", "true or false", "text"};
+  constexpr std::array kChanges = {"at once", "cross-fade", "takes a restart", "takes a reload"};
   nlohmann::ordered_json json{{"name", state.name},
                               {"value", json_of(state, state.value)},
                               {"configured", json_of(state, state.configured)},
                               {"default", json_of(state, state.default_value)},
                               {"unit", state.unit},
-                              {"kind", kKinds[static_cast<std::size_t>(state.kind)]},
+                              {"kind", kKinds.at(static_cast<std::size_t>(state.kind))},
                               {"min", nullptr},
                               {"max", nullptr},
                               {"choices", state.choices},
                               {"left_out", state.left_out},
-                              {"change", kChanges[static_cast<std::size_t>(state.change)]},
+                              {"change", kChanges.at(static_cast<std::size_t>(state.change))},
                               {"help", state.help}};
   if (state.min) json["min"] = *state.min;
   if (state.max) json["max"] = *state.max;
