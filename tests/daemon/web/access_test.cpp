@@ -112,8 +112,8 @@ TEST(Permission, OthersShowTheTokenOrASession) {
     request.cookie = cookies;
     EXPECT_TRUE(is_trusted(request, &access, kNow_s)) << cookies;
   }
-  for (const std::string& cookies : {"session=" + session, "xyuragi_session=" + session, std::string("yuragi_session"),
-                                     std::string(";;=;")}) {
+  for (const std::string& cookies :
+       {"session=" + session, "xyuragi_session=" + session, std::string("yuragi_session"), std::string(";;=;")}) {
     request.cookie = cookies;
     EXPECT_FALSE(is_trusted(request, &access, kNow_s)) << cookies;
   }
