@@ -1,27 +1,63 @@
 #include "viewer/meshes/ground_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+
+#include "engine/math/philox.hpp"
 
 namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kTexel_m = GrowthMap::kSide_m / static_cast<float>(GrowthMap::kTexels);
-constexpr float kLawn = 0.25F;         // the growth of a lawn
-constexpr float kMargin_m = 0.8F;      // of lawn around a thing
-constexpr float kSlope_m = 2.8F;       // from there on to tall grass
-constexpr float kShore_m = 0.5F;       // around water, without blades
-constexpr float kFloorEdge_m = 0.05F;  // beyond which blades stand again
-constexpr float kTrampled_m = 0.45F;   // around a fire
+constexpr float kLawn = 0.25F;           // the growth of a lawn
+constexpr float kMargin_m = 0.8F;        // of lawn around a thing
+constexpr float kSlope_m = 4.0F;         // from a lawn's border on to tall grass
+constexpr float kShore_m = 0.5F;         // around water, without blades
+constexpr float kFloorEdge_m = 0.05F;    // beyond which blades stand again
+constexpr float kTrampled_m = 0.45F;     // around a fire
+constexpr float kTrampledWander = 0.4F;  // of how far the lawn's border wanders
 /// A texel with so many blades, of those that its area has on average, is taken as full.
 constexpr float kFullTexel = 0.5F;
 
 float smooth(float t) {
   const float x = std::clamp(t, 0.0F, 1.0F);
   return x * x * (3.0F - 2.0F * x);
+}
+
+/// How far a lawn's border wanders out beyond its margin: so much at most, changing over such a length.
+struct Wander {
+  float most_m;
+  float length_m;
+};
+constexpr std::array<Wander, 3> kWander{{{1.2F, 7.0F}, {0.7F, 2.9F}, {0.3F, 1.3F}}};
+constexpr float kMostWander_m = kWander[0].most_m + kWander[1].most_m + kWander[2].most_m;
+
+/// Smooth noise from 0 to 1, always the same for the same seed: chances on a grid of spacing 1, with what is between
+/// them.
+float noise_at(const glm::vec2& at, std::uint64_t seed) {
+  const math::RandomStream random(seed, math::stream_id("lawn borders"));
+  const glm::vec2 low = glm::floor(at);
+  const auto chance_at = [&](float column, float row) {
+    return static_cast<float>(random.uniform(static_cast<std::uint64_t>(1000.0F * (row + 500.0F) + column + 500.0F)));
+  };
+  const float across = smooth(at.x - low.x);
+  const float north = glm::mix(chance_at(low.x, low.y), chance_at(low.x + 1.0F, low.y), across);
+  const float south = glm::mix(chance_at(low.x, low.y + 1.0F), chance_at(low.x + 1.0F, low.y + 1.0F), across);
+  return glm::mix(north, south, smooth(at.y - low.y));
+}
+
+/// How far a lawn's border is beyond its margin at a place: from 0 to kMostWander_m.
+float wander_m_at(const glm::vec2& at_m) {
+  float sum_m = 0.0F;
+  for (std::size_t i = 0; i < kWander.size(); ++i) {
+    sum_m += kWander[i].most_m * noise_at(at_m / kWander[i].length_m, i);
+  }
+  return sum_m;
 }
 
 std::size_t texel_of(float at_m) {
@@ -82,6 +118,12 @@ GrowthMap::GrowthMap()
       growth_(kTexels * kTexels),
       blades_(kTexels * kTexels),
       water_(kTexels * kTexels) {
+  wander_m_.reserve(kTexels * kTexels);
+  for (std::size_t row = 0; row < kTexels; ++row) {
+    for (std::size_t column = 0; column < kTexels; ++column) {
+      wander_m_.push_back(wander_m_at({middle_m(column), middle_m(row)}));
+    }
+  }
   make({});
 }
 
@@ -102,7 +144,7 @@ void GrowthMap::make(std::span<const Standing> things, float most) {
     // On the ground that water takes no blade stands.
     const bool is_water = thing.kind == Standing::Kind::kWater;
     const Bounds box = thing.floor ? united(thing.bounds, bounds_of(*thing.floor)) : thing.bounds;
-    const float reach_m = kMargin_m + kSlope_m;
+    const float reach_m = kMargin_m + kMostWander_m + kSlope_m;
     for (std::size_t row = texel_of(box.low_m.z - reach_m); row <= texel_of(box.high_m.z + reach_m); ++row) {
       for (std::size_t column = texel_of(box.low_m.x - reach_m); column <= texel_of(box.high_m.x + reach_m); ++column) {
         const glm::vec2 at(middle_m(column), middle_m(row));
@@ -117,13 +159,18 @@ void GrowthMap::make(std::span<const Standing> things, float most) {
           out_m = thing.shore->out_m(at) - 0.6F * thing.shore->bank_m(at);
           is_taken = std::clamp(0.4F - out_m / kTexel_m, 0.0F, 1.0F);
         }
-        float growth = kLawn + (1.0F - kLawn) * smooth((out_m - kMargin_m) / kSlope_m);
-        if (thing.kind == Standing::Kind::kFire) growth *= smooth((out_m - kTrampled_m) / kTrampled_m);
+        const float border_m = wander_m_[row * kTexels + column];
+        float growth = kLawn + (1.0F - kLawn) * smooth((out_m - kMargin_m - border_m) / kSlope_m);
+        const glm::vec2 half_m =
+            glm::max(0.5F * glm::vec2(box.high_m.x - box.low_m.x, box.high_m.z - box.low_m.z), 0.1F);
+        const glm::vec2 off_m = at - glm::vec2(box.low_m.x, box.low_m.z) - half_m;
+        if (thing.kind == Standing::Kind::kFire) {
+          // A fire is round, too: the box has corners.
+          const float round_m = glm::length(off_m) - std::min(half_m.x, half_m.y);
+          growth *= smooth((round_m - kTrampledWander * border_m) / kTrampled_m);
+        }
         if (thing.kind == Standing::Kind::kFur) {
           // An animal lies in the tall grass: its body is round.
-          const glm::vec2 half_m =
-              glm::max(0.5F * glm::vec2(box.high_m.x - box.low_m.x, box.high_m.z - box.low_m.z), 0.1F);
-          const glm::vec2 off_m = at - glm::vec2(box.low_m.x, box.low_m.z) - half_m;
           growth = kLawn + (1.0F - kLawn) *
                                smooth((glm::length(off_m / half_m) - 0.7F) * std::min(half_m.x, half_m.y) / kTexel_m);
         }

@@ -59,9 +59,9 @@ struct Standing {
 };
 
 /// How tall grass grows, and where the ground is taken, by streamed blades: a square map around the middle of the
-/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things, trampled around
-/// a fire, and grows up to fur. Where there is water or a floor no blade of the viewer's own stands, either. Beyond the
-/// map it is as on its edge.
+/// scenes, row after row from the north-west, three bytes a texel. Grass is short around other things, up to a border
+/// that wanders and is the same for the same things, trampled around a fire, and grows up to fur. Where there is water
+/// or a floor no blade of the viewer's own stands, either. Beyond the map it is as on its edge.
 class GrowthMap {
  public:
   static constexpr std::size_t kTexels = 256;  ///< a side
@@ -82,6 +82,7 @@ class GrowthMap {
  private:
   std::vector<std::uint8_t> texels_;
   std::vector<float> growth_, blades_, water_;
+  std::vector<float> wander_m_;  ///< how far a lawn's border is out beyond its margin, at each texel
 };
 
 }  // namespace yuragi::viewer::meshes

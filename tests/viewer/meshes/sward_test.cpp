@@ -238,6 +238,37 @@ TEST(GrowthMapTest, IsShortAroundThingsTallElsewhereAndTakenByWater) {
   EXPECT_EQ(map.water_at(2.5F, -2.0F), 0.0F);
 }
 
+TEST(GrowthMapTest, HasLawnsWhoseBordersWanderButNeverIntoThings) {
+  const float half_m = 1.0F;
+  const std::vector<Standing> things{
+      {.kind = Standing::Kind::kOther, .bounds = {{-1.0F, 0.0F, -1.0F}, {1.0F, 2.0F, 1.0F}}}};
+  GrowthMap map;
+  map.make(things);
+  // Within 0.8 m of the thing, less a texel, is lawn everywhere.
+  for (float x_m = -1.4F; x_m <= 1.4F; x_m += 0.1F) {
+    for (float z_m = -1.4F; z_m <= 1.4F; z_m += 0.1F) EXPECT_LE(map.growth_at(x_m, z_m), 0.25F) << x_m << " " << z_m;
+  }
+  // How far it is from the thing to grass that is half as tall as any, on 72 bearings.
+  float least_m = 100.0F;
+  float most_m = 0.0F;
+  for (int bearing = 0; bearing < 72; ++bearing) {
+    const float angle_rad = 0.0872665F * static_cast<float>(bearing);
+    const glm::vec2 toward(std::cos(angle_rad), std::sin(angle_rad));
+    float away_m = 0.0F;
+    while (away_m < 20.0F && map.growth_at(away_m * toward.x, away_m * toward.y) < 0.6F) away_m += 0.1F;
+    const glm::vec2 out_m = glm::max(glm::abs(away_m * toward) - half_m, glm::vec2(0.0F));
+    least_m = std::min(least_m, glm::length(out_m));
+    most_m = std::max(most_m, glm::length(out_m));
+  }
+  EXPECT_GT(most_m - least_m, 0.9F) << least_m << " to " << most_m;  // texels alone make 0.6 m
+  EXPECT_GT(least_m, 1.5F);
+  EXPECT_LT(most_m, 6.0F);
+
+  GrowthMap again;
+  again.make(things);
+  EXPECT_TRUE(std::ranges::equal(map.texels(), again.texels()));
+}
+
 TEST(GrowthMapTest, IsTallUpToFur) {
   GrowthMap map;
   const Bounds box{{-1.5F, 0.0F, -1.0F}, {1.5F, 0.7F, 1.0F}};
