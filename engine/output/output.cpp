@@ -95,7 +95,7 @@ const std::array<Parameter, 9> kWindowParameters{{
      .default_value = 2.2,
      .min = 1.0,
      .max = 4.0,
-     .help = "The projector's gamma, for the blend: more where the strip is too bright"},
+     .help = "The projector's gamma, for the blend: less where the strip is too bright, more where it is too dark"},
 }};
 
 /// Numbers with spaces or commas between them. Nothing where they are not `count` finite ones.

@@ -1,23 +1,15 @@
 // The real program on virtual monitors that come and go.
 
-#include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <fstream>
-#include <functional>
 #include <memory>
-#include <sstream>
-#include <thread>
 
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <spawn.h>
 #include <stb_image.h>
-#include <sys/wait.h>
 
-#include "tests/support/places.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/viewer/running_viewer.hpp"
 #include "tests/viewer/stream_server.hpp"
 #include "tests/viewer/test_meadow.hpp"
 #include "tests/viewer/virtual_screen.hpp"
@@ -40,59 +32,9 @@ monitor = "DUMMY1"
 crop = "0.5 0 0.5 1"
 )";
 
-/// A viewer that runs until the test ends it.
-class RunningViewer {
- public:
-  RunningViewer(std::vector<std::string> options, const std::vector<std::string>& environment,
-                const std::filesystem::path& says)
-      : says_(says) {
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, says.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    options.insert(options.begin(), test::built_path("bin/yuragi-viewer"));
-    child_ = start_program(std::move(options), environment, &actions);
-    posix_spawn_file_actions_destroy(&actions);
-  }
-  ~RunningViewer() {
-    if (child_ != 0) end();
-  }
-  RunningViewer(const RunningViewer&) = delete;
-  RunningViewer& operator=(const RunningViewer&) = delete;
-
-  /// The exit code of a program that ends by itself.
-  int wait() {
-    int status = -1;
-    waitpid(std::exchange(child_, 0), &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  int end() {
-    ::kill(child_, SIGTERM);
-    return wait();
-  }
-  std::string said() const {
-    std::ostringstream text;
-    text << std::ifstream(says_).rdbuf();
-    return text.str();
-  }
-
- private:
-  std::filesystem::path says_;
-  pid_t child_ = 0;
-};
-
 /// Where a pixel is in the rows of a picture.
 std::size_t place(int width_px, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px) + static_cast<std::size_t>(x);
-}
-
-/// Waits for a condition; a program that hangs makes it false.
-bool comes_true(const std::function<bool()>& condition) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-  while (std::chrono::steady_clock::now() < limit) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  return false;
 }
 
 class WallTest : public testing::Test {
