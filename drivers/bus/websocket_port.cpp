@@ -81,6 +81,10 @@ class WebSocketPort final : public BytePort {
     close();
     if (interruption_.is_set()) return Failure{"interrupted"};
     const auto socket = connect_tcp(lookup_, address_.connect_timeout, interruption_);
+    if (interruption_.is_set()) {
+      if (socket) ::close(*socket);
+      return Failure{"interrupted"};
+    }
     if (!socket) {
       return Failure{"cannot connect to " + describe(address_) + " (" + socket.error().message +
                      "): check the host and port, the network, and that the server is switched on"};
