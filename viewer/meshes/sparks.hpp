@@ -26,7 +26,8 @@ class Sparks {
   static constexpr std::size_t kMost = 40;
   static constexpr double kBlur_s = 0.012;
 
-  /// The wind goes toward east and south. After a jump in time it counts as if this wind had always been.
+  /// The wind goes toward east and south. After a jump in time, or with another wind at the
+  /// same time, it counts as if this wind had always been.
   void move_to(double time_s, const glm::vec2& wind_m_s, const FlameVolume& flame);
   std::span<const Spark> all() const { return sparks_; }
 
@@ -40,6 +41,7 @@ class Sparks {
   std::array<Spark, kMost> sparks_;
   glm::dvec2 way_m_{0.0};
   double time_s_ = 0.0;
+  glm::vec2 wind_m_s_{0.0F};
   bool has_begun_ = false;
 };
 

@@ -27,7 +27,9 @@ void main() {
     float layer = clamp(v, 0.0, 1.0) * (layers.y - 1.0) + 0.5;
     vec4 row = textureLod(layer_rows, vec2(0.25, layer / layers.y), 0.0);    // to the top; half its side
     vec4 slope = textureLod(layer_rows, vec2(0.75, layer / layers.y), 0.0);  // east, south; how they grow
-    float up = (ray.y + dot(slope.xy, ray.xz)) / max(row.y + dot(slope.xy, row.xz) - dot(slope.zw, at_m), 0.2 * size_m.y);
+    // How high the body is above one point of the ground, were all of it as this layer is.
+    float height_m = max(row.y + dot(slope.xy, row.xz) - dot(slope.zw, at_m), 0.2 * size_m.y);
+    float up = (ray.y + dot(slope.xy, ray.xz)) / height_m;
     vec2 aside = ray.xz - row.xz * up;
     // As long as a part of the body is thick, across it or along it.
     float step_m = 2.0 / (float(steps) * max(length(aside) / row.w, 1.3 * abs(up)));
@@ -52,11 +54,15 @@ void main() {
       float torn = 3.4 * (one + two - 1.0);
       float high = min(v * 2.2, 1.0);
       float laid = min(length(slope.xy), 1.0);
-      float level = heat - 0.26 - 0.66 * smoothstep(0.20, 1.0, v) - 0.9 * smoothstep(0.80, 1.0, v) + torn * (0.28 + (0.80 - 0.25 * laid) * high);
+      // A flame that lies in the wind burns on far to the lee, where its end is torn off.
+      float level = heat - 0.26 + 0.16 * laid - (0.66 - 0.36 * laid) * smoothstep(0.20, 1.0, v) -
+                    0.9 * smoothstep(0.80, 1.0, v) + torn * (0.28 + (0.80 - 0.25 * laid) * high);
       level -= 2.5 * smoothstep(floor_m.y, floor_m.x, y_m);
       // It burns in sheets around what is hottest.
       float thick = smoothstep(0.0, 0.30, level) * (1.0 - 0.55 * smoothstep(0.40, 1.0, level));
       vec4 hot = textureLod(ramp, vec2((clamp(0.29 + 0.42 * level - 0.10 * v, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
+      // The same gas in less room glows more.
+      thick *= clamp(size_m.y / height_m, 1.0, 3.0);
       sum += hot.rgb * hot.rgb * (thick * step_m);
       // The blue of the root, where air still reaches the gas.
       sum += vec3(0.004, 0.012, 0.06) * (step_m * thick * smoothstep(0.25, 0.08, v) * smoothstep(0.5, 0.0, level));
