@@ -32,6 +32,7 @@ class TcpBytePort final : public DescriptorPort {
       if (!error) return {};
       close();
     }
+    if (interruption().is_set()) return Failure{"interrupted"};
     return Failure{"cannot connect to " + describe(address()) + " (" + error.message() +
                    "): check the host and port, the network, and that the device or server is switched on"};
   }

@@ -282,6 +282,29 @@ TEST(WebSocketPort, CanBeInterrupted) {
   EXPECT_FALSE(port->open().has_value());
 }
 
+// Whose queue of connections is full does not answer another one.
+TEST(WebSocketPort, CanBeInterruptedWhileItConnects) {
+  using boost::asio::ip::tcp;
+  boost::asio::io_context context;
+  tcp::acceptor busy(context);
+  busy.open(tcp::v4());
+  busy.bind({boost::asio::ip::address_v4::loopback(), 0});
+  busy.listen(0);
+  tcp::socket first(context);
+  first.connect(busy.local_endpoint());
+  const auto port = make_byte_port({.kind = BytePortKind::kWebSocket,
+                                    .path = "/",
+                                    .host = "127.0.0.1",
+                                    .port = busy.local_endpoint().port(),
+                                    .connect_timeout = kForever});
+  auto opened = std::async(std::launch::async, [&port] { return port->open(); });
+  EXPECT_EQ(opened.wait_for(50ms), std::future_status::timeout);
+  port->interrupt();
+  const auto result = opened.get();
+  ASSERT_FALSE(result.has_value());
+  EXPECT_EQ(result.error().message, "interrupted");
+}
+
 TEST(WebSocketPort, CanBeInterruptedInItsHandshake) {
   ScriptedServer silent(answering(""));
   const auto port = make_byte_port({.kind = BytePortKind::kWebSocket,
