@@ -14,7 +14,7 @@ build_packages=(
   libmodbus-dev libhidapi-dev libusb-1.0-0-dev portaudio19-dev libmosquitto-dev liblo-dev # the sensors
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
   libflatbuffers-dev flatbuffers-compiler flatbuffers-compiler-dev
-  prometheus-cpp-dev libssl-dev # metrics; proof of the token
+  prometheus-cpp-dev libssl-dev libcurl4-openssl-dev # metrics; proof of the token; webhooks of alerts
   libtinygltf-dev            # takes for 3D programs
   libpng-dev libjpeg-dev     # pictures on cloth
   libglfw3-dev libepoxy-dev libglm-dev libimgui-dev libstb-dev

@@ -11,6 +11,7 @@ install(FILES ${units_folder}/yuragi.toml DESTINATION /etc/yuragi)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${package_folder}/copyright DESTINATION share/doc/yuragi)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/examples DESTINATION share/doc/yuragi PATTERN "*.log" EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/config/garden.toml DESTINATION share/doc/yuragi/examples)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/prometheus DESTINATION share/doc/yuragi)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/rehearsals DESTINATION share/doc/yuragi)
 
 # Made of what the programs say of themselves, when they are there.

@@ -68,7 +68,12 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
     cameras.push_back({{"name", camera.name}, {"from", state::json_or_null(from_text(camera))}});
     if (full) cameras.back()["values"] = json_of(camera.values);
   }
-  nlohmann::ordered_json json = {{"sensors", sensors}, {"scenes", scenes}, {"cameras", cameras}};
+  nlohmann::ordered_json alerts = nlohmann::ordered_json::array();
+  for (const settings::AlertConfig& alert : config.alerts) {
+    alerts.push_back({{"name", alert.name}, {"when", alert.values.text("when")}});
+    if (full) alerts.back()["values"] = json_of(alert.values);
+  }
+  nlohmann::ordered_json json = {{"sensors", sensors}, {"scenes", scenes}, {"cameras", cameras}, {"alerts", alerts}};
   if (!full) return json;
   json["seed"] = config.seed;
   json["stream"] = json_of(config.by_name.stream);
@@ -96,6 +101,8 @@ void print_summary(const settings::Config& config, const std::filesystem::path& 
     fmt::print("  camera {}{}\n", camera.name,
                from ? fmt::format(", from {} ({})", *from, config.clock.zone_name()) : std::string());
   }
+  for (const settings::AlertConfig& alert : config.alerts)
+    fmt::print("  alert {} ({})\n", alert.name, alert.values.text("when"));
 }
 
 struct CheckOptions {
@@ -125,9 +132,9 @@ void add_check_config(CLI::App& app) {
       "Exit code 0: no error; 78: errors, each reported as file:line:column: key: what is wrong.\nNo device is opened. "
       "--full prints the whole configuration with every default; \"(secret)\" stands in place of a password.\n"
       "Warns on standard error where others can read a password.\n"
-      "--json: sensors (name, driver, place, gust_length_m, height_m), scenes (name, kind) and cameras (name, from); "
-      "with\n"
-      "--full also the values of every table by the keys of the configuration, without secrets.");
+      "--json: sensors (name, driver, place, gust_length_m, height_m), scenes (name, kind), cameras (name, from) and "
+      "alerts\n(name, when); with --full also the values of every table by the keys of the configuration, without "
+      "secrets.");
   auto options = std::make_shared<CheckOptions>();
   command->add_option("file", options->file, "the configuration")->required()->type_name("FILE.toml");
   command->add_flag("--full", options->full, "print every value, including defaults, as TOML");
@@ -167,6 +174,10 @@ std::vector<DescribedTable> all_tables() {
                  "a place to see the scenes from, with a name, and how it moves; viewers follow it at once, and take "
                  "the next when its time comes",
                  look::camera_parameters()});
+  all.push_back({"[[alert]]",
+                 "what somebody is told of, by a command or a webhook, once when it begins and once when it ends; with "
+                 "a name",
+                 settings::alert_parameters()});
   all.push_back(
       {"[[output]]",
        "how `yuragi-viewer --config FILE` shows its picture on a wall; with a name where there are several, for "

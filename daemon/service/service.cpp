@@ -14,6 +14,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "daemon/alerts/alerts.hpp"
 #include "daemon/animation/animation.hpp"
 #include "daemon/animation/animation_loop.hpp"
 #include "daemon/animation/scene_director.hpp"
@@ -105,6 +106,8 @@ class Service::Io {
       frame_ready_.assign(dup(loop_->frame_ready_fd()));
     }
     if (!config.http.listen.empty()) web_ = std::make_unique<web::WebServer>(web_settings(config));
+    // What is replayed has happened already.
+    if (!options.recorded_from) alerts_.emplace(config.alerts, asio::ip::host_name());
     if (options.record) {
       recorder_ = make_recorder(config, *options.record);
       hub_.listen_to_quantities([this](std::size_t sensor, const wind::StationQuantities& quantities) {
@@ -283,6 +286,7 @@ class Service::Io {
     players_.allow(control_);
     parameters_.allow(control_);
     show_look(next.look);
+    if (alerts_) alerts_->change(next.alerts);
     stream_.set_admission(admission_of(next.stream));
     if (options_.set_log_level) options_.set_log_level(next.log.level);
     if (recorder_) recorder_->begin_session(recording_info(next, clock_.now()), next.recording);
@@ -371,11 +375,17 @@ class Service::Io {
     const wire::Sensors status = publish_status();
     manager_.say_status(status);
     say_ready();
+    if (alerts_) alerts_->judge(status, ticks_made(), clock_.now());
 
     status_timer_.expires_after(kStatusInterval);
     status_timer_.async_wait([this](const boost::system::error_code& error) {
       if (!error) send_status();
     });
+  }
+
+  std::optional<std::uint64_t> ticks_made() const {
+    if (!loop_) return std::nullopt;
+    return loop_->counters().ticks.load(std::memory_order_relaxed);
   }
 
   /// Returns what clients of this machine are sent.
@@ -466,7 +476,8 @@ class Service::Io {
   std::unique_ptr<animation::SceneExchange> scenes_;
   std::unique_ptr<animation::SceneChange> next_scenes_;  ///< of a reload, not yet the animation's
   std::unique_ptr<recording::Recorder> recorder_;
-  std::unique_ptr<web::WebServer> web_;  ///< nothing: not asked for
+  std::unique_ptr<web::WebServer> web_;   ///< nothing: not asked for
+  std::optional<alerts::Alerts> alerts_;  ///< nothing: nobody is told
   ServiceManager manager_{options_.with_scenes};
   bool is_up_ = false;  ///< it has begun, with its first frame where it has scenes
 

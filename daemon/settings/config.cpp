@@ -28,6 +28,7 @@ constexpr std::string_view kCalibrationKey = "calibration";
 constexpr std::string_view kBlendKey = "blend";
 constexpr std::string_view kJudgeKey = "judge";
 constexpr std::string_view kCameraList = "camera";
+constexpr std::string_view kAlertList = "alert";
 constexpr std::string_view kGroundKind = "ground";
 
 /// The scenes of a file without any.
@@ -95,6 +96,7 @@ class ConfigReader {
     if (config.scenes.empty()) config.scenes = default_scenes();
     read_ground_image(root, config);
     read_cameras(root, config);
+    read_alerts(root, config);
     config.outputs = output::read_outputs(root, mistakes_);
 
     if (!mistakes_.empty()) throw ConfigError(mistakes_.text());
@@ -162,14 +164,15 @@ class ConfigReader {
 
   void check_top_level(const toml::table& root) {
     for (const auto& [key, node] : root) {
-      const bool is_array = key == "sensor" || key == "scene" || key == kCameraList || key == output::kOutputList;
+      const bool is_array =
+          key == "sensor" || key == "scene" || key == kCameraList || key == kAlertList || key == output::kOutputList;
       bool known = is_array || key == "seed";
       for (const ConfigTable& table : config_tables()) known = known || table.name == key.str();
       if (!known) {
         mistake(
             key.source(), std::string(key.str()),
             "is not known here; allowed: seed, [stream], [http], [recording], [animation], [wind], [shaping], [look], "
-            "[log], [[sensor]], [[scene]], [[camera]], [[output]]");
+            "[log], [[sensor]], [[scene]], [[camera]], [[alert]], [[output]]");
       } else if (is_array && !(node.is_array_of_tables() || (node.is_array() && node.as_array()->empty()))) {
         mistake(key.source(), std::string(key.str()),
                 "is one table; write [[" + std::string(key.str()) + "]] above it");
@@ -330,6 +333,42 @@ class ConfigReader {
       mistake_at("scene", "is \"" + scene + "\"; allowed: the name of a scene: " + names);
     }
     config.cameras.push_back(std::move(camera));
+  }
+
+  /// Every [[alert]]: its name, its values, and whether its sensor is there.
+  void read_alerts(const toml::table& root, Config& config) {
+    const toml::node* node = root.get(kAlertList);
+    const toml::array* entries = node != nullptr ? node->as_array() : nullptr;
+    if (entries == nullptr) return;
+    if (entries->size() > kMostAlerts) {
+      mistake(entries->get(kMostAlerts)->source(), std::string(kAlertList),
+              fmt::format("is one of {}; allowed: at most {}", entries->size(), kMostAlerts));
+      return;
+    }
+    for (const toml::node& element : *entries) {
+      // By pointer: a copy of a TOML table loses its lines and columns.
+      if (const toml::table* entry = element.as_table()) read_alert(*entry, config);
+    }
+  }
+
+  void read_alert(const toml::table& entry, Config& config) {
+    const std::string prefix = std::string(kAlertList) + ".";
+    const auto mistake_at = [&](std::string_view key, const std::string& what) {
+      const toml::node* at = entry.get(key);
+      mistake(at != nullptr ? at->source() : entry.source(), prefix + std::string(key), what);
+    };
+    const std::string name = read_name(entry, prefix, {});
+    if (!entry.contains(kNameKey)) mistake_at(kNameKey, "is missing; give each alert a name");
+    auto alert = alert_config_of(name, read_values(entry, prefix, alert_parameters(), {kNameKey}));
+    if (!alert) return mistake_at(alert.error().name, alert.error().message);
+    if (!name.empty() && std::ranges::find(config.alerts, name, &AlertConfig::name) != config.alerts.end()) {
+      mistake_at(kNameKey, "\"" + name + "\" is used twice; give each alert a name");
+    }
+    const std::string& sensor = alert->sensor;
+    if (!sensor.empty() && std::ranges::find(config.sensors, sensor, &SensorConfig::name) == config.sensors.end()) {
+      mistake_at("sensor", "is \"" + sensor + "\"; allowed: the name of a [[sensor]] of this file");
+    }
+    config.alerts.push_back(std::move(*alert));
   }
 
   template <class Description>
@@ -555,6 +594,14 @@ std::string to_toml(const Config& config) {
     cameras.push_back(std::move(entry));
   }
   if (!cameras.empty()) root.insert(kCameraList, std::move(cameras));
+
+  toml::array alerts;
+  for (const AlertConfig& alert : config.alerts) {
+    toml::table entry = to_table(alert.values);
+    entry.insert_or_assign(kNameKey, alert.name);
+    alerts.push_back(std::move(entry));
+  }
+  if (!alerts.empty()) root.insert(kAlertList, std::move(alerts));
 
   toml::array outputs;
   for (const output::OutputTable& output : config.outputs) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/settings/alert_config.hpp"
 #include "daemon/settings/animation_config.hpp"
 #include "daemon/settings/camera_config.hpp"
 #include "daemon/settings/config_tables.hpp"
@@ -48,6 +49,7 @@ struct Config {
   std::vector<SensorConfig> sensors;  ///< in the order of preference; at least one
   std::vector<SceneConfig> scenes;    ///< at least one
   std::vector<CameraConfig> cameras;
+  std::vector<AlertConfig> alerts;
   std::vector<output::OutputTable> outputs;  ///< the viewers', who read the file themselves; here they are checked
   LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC where no camera has a time
 

@@ -246,15 +246,17 @@ void compare_scenes(Comparison& comparison, const std::vector<SceneConfig>& runn
   compare_lists(comparison, "scene", change, running, wanted);
 }
 
-void compare_cameras(Comparison& comparison, const std::vector<CameraConfig>& running,
-                     const std::vector<CameraConfig>& wanted) {
-  for (const CameraConfig& camera : wanted) {
-    const auto before = std::ranges::find(running, camera.name, &CameraConfig::name);
+/// Of cameras and of alerts, all of which is applied.
+template <class Entry>
+void compare_applied(Comparison& comparison, const char* list, const std::vector<Entry>& running,
+                     const std::vector<Entry>& wanted) {
+  for (const Entry& entry : wanted) {
+    const auto before = std::ranges::find(running, entry.name, &Entry::name);
     if (before == running.end()) continue;
-    comparison.merged("camera " + camera.name + ": ", before->values, camera.values,
+    comparison.merged(std::string(list) + " " + entry.name + ": ", before->values, entry.values,
                       [](const std::string&) { return kApplied; });
   }
-  compare_lists(comparison, "camera", kApplied, running, wanted);
+  compare_lists(comparison, list, kApplied, running, wanted);
 }
 
 }  // namespace
@@ -310,8 +312,10 @@ ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_cha
   compare_scenes(comparison, running.scenes, wanted.scenes, can_change_scenes ? kApplied : kTakesRestart);
   plan.changes_scenes = can_change_scenes && plan.applied.size() + plan.takes_restart.size() > noted_before;
   if (plan.changes_scenes) next.scenes = wanted.scenes;
-  compare_cameras(comparison, running.cameras, wanted.cameras);
+  compare_applied(comparison, "camera", running.cameras, wanted.cameras);
   next.cameras = wanted.cameras;
+  compare_applied(comparison, "alert", running.alerts, wanted.alerts);
+  next.alerts = wanted.alerts;
   const auto same_output = [](const output::OutputTable& one, const output::OutputTable& other) {
     return one.output == other.output;
   };

@@ -34,6 +34,12 @@ std::vector<std::string> exposed_secrets(const Config& config, const std::filesy
       }
     }
   }
+  for (const AlertConfig& alert : config.alerts) {
+    if (!alert.webhook.is_empty() && is_read_by_everybody(file)) {
+      warnings.push_back(fmt::format("alert {}: webhook: everybody on this machine can read {}; chmod 640 {}",
+                                     alert.name, file.string(), file.string()));
+    }
+  }
   if (const std::string& token = config.http.token_file; !token.empty() && is_read_by_everybody(token)) {
     warnings.push_back(
         fmt::format("http.token_file: everybody on this machine can read {}; chmod 640 {}", token, token));

@@ -170,6 +170,56 @@ TEST(Config, TellsEachMistakeOfACameraWithItsPlace) {
   EXPECT_EQ(mistakes_of(many), "wall.toml:65:1: camera: is one of 33; allowed: at most 32");
 }
 
+TEST(Config, HasAlerts) {
+  const Config config = parse_config(
+      "[[sensor]]\nname = \"roof\"\ndriver = \"synthetic\"\n"
+      "[[alert]]\nname = \"dead\"\nsensor = \"roof\"\ncommand = \"page\"\n"
+      "[[alert]]\nname = \"storm\"\nwhen = \"wind_above\"\nspeed = 20\nend_after = 600\n"
+      "webhook = \"https://chat.example/hooks/s3cret\"\n"
+      "[[alert]]\nname = \"disk\"\nwhen = \"disk_below\"\nfree = 500\nafter = 5\ncommand = \"page\"\n",
+      "wall.toml");
+  ASSERT_EQ(config.alerts.size(), 3U);
+  EXPECT_EQ(config.alerts[0].sensor, "roof");
+  EXPECT_EQ(config.alerts[0].after_s, 60.0);
+  EXPECT_EQ(config.alerts[1].when, AlertCondition::kWindAbove);
+  EXPECT_EQ(config.alerts[1].speed_m_s, 20.0);
+  EXPECT_EQ(config.alerts[1].after_s, 0.0) << "a gust is enough";
+  EXPECT_EQ(config.alerts[1].end_after_s, 600.0);
+  EXPECT_EQ(config.alerts[1].webhook, Secret("https://chat.example/hooks/s3cret"));
+  EXPECT_EQ(config.alerts[2].free_bytes, 500e6);
+  EXPECT_EQ(config.alerts[2].after_s, 5.0);
+
+  // What is printed and recorded says the same, but for the secret.
+  const std::string printed = to_toml(config);
+  EXPECT_THAT(printed, Not(HasSubstr("s3cret")));
+  const Config again = parse_config(printed, "again.toml");
+  ASSERT_EQ(again.alerts.size(), 3U);
+  EXPECT_EQ(again.alerts[0].command, "page");
+  EXPECT_TRUE(again.alerts[1].webhook.is_empty());
+}
+
+TEST(Config, TellsEachMistakeOfAnAlertWithItsPlace) {
+  EXPECT_EQ(mistakes_of("[alert]\nname = \"a\"\n"), "wall.toml:1:2: alert: is one table; write [[alert]] above it");
+  EXPECT_EQ(mistakes_of("[[alert]]\ncommand = \"page\"\n"),
+            "wall.toml:1:1: alert.name: is missing; give each alert a name");
+  EXPECT_EQ(mistakes_of("[[alert]]\nname = \"a\"\ncommand = \"x\"\n[[alert]]\nname = \"a\"\ncommand = \"x\"\n"),
+            "wall.toml:5:8: alert.name: \"a\" is used twice; give each alert a name");
+  EXPECT_EQ(mistakes_of("[[alert]]\nname = \"a\"\n"),
+            "wall.toml:1:1: alert.command: tells nobody; give it a command or a webhook");
+  EXPECT_EQ(mistakes_of("[[alert]]\nname = \"a\"\ncommand = \"x\"\nsensor = \"rof\"\n"),
+            "wall.toml:4:10: alert.sensor: is \"rof\"; allowed: the name of a [[sensor]] of this file");
+  EXPECT_EQ(mistakes_of("[[alert]]\nname = \"a\"\ncommand = \"x\"\nwhen = \"no_frame\"\nsensor = \"roof\"\n"),
+            "wall.toml:5:10: alert.sensor: is for when = \"sensor_silent\" only");
+  EXPECT_EQ(mistakes_of("[[alert]]\nname = \"a\"\nwebhook = \"ftp://there/\"\n"),
+            "wall.toml:3:11: alert.webhook: takes an URL that begins with http:// or https://");
+  EXPECT_THAT(mistakes_of("[[alert]]\nname = \"a\"\ncommand = \"x\"\nwhen = \"late\"\n"),
+              StartsWith("wall.toml:4:8: alert.when: "));
+  std::string many;
+  for (std::size_t i = 0; i <= kMostAlerts; ++i)
+    many += "[[alert]]\ncommand = \"x\"\nname = \"" + std::to_string(i) + "\"\n";
+  EXPECT_EQ(mistakes_of(many), "wall.toml:193:1: alert: is one of 65; allowed: at most 64");
+}
+
 TEST(Config, AnEmptyFileIsTheDefaultInstallation) {
   const Config config = parse_config("", "empty.toml");
   ASSERT_EQ(config.sensors.size(), 1U);

@@ -117,6 +117,18 @@ TEST(ReloadPlan, AppliesCameras) {
   EXPECT_THAT(plan_reload(running, wall(), true).applied, ElementsAre("camera day: is gone", "camera night: is gone"));
 }
 
+TEST(ReloadPlan, AppliesAlerts) {
+  const Config running = wall("[[alert]]\nname = \"a\"\ncommand = \"page\"\n");
+  const Config wanted = wall(
+      "[[alert]]\nname = \"a\"\ncommand = \"mail\"\nwebhook = \"http://s3cret/\"\n"
+      "[[alert]]\nname = \"b\"\nwhen = \"no_frame\"\ncommand = \"page\"\n");
+  const ReloadPlan plan = plan_reload(running, wanted, true);
+  EXPECT_THAT(plan.applied, ElementsAre("alert a: command: \"page\" -> \"mail\"", "alert a: webhook: '' -> '(secret)'",
+                                        "alert b: is new"));
+  ASSERT_EQ(plan.next.alerts.size(), 2U);
+  EXPECT_EQ(plan.next.alerts[0].command, "mail");
+}
+
 TEST(ReloadPlan, TheCamerasFollowTheClocksOfAnotherZone) {
   const auto in_zone = [](const char* zone) {
     return parse_config(std::string("[shaping]\nzone = \"") + zone + "\"\n[[camera]]\nname = \"a\"\nfrom = \"05:00\"\n",

@@ -1,0 +1,122 @@
+#include "daemon/alerts/alert_judge.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "daemon/settings/duration_text.hpp"
+
+namespace yuragi::daemon::alerts {
+namespace {
+
+using settings::AlertCondition;
+using settings::AlertConfig;
+
+constexpr double kMegabyte = 1e6;
+
+std::string reason_of(const wire::SensorStatus& sensor) {
+  const std::string& why = sensor.state_reason.empty() ? sensor.detail : sensor.state_reason;
+  return why.empty() ? std::string() : ": " + why;
+}
+
+}  // namespace
+
+void AlertJudge::change(const std::vector<AlertConfig>& alerts) {
+  std::vector<Alert> next;
+  for (const AlertConfig& config : alerts) {
+    const auto before = std::ranges::find_if(alerts_, [&](const Alert& alert) {
+      return alert.config.name == config.name && alert.config.when == config.when;
+    });
+    next.push_back(
+        {config, before != alerts_.end() ? std::move(before->of_subject) : std::map<std::string, Progress>()});
+  }
+  alerts_ = std::move(next);
+}
+
+std::vector<AlertJudge::Subject> AlertJudge::subjects_of(const AlertConfig& alert, const wire::Sensors& status) const {
+  switch (alert.when) {
+    case AlertCondition::kSensorSilent: {
+      std::vector<Subject> subjects;
+      for (const wire::SensorStatus& sensor : status.sensors) {
+        if (!alert.sensor.empty() && sensor.name != alert.sensor) continue;
+        const std::string_view state = name_of(sensor.state);
+        subjects.push_back({.name = sensor.name,
+                            .holds = !is_believed(sensor.state),
+                            .begins = fmt::format("sensor {} is {}{}", sensor.name, state, reason_of(sensor)),
+                            .ends = fmt::format("sensor {} is {} again", sensor.name, state)});
+      }
+      return subjects;
+    }
+    case AlertCondition::kWindAbove: {
+      if (status.wind.live_weight <= 0.5) return {};  // it is not measured
+      const double speed_m_s = wind::speed_of(status.wind.wind);
+      return {{.name = {},
+               .holds = speed_m_s > alert.speed_m_s,
+               .begins = fmt::format("the wind is {:.1f} m/s, above {:.1f} m/s", speed_m_s, alert.speed_m_s),
+               .ends = fmt::format("the wind is below {:.1f} m/s again", alert.speed_m_s)}};
+    }
+    case AlertCondition::kDiskBelow: {
+      if (!status.recorder || !status.recorder->free_bytes) return {};
+      const auto free_bytes = static_cast<double>(*status.recorder->free_bytes);
+      return {{.name = {},
+               .holds = free_bytes < alert.free_bytes,
+               .begins = fmt::format("the disk of the recording has {:.0f} MB free, less than {:.0f} MB",
+                                     free_bytes / kMegabyte, alert.free_bytes / kMegabyte),
+               .ends = fmt::format("the disk of the recording has {:.0f} MB free again", free_bytes / kMegabyte)}};
+    }
+    case AlertCondition::kNoFrame:
+      if (!frames_) return {};
+      return {{.name = {},
+               .holds = !has_new_frame_,
+               .begins = "the animation makes no frames",
+               .ends = "the animation makes frames again"}};
+  }
+  return {};
+}
+
+std::vector<AlertNews> AlertJudge::judge(const wire::Sensors& status, std::optional<std::uint64_t> frames,
+                                         const Instant& now) {
+  has_new_frame_ = frames != frames_;
+  frames_ = frames;
+
+  std::vector<AlertNews> all;
+  for (Alert& alert : alerts_) {
+    const std::vector<Subject> subjects = subjects_of(alert.config, status);
+    if (alert.config.when == AlertCondition::kSensorSilent) {  // sensors come and go with the configuration
+      std::erase_if(alert.of_subject, [&](const auto& known) {
+        return std::ranges::find(subjects, known.first, &Subject::name) == subjects.end();
+      });
+    }
+    for (const Subject& subject : subjects) {
+      Progress& progress = alert.of_subject[subject.name];
+      if (subject.holds == progress.has_begun) {
+        progress.differs_since.reset();
+        continue;
+      }
+      if (!progress.differs_since) progress.differs_since = now.mono;
+      const double for_s = seconds(now.mono - *progress.differs_since);
+      if (for_s < (progress.has_begun ? alert.config.end_after_s : alert.config.after_s)) continue;
+
+      AlertNews news{.alert = alert.config.name,
+                     .has_begun = subject.holds,
+                     .time = now.utc,
+                     .command = alert.config.command,
+                     .webhook = alert.config.webhook};
+      if (subject.holds) {
+        news.message = subject.begins;
+        if (for_s > 0.0) news.message += fmt::format(" (for {})", settings::duration_text(for_s));
+        progress.begun = *progress.differs_since;
+      } else {
+        const double lasted_s = seconds(*progress.differs_since - progress.begun);
+        news.message = fmt::format("{}, after {}", subject.ends, settings::duration_text(lasted_s));
+      }
+      progress.has_begun = subject.holds;
+      progress.differs_since.reset();
+      all.push_back(std::move(news));
+    }
+  }
+  return all;
+}
+
+}  // namespace yuragi::daemon::alerts

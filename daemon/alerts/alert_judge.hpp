@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/alerts/alert_news.hpp"
+#include "daemon/settings/alert_config.hpp"
+#include "engine/base/time.hpp"
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::daemon::alerts {
+
+/// Decides when alerts begin and end, from the daemon's own state. Each tells its beginning once, after it has held for
+/// AlertConfig::after_s, and its end once. Pure: time is a parameter. Thread-safe: no.
+class AlertJudge {
+ public:
+  explicit AlertJudge(const std::vector<settings::AlertConfig>& alerts) { change(alerts); }
+
+  /// Other alerts from now on. One of the same name about the same goes on where it was; one that is gone tells no end.
+  void change(const std::vector<settings::AlertConfig>& alerts);
+
+  /// What has begun or ended since the last call. `frames`: how many the animation has made; nothing: it has no scenes.
+  std::vector<AlertNews> judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now);
+
+ private:
+  /// What an alert is about: a sensor, the wind, the disk, the animation.
+  struct Subject {
+    std::string name;
+    bool holds = false;
+    std::string begins;  ///< the sentence, should it begin now
+    std::string ends;
+  };
+  struct Progress {
+    bool has_begun = false;
+    MonoTime begun{};
+    std::optional<MonoTime> differs_since{};  ///< since when what holds is not what was told
+  };
+  struct Alert {
+    settings::AlertConfig config;
+    std::map<std::string, Progress> of_subject;
+  };
+
+  /// None where it cannot be known now.
+  std::vector<Subject> subjects_of(const settings::AlertConfig& alert, const wire::Sensors& status) const;
+
+  std::vector<Alert> alerts_;
+  std::optional<std::uint64_t> frames_;
+  bool has_new_frame_ = true;
+};
+
+}  // namespace yuragi::daemon::alerts

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "engine/base/secret.hpp"
+#include "engine/base/time.hpp"
+
+namespace yuragi::daemon::alerts {
+
+/// An alert begins or ends, and whom to tell.
+struct AlertNews {
+  std::string alert = {};    ///< its name
+  bool has_begun = false;    ///< false: it has ended
+  std::string message = {};  ///< a sentence
+  UtcTime time{};
+  std::string command = {};  ///< empty: none
+  Secret webhook = {};       ///< empty: none
+};
+
+}  // namespace yuragi::daemon::alerts

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <stop_token>
+#include <string>
+
+#include "daemon/alerts/alert_news.hpp"
+#include "engine/base/result.hpp"
+
+namespace yuragi::daemon::alerts {
+
+/// What is posted, as JSON: alert, state ("began", "ended"), message, host, time (RFC 3339, UTC), and text, which chat
+/// services show. Pure.
+std::string webhook_body(const AlertNews& news, const std::string& host);
+
+/// Posts it to news.webhook and waits for the answer, 20 s at most, less where a stop is requested. Redirections are
+/// not followed. The failure says why, and shows nothing of the URL but its host.
+Result<void, Failure> post_to_webhook(const AlertNews& news, const std::string& host, const std::stop_token& stop);
+
+}  // namespace yuragi::daemon::alerts
