@@ -15,6 +15,7 @@ build_packages=(
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
   libflatbuffers-dev flatbuffers-compiler flatbuffers-compiler-dev
   prometheus-cpp-dev libssl-dev # metrics; proof of the token
+  esbuild                    # the page that the daemon serves
   libtinygltf-dev            # takes for 3D programs
   libpng-dev libjpeg-dev     # pictures on cloth
   libglfw3-dev libepoxy-dev libglm-dev libimgui-dev libstb-dev
