@@ -2,6 +2,7 @@
 import uPlot from "./vendor/uplot/uPlot.esm.js";
 
 const LENGTH_S = 180;
+const LEAST_LENGTH_S = 30; // while there is little to show
 const HEIGHT_REM = 12;
 const LEAST_SCALE_M_S = 2;
 
@@ -78,18 +79,19 @@ export class Trace {
     return {
       width: this.place.clientWidth,
       height: HEIGHT_REM * rem,
+      padding: [0.6 * rem, 0, 0, 0],
       legend: { show: false },
       cursor: { show: false },
       scales: {
-        x: { time: true, range: (_plot, _first, last) => [last - LENGTH_S, last] },
+        x: { time: true, range: (_plot, first, last) => [Math.min(first, last - LEAST_LENGTH_S), last] },
         speed: { range: (_plot, _least, most) => [0, Math.max(LEAST_SCALE_M_S, 1.15 * (most ?? 0))] },
         share: { range: [0, 100] },
       },
       axes: [
         { ...axis, grid: { show: false }, space: 6 * rem, size: 1.8 * rem,
           values: (_plot, splits) => splits.map((time_s) => clock.format(new Date(1000 * time_s))) },
-        { ...axis, scale: "speed", grid, size: 2.4 * rem, space: 2.4 * rem },
-        { ...axis, scale: "share", side: 1, grid: { show: false }, size: 3 * rem, space: 3.5 * rem,
+        { ...axis, scale: "speed", grid, size: 1.9 * rem, gap: 0.3 * rem, space: 2.4 * rem },
+        { ...axis, scale: "share", side: 1, grid: { show: false }, size: 2.9 * rem, gap: 0.3 * rem, space: 3.5 * rem,
           values: (_plot, splits) => splits.map((share) => share + " %") },
       ],
       series: [
