@@ -1,0 +1,226 @@
+// The daemon's page in a real browser. Each test waits for what the page shows; HANG_MS is reached only by what hangs.
+// usage: page_test.py
+import assert from "node:assert/strict";
+import { spawn, execFileSync } from "node:child_process";
+import fs from "node:fs";
+import { createRequire } from "node:module";
+import os from "node:os";
+import path from "node:path";
+import { after, before, test } from "node:test";
+
+const HANG_MS = 60_000;
+const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
+const [httpPort, sensorPort, pairingPort] = ports;
+const require = createRequire(path.join(tools, "package.json"));
+const { chromium } = require("playwright-core");
+const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+
+const HOSTILE = `<img src=x onerror="document.title='owned'">`;
+const SCENES = `
+[[scene]]
+name = "meadow"
+kind = "grass"
+blades_across = 20
+blades_deep = 20
+`;
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "yuragi-page-"));
+const running = new Set();
+let browser;
+
+/** Runs one of our programs until it says so. */
+function start(program, args, says) {
+  const child = spawn(path.join(programs, program), args, { stdio: ["ignore", "pipe", "pipe"] });
+  running.add(child);
+  child.ended = new Promise((resolve) => child.on("exit", resolve));
+  let said = "";
+  return new Promise((resolve, reject) => {
+    const hear = (text) => {
+      said += text;
+      if (says.test(said)) resolve(child);
+    };
+    child.stdout.on("data", hear);
+    child.stderr.on("data", hear);
+    child.on("exit", () => reject(new Error(`${program} ended: ${said}`)));
+  });
+}
+async function kill(child) {
+  child.kill("SIGKILL");
+  await child.ended;
+  running.delete(child);
+}
+function configured(name, text) {
+  const file = path.join(folder, name);
+  fs.writeFileSync(file, text + SCENES);
+  return file;
+}
+const startDaemon = (file) => start("yuragi", ["run", "--config", file, "--listen", "127.0.0.1:0"], /answering at/);
+const startSensor = () => start("yuragi-sim", ["nmea", "--tcp", `127.0.0.1:${sensorPort}`, "--rate", "5"], /listening|127\.0\.0\.1/);
+
+/** A page, and all that it says on its console or asks of others. */
+async function open(url, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1920, height: 1080 }, ...options });
+  const page = await context.newPage();
+  page.setDefaultTimeout(HANG_MS);
+  page.complaints = [];
+  page.on("console", (message) => page.complaints.push(message.text()));
+  page.on("pageerror", (error) => page.complaints.push(error.message));
+  page.on("request", (request) => {
+    if (!request.url().startsWith(url)) page.complaints.push("asks for " + request.url());
+  });
+  await page.goto(url);
+  return page;
+}
+const sentence = (page) => page.textContent("#sentence");
+const waitForSentence = (page, pattern) =>
+  page.waitForFunction((source) => new RegExp(source).test(document.getElementById("sentence").textContent), pattern.source);
+async function assertAccessible(page, what) {
+  const faults = await page.evaluate(async (source) => {
+    if (!window.axe) Object.assign(window, { axe: new Function(source + "; return axe;")() });
+    const { violations } = await window.axe.run();
+    return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => `${node.html} ${node.failureSummary}`).join("; ")}`);
+  }, axe);
+  assert.deepEqual(faults, [], what);
+}
+const screenshot = (page, name) => page.screenshot({ path: path.join(screenshots, name + ".png"), fullPage: true });
+
+const LIVE = /^Live: roof, (\d+\.\d m\/s from the [a-z-]+|calm), \d+(\.\d)? s old$/;
+let config, daemon, sensor, url;
+
+before(async () => {
+  fs.mkdirSync(screenshots, { recursive: true });
+  browser = await chromium.launch({
+    executablePath: chromiumPath,
+    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"],
+  });
+  config = configured("live.toml", `
+[http]
+listen = "127.0.0.1:${httpPort}"
+[[sensor]]
+name = "roof"
+driver = "nmea"
+transport = "tcp"
+host = "127.0.0.1"
+port = ${sensorPort}
+`);
+  url = `http://127.0.0.1:${httpPort}/`;
+  sensor = await startSensor();
+  daemon = await startDaemon(config);
+});
+after(async () => {
+  await browser?.close();
+  for (const child of running) await kill(child);
+  fs.rmSync(folder, { recursive: true });
+});
+
+test("it needs nothing but the daemon, and says nothing on the console", async () => {
+  for (const [colorScheme, width] of [["light", 320], ["dark", 1920]]) {
+    const page = await open(url, { colorScheme, viewport: { width, height: 800 } });
+    await waitForSentence(page, LIVE);
+    await page.waitForSelector("#scenes [role=switch]");
+    await page.waitForSelector(".trace canvas");
+    assert.equal(await page.getAttribute("#verdict", "data-light"), "live");
+    assert.equal(await page.title(), "Live – Yuragi");
+    assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width, "wider than the screen");
+    await assertAccessible(page, colorScheme);
+    await screenshot(page, `live-${width}-${colorScheme}`);
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+  }
+});
+
+test("the keyboard shows and hides a scene", async () => {
+  const page = await open(url);
+  const meadow = page.getByRole("switch", { name: /meadow/ });
+  await meadow.waitFor();
+  await page.selectOption("#fade", "0");
+  await meadow.focus();
+  const [answer] = await Promise.all([page.waitForResponse((response) => response.request().method() === "POST"), page.keyboard.press("Space")]);
+  assert.equal((await answer.json()).scenes[0].is_shown, false);
+  await page.waitForFunction(() => !document.querySelector("#scenes [role=switch]").checked);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("motion is left out for whoever wants none", async () => {
+  for (const [reducedMotion, animation] of [["reduce", "none"], ["no-preference", "ring"]]) {
+    const page = await open(url, { reducedMotion });
+    await waitForSentence(page, LIVE);
+    assert.equal(await page.evaluate(() => getComputedStyle(document.querySelector(".light"), "::after").animationName), animation);
+    await page.context().close();
+  }
+});
+
+test("the sentence follows a sensor that is killed, and one that is back", async () => {
+  const page = await open(url);
+  await waitForSentence(page, LIVE);
+  await kill(sensor);
+  await waitForSentence(page, /because roof is disconnected$/);
+  assert.equal(await page.getAttribute("#verdict", "data-light"), "other");
+  assert.match(await page.textContent("#attention"), /sensor roof is disconnected: /);
+  assert.equal(await page.textContent("#sensors .badge"), "disconnected");
+  await screenshot(page, "sensor-killed-1920-light");
+  sensor = await startSensor();
+  await waitForSentence(page, LIVE);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("a daemon that is killed is told at once, nothing old is shown, and it is back without a reload", async () => {
+  const page = await open(url, { viewport: { width: 320, height: 800 }, colorScheme: "dark" });
+  await waitForSentence(page, LIVE);
+  await page.evaluate(() => (window.loadedOnce = true));
+  await kill(daemon);
+  await waitForSentence(page, /^No connection since \d\d:\d\d:\d\d$/);
+  assert.equal(await page.getAttribute("#verdict", "data-light"), "lost");
+  const numbers = await page.$$eval(".figure .number, #sensors .strong, #health dd", (all) => all.map((one) => one.textContent));
+  assert.deepEqual([...new Set(numbers)], ["–"]);
+  assert.equal(await page.textContent("#sensors .badge"), "not known");
+  assert.ok(await page.isDisabled("#scenes [role=switch]"));
+  await assertAccessible(page, "lost");
+  await screenshot(page, "lost-320-dark");
+  daemon = await startDaemon(config);
+  await waitForSentence(page, LIVE);
+  assert.equal(await page.evaluate(() => window.loadedOnce), true);
+  await page.context().close();
+});
+
+test("another machine pairs first; hostile names stay text", async () => {
+  const file = configured("paired.toml", `
+[http]
+listen = "127.0.0.1:${pairingPort}"
+token_file = "${path.join(folder, "token")}"
+readers = "token"
+[[sensor]]
+name = ${JSON.stringify(HOSTILE)}
+driver = "synthetic"
+`);
+  const token = (...args) => execFileSync(path.join(programs, "yuragi"), ["token", "--config", file, ...args], { encoding: "utf8" });
+  token("--new");
+  await startDaemon(file);
+  const page = await open(`http://127.0.0.1:${pairingPort}/`, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
+  await waitForSentence(page, /until it is paired$/);
+  await page.click("#pair-now");
+  await page.fill("#pairing-code", "0000-0000");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => /not the code/.test(document.getElementById("pairing-error").textContent));
+  await assertAccessible(page, "pairing");
+  await screenshot(page, "pairing-1920-light");
+  await page.fill("#pairing-code", JSON.parse(token("--json")).pairing_code);
+  await page.keyboard.press("Enter");
+  await waitForSentence(page, /^Synthetic wind, not measured: <img/);
+  assert.ok((await sentence(page)).includes(HOSTILE));
+  await page.waitForFunction((name) => document.querySelector("#sensors h3")?.textContent === name, HOSTILE);
+  assert.equal(await page.$("main img"), null);
+  assert.notEqual(await page.title(), "owned");
+
+  // A browser that is let in no longer is asked again, and what it wanted is done then.
+  await page.context().clearCookies();
+  const fresh = await open(`http://127.0.0.1:${pairingPort}/`);
+  await fresh.getByRole("switch", { name: /meadow/ }).waitFor();
+  await fresh.context().setExtraHTTPHeaders({ "X-Forwarded-For": "192.0.2.7" });
+  await fresh.getByRole("switch", { name: /meadow/ }).click();
+  await fresh.fill("#pairing-code", JSON.parse(token("--json")).pairing_code);
+  const done = fresh.waitForResponse((response) => response.url().endsWith("/scenes") && response.request().method() === "POST" && response.ok());
+  await fresh.click("#pairing button.primary");
+  assert.equal((await (await done).json()).scenes[0].is_shown, false);
+});
