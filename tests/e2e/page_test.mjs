@@ -10,7 +10,7 @@ import { after, before, test } from "node:test";
 
 const HANG_MS = 60_000;
 const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
-const [httpPort, sensorPort, pairingPort] = ports;
+const [httpPort, sensorPort, pairingPort, readingPort] = ports;
 const require = createRequire(path.join(tools, "package.json"));
 const { chromium } = require("playwright-core");
 const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
@@ -172,7 +172,7 @@ test("a daemon that is killed is told at once, nothing old is shown, and it is b
   await kill(daemon);
   await waitForSentence(page, /^No connection since \d\d:\d\d:\d\d$/);
   assert.equal(await page.getAttribute("#verdict", "data-light"), "lost");
-  const numbers = await page.$$eval(".figure .number, #sensors .strong, #health dd", (all) => all.map((one) => one.textContent));
+  const numbers = await page.$$eval(".figure .number, #sensors li > .line:nth-child(2) > :first-child, #health dd", (all) => all.map((one) => one.textContent));
   assert.deepEqual([...new Set(numbers)], ["–"]);
   assert.equal(await page.textContent("#sensors .badge"), "not known");
   assert.ok(await page.isDisabled("#scenes [role=switch]"));
@@ -184,12 +184,13 @@ test("a daemon that is killed is told at once, nothing old is shown, and it is b
   await page.context().close();
 });
 
-test("another machine pairs first; hostile names stay text", async () => {
-  const file = configured("paired.toml", `
+/** A daemon with a token, asked as from another machine: the page, and the code of now. */
+async function openFromElsewhere(port, settings) {
+  const file = configured(`paired-${port}.toml`, `
 [http]
-listen = "127.0.0.1:${pairingPort}"
-token_file = "${path.join(folder, "token")}"
-readers = "token"
+listen = "127.0.0.1:${port}"
+token_file = "${path.join(folder, `token-${port}`)}"
+${settings}
 [[sensor]]
 name = ${JSON.stringify(HOSTILE)}
 driver = "synthetic"
@@ -197,30 +198,39 @@ driver = "synthetic"
   const token = (...args) => execFileSync(path.join(programs, "yuragi"), ["token", "--config", file, ...args], { encoding: "utf8" });
   token("--new");
   await startDaemon(file);
-  const page = await open(`http://127.0.0.1:${pairingPort}/`, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
-  await waitForSentence(page, /until it is paired$/);
-  await page.click("#pair-now");
+  const page = await open(`http://127.0.0.1:${port}/`, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
+  return { page, code: () => JSON.parse(token("--json")).pairing_code };
+}
+
+test("another machine reads, and pairs before it changes something; hostile names stay text", async () => {
+  const { page, code } = await openFromElsewhere(pairingPort, "");
+  await waitForSentence(page, /^Synthetic wind, not measured: <img/);
+  assert.ok((await sentence(page)).includes(HOSTILE));
+  assert.equal(await page.textContent("#sensors h3"), HOSTILE);
+  assert.equal(await page.$("main img"), null);
+  assert.equal(await page.title(), "Not live – Yuragi");
+  assert.deepEqual(page.complaints, []);
+
+  await page.getByRole("switch", { name: /meadow/ }).click();
   await page.fill("#pairing-code", "0000-0000");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => /not the code/.test(document.getElementById("pairing-error").textContent));
   await assertAccessible(page, "pairing");
   await screenshot(page, "pairing-1920-light");
-  await page.fill("#pairing-code", JSON.parse(token("--json")).pairing_code);
-  await page.keyboard.press("Enter");
-  await waitForSentence(page, /^Synthetic wind, not measured: <img/);
-  assert.ok((await sentence(page)).includes(HOSTILE));
-  await page.waitForFunction((name) => document.querySelector("#sensors h3")?.textContent === name, HOSTILE);
-  assert.equal(await page.$("main img"), null);
-  assert.notEqual(await page.title(), "owned");
-
-  // A browser that is let in no longer is asked again, and what it wanted is done then.
-  await page.context().clearCookies();
-  const fresh = await open(`http://127.0.0.1:${pairingPort}/`);
-  await fresh.getByRole("switch", { name: /meadow/ }).waitFor();
-  await fresh.context().setExtraHTTPHeaders({ "X-Forwarded-For": "192.0.2.7" });
-  await fresh.getByRole("switch", { name: /meadow/ }).click();
-  await fresh.fill("#pairing-code", JSON.parse(token("--json")).pairing_code);
-  const done = fresh.waitForResponse((response) => response.url().endsWith("/scenes") && response.request().method() === "POST" && response.ok());
-  await fresh.click("#pairing button.primary");
+  await page.fill("#pairing-code", code());
+  const done = page.waitForResponse((response) => response.url().endsWith("/scenes") && response.request().method() === "POST" && response.ok());
+  await page.click("#pairing button.primary");
   assert.equal((await (await done).json()).scenes[0].is_shown, false);
+  await page.context().close();
+});
+
+test("where reading takes the token, another machine sees nothing until it is paired", async () => {
+  const { page, code } = await openFromElsewhere(readingPort, 'readers = "token"');
+  await waitForSentence(page, /until it is paired$/);
+  assert.equal(await page.isVisible("#cards"), false);
+  await page.click("#pair-now");
+  await page.fill("#pairing-code", code());
+  await page.keyboard.press("Enter");
+  await waitForSentence(page, /^Synthetic wind, not measured: /);
+  await page.context().close();
 });

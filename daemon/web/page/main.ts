@@ -106,6 +106,7 @@ void listen({
     heard_ms = performance.now();
     heard_at = new Date();
     knowledge = { kind: "news", status, age_s: 0 };
+    by_id("cards").hidden = false;
     wind.show(status);
     health.show(status);
     show_attention(status.attention);

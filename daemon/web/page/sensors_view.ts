@@ -1,7 +1,7 @@
 // Each sensor with its state, the reason of it, and how old its last reading is.
 import { element, Rows, set_text } from "./element";
 import { age_of } from "./sentence";
-import { Status } from "./status";
+import { is_believed, Sensor, Status } from "./status";
 import { clock_text, duration_text, wind_text } from "./wording";
 
 interface Row {
@@ -23,6 +23,12 @@ function make_row(name: string): { item: HTMLElement; row: Row } {
   return { item, row: { item, state, wind, age, reason } };
 }
 
+function reading_text(sensor: Sensor): string {
+  if (sensor.speed_m_s === null) return "No reading yet";
+  const wind = wind_text(sensor.speed_m_s, sensor.direction_deg);
+  return is_believed(sensor) ? wind : "Last: " + wind;
+}
+
 export class SensorsView {
   private readonly rows: Rows<Row>;
   private status: Status | undefined;
@@ -40,7 +46,8 @@ export class SensorsView {
       const age_s = age_of(sensor, status, since_s);
       row.item.dataset["state"] = sensor.state;
       set_text(row.state, sensor.state);
-      set_text(row.wind, sensor.speed_m_s === null ? "No reading yet" : wind_text(sensor.speed_m_s, sensor.direction_deg));
+      row.wind.className = is_believed(sensor) ? "strong" : "age";
+      set_text(row.wind, reading_text(sensor));
       set_text(row.age, age_s === null ? sensor.driver : `${sensor.driver} · ${duration_text(age_s)} old`);
       set_text(row.reason, sensor.state_reason);
     });
@@ -55,6 +62,7 @@ export class SensorsView {
       if (!row) return;
       row.item.dataset["state"] = "unknown";
       set_text(row.state, "not known");
+      row.wind.className = "age";
       set_text(row.wind, "–");
       set_text(row.age, sensor.driver);
       set_text(row.reason, `It was ${sensor.state} at ${clock_text(since)}.`);

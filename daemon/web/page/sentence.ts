@@ -42,7 +42,7 @@ function verdict_of_sensor(sensor: Sensor, status: Status, since_s: number): Ver
 function verdict_without_sensor(status: Status): Verdict {
   const wind =
     status.wind.source === "live" ? "A recording plays, nothing is measured"
-    : status.wind.source === "handover" ? "No longer measured, the wind goes over to a substitute"
+    : status.wind.source === "handover" ? "No longer measured"
     : "Synthetic wind";
   const [first, ...others] = status.sensors;
   const why =

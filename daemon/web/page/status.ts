@@ -70,9 +70,11 @@ export interface Player {
 /** The states of a sensor whose readings make the wind. */
 const BELIEVED = ["live", "replayed", "simulated"];
 
+export const is_believed = (sensor: Sensor) => BELIEVED.includes(sensor.state);
+
 /** The sensor that the page speaks of: the most real one that is believed, and of these the first. */
 export function leading_sensor(status: Status): Sensor | undefined {
   return status.sensors
-    .filter((sensor) => BELIEVED.includes(sensor.state))
+    .filter(is_believed)
     .sort((one, other) => BELIEVED.indexOf(one.state) - BELIEVED.indexOf(other.state))[0];
 }

@@ -50,6 +50,12 @@ export class Trace {
     return [this.times_s, this.noise, this.blended, this.measured];
   }
 
+  /** The first and the last moment that are shown. */
+  private span_s(): [number, number] {
+    const last_s = this.times_s[this.times_s.length - 1] ?? Date.now() / 1000;
+    return [Math.min(this.times_s[0] ?? last_s, last_s - LEAST_LENGTH_S), last_s];
+  }
+
   private draw(): void {
     if (this.plot) this.plot.setData(this.data());
     else if (this.place.clientWidth > 0) this.plot = new uPlot(this.options(), this.data(), this.place);
@@ -83,12 +89,12 @@ export class Trace {
       legend: { show: false },
       cursor: { show: false },
       scales: {
-        x: { time: true, range: (_plot, first, last) => [Math.min(first, last - LEAST_LENGTH_S), last] },
+        x: { time: true, range: () => this.span_s() },
         speed: { range: (_plot, _least, most) => [0, Math.max(LEAST_SCALE_M_S, 1.15 * (most ?? 0))] },
         share: { range: [0, 100] },
       },
       axes: [
-        { ...axis, grid: { show: false }, space: 6 * rem, size: 1.8 * rem,
+        { ...axis, grid: { show: false }, space: 6 * rem, size: 1.8 * rem, gap: 0.5 * rem,
           values: (_plot, splits) => splits.map((time_s) => clock.format(new Date(1000 * time_s))) },
         { ...axis, scale: "speed", grid, size: 1.9 * rem, gap: 0.3 * rem, space: 2.4 * rem },
         { ...axis, scale: "share", side: 1, grid: { show: false }, size: 2.9 * rem, gap: 0.3 * rem, space: 3.5 * rem,
