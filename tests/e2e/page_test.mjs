@@ -10,7 +10,7 @@ import { after, before, test } from "node:test";
 
 const HANG_MS = 60_000;
 const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
-const [httpPort, sensorPort, pairingPort, readingPort] = ports;
+const [httpPort, sensorPort, pairingPort, readingPort, playerPort] = ports;
 const require = createRequire(path.join(tools, "package.json"));
 const { chromium } = require("playwright-core");
 const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
@@ -112,7 +112,7 @@ after(async () => {
   fs.rmSync(folder, { recursive: true });
 });
 
-test("it needs nothing but the daemon, and says nothing on the console", async () => {
+test("it needs nothing but the daemon, and says nothing on the console", { timeout: 2 * HANG_MS }, async () => {
   for (const [colorScheme, width] of [["light", 320], ["dark", 1920]]) {
     const page = await open(url, { colorScheme, viewport: { width, height: 800 } });
     await waitForSentence(page, LIVE);
@@ -128,7 +128,7 @@ test("it needs nothing but the daemon, and says nothing on the console", async (
   }
 });
 
-test("the keyboard shows and hides a scene", async () => {
+test("the keyboard shows and hides a scene", { timeout: 2 * HANG_MS }, async () => {
   const page = await open(url);
   const meadow = page.getByRole("switch", { name: /meadow/ });
   await meadow.waitFor();
@@ -141,7 +141,7 @@ test("the keyboard shows and hides a scene", async () => {
   await page.context().close();
 });
 
-test("motion is left out for whoever wants none", async () => {
+test("motion is left out for whoever wants none", { timeout: 2 * HANG_MS }, async () => {
   for (const [reducedMotion, animation] of [["reduce", "none"], ["no-preference", "ring"]]) {
     const page = await open(url, { reducedMotion });
     await waitForSentence(page, LIVE);
@@ -150,7 +150,7 @@ test("motion is left out for whoever wants none", async () => {
   }
 });
 
-test("the sentence follows a sensor that is killed, and one that is back", async () => {
+test("the sentence follows a sensor that is killed, and one that is back", { timeout: 2 * HANG_MS }, async () => {
   const page = await open(url);
   await waitForSentence(page, LIVE);
   await kill(sensor);
@@ -165,7 +165,7 @@ test("the sentence follows a sensor that is killed, and one that is back", async
   await page.context().close();
 });
 
-test("a daemon that is killed is told at once, nothing old is shown, and it is back without a reload", async () => {
+test("a daemon that is killed is told at once, nothing old is shown, and it is back without a reload", { timeout: 2 * HANG_MS }, async () => {
   const page = await open(url, { viewport: { width: 320, height: 800 }, colorScheme: "dark" });
   await waitForSentence(page, LIVE);
   await page.evaluate(() => (window.loadedOnce = true));
@@ -182,6 +182,55 @@ test("a daemon that is killed is told at once, nothing old is shown, and it is b
   await waitForSentence(page, LIVE);
   assert.equal(await page.evaluate(() => window.loadedOnce), true);
   await page.context().close();
+});
+
+test("a recording that plays is paused and resumed", { timeout: 2 * HANG_MS }, async () => {
+  const table = path.join(folder, "wind.csv");
+  const rows = Array.from({ length: 300 }, (_, i) => `2026-01-01T00:${String(Math.floor(i / 60)).padStart(2, "0")}:${String(i % 60).padStart(2, "0")}Z,3.${i % 10},200`);
+  fs.writeFileSync(table, ["time,speed,direction", ...rows, ""].join("\n"));
+  const recording = path.join(folder, "summer.windlog");
+  execFileSync(path.join(programs, "yuragi"), ["import", table, "-o", recording]);
+  await startDaemon(configured("player.toml", `
+[http]
+listen = "127.0.0.1:${playerPort}"
+[[sensor]]
+name = "summer"
+driver = "windlog"
+file = "${recording}"
+loop = true
+`));
+  const page = await open(`http://127.0.0.1:${playerPort}/`);
+  await waitForSentence(page, /^A recording, not live: summer, /);
+  await page.click("#recordings button:text-is('Pause')");
+  await page.waitForSelector("#recordings button:text-is('Resume')");
+  assert.match(await page.textContent("#recordings .reason"), /^\d:\d\d of 4:59, paused$/);
+  await page.click("#recordings button:text-is('Resume')");
+  await page.waitForSelector("#recordings button:text-is('Pause')");
+  await page.selectOption("#recordings select", "10");
+  await page.waitForResponse(async (response) => response.url().endsWith("/player") && (await response.json()).players[0].rate === 10);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("by WebSocket: each message is shown, and silence is no connection", { timeout: 2 * HANG_MS }, async () => {
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  page.setDefaultTimeout(HANG_MS);
+  const status = await (await fetch(url + "api/v1/status")).json();
+  let open;
+  const opened = new Promise((resolve) => (open = resolve));
+  await page.routeWebSocket(/\/ws$/, open);
+  await page.route("**/api/v1/openapi.json", (route) => route.fulfill({ json: { paths: { "/ws": {} } } }));
+  await page.goto(url);
+  const socket = await opened;
+  const say = (speed_m_s) => socket.send(JSON.stringify({ ...status, sensors: [{ ...status.sensors[0], state: "live", speed_m_s, direction_deg: 225, age_s: 0.1 }] }));
+  say(17.3);
+  await waitForSentence(page, /^Live: roof, 17\.3 m\/s from the south-west, /);
+  await page.route("**/api/v1/status", (route) => route.abort());
+  await waitForSentence(page, /^No connection since /);
+  await page.unroute("**/api/v1/status");
+  await waitForSentence(page, LIVE);
+  await context.close();
 });
 
 /** A daemon with a token, asked as from another machine: the page, and the code of now. */
@@ -202,7 +251,7 @@ driver = "synthetic"
   return { page, code: () => JSON.parse(token("--json")).pairing_code };
 }
 
-test("another machine reads, and pairs before it changes something; hostile names stay text", async () => {
+test("another machine reads, and pairs before it changes something; hostile names stay text", { timeout: 2 * HANG_MS }, async () => {
   const { page, code } = await openFromElsewhere(pairingPort, "");
   await waitForSentence(page, /^Synthetic wind, not measured: <img/);
   assert.ok((await sentence(page)).includes(HOSTILE));
@@ -224,7 +273,7 @@ test("another machine reads, and pairs before it changes something; hostile name
   await page.context().close();
 });
 
-test("where reading takes the token, another machine sees nothing until it is paired", async () => {
+test("where reading takes the token, another machine sees nothing until it is paired", { timeout: 2 * HANG_MS }, async () => {
   const { page, code } = await openFromElsewhere(readingPort, 'readers = "token"');
   await waitForSentence(page, /until it is paired$/);
   assert.equal(await page.isVisible("#cards"), false);
