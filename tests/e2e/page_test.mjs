@@ -22,6 +22,11 @@ name = "meadow"
 kind = "grass"
 blades_across = 20
 blades_deep = 20
+[[scene]]
+name = "lawn"
+kind = "grass"
+blades_across = 20
+blades_deep = 20
 `;
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "yuragi-page-"));
 const running = new Set();
@@ -140,6 +145,20 @@ test("the keyboard shows and hides a scene", { timeout: 2 * HANG_MS }, async () 
   await page.context().close();
 });
 
+test("one button hides all scenes, and shows them again", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await page.getByRole("switch", { name: /lawn/ }).waitFor();
+  await page.selectOption("#fade", "0");
+  const shown = () => page.$$eval("#scenes [role=switch]", (all) => all.map((one) => one.checked));
+  await page.getByRole("button", { name: "Hide all" }).click();
+  await page.getByRole("button", { name: "Show all" }).waitFor();
+  assert.deepEqual(await shown(), [false, false]);
+  await page.getByRole("button", { name: "Show all" }).click();
+  await page.getByRole("button", { name: "Hide all" }).waitFor();
+  assert.deepEqual(await shown(), [true, true]);
+  await page.context().close();
+});
+
 test("motion is left out for whoever wants none", { timeout: 2 * HANG_MS }, async () => {
   for (const [reducedMotion, duration] of [["reduce", "0s"], ["no-preference", "0.4s"]]) {
     const page = await open(url, { reducedMotion });
@@ -167,6 +186,7 @@ test("the sentence follows a sensor that is killed, and one that is back", { tim
 test("a daemon that is killed is told at once, nothing old is shown, and it is back without a reload", { timeout: 2 * HANG_MS }, async () => {
   const page = await open(url, { viewport: { width: 320, height: 800 }, colorScheme: "dark" });
   await waitForSentence(page, LIVE);
+  await page.waitForSelector("#scenes [role=switch]");
   await page.evaluate(() => (window.loadedOnce = true));
   await kill(daemon);
   await waitForSentence(page, /^No connection since \d\d:\d\d:\d\d$/);

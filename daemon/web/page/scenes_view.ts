@@ -1,6 +1,6 @@
-// The scenes, each with a switch that shows or hides it.
+// The scenes, each with a switch that shows or hides it, and a button for all of them.
 import { Change } from "./change";
-import { element, Rows } from "./element";
+import { element, Rows, set_text } from "./element";
 import { Scene } from "./status";
 
 const FADES_S: [string, string][] = [["0", "at once"], ["2", "in 2 s"], ["10", "in 10 s"], ["60", "in a minute"]];
@@ -15,6 +15,8 @@ export class ScenesView {
   private readonly fade = element("select", { id: "fade" },
     ...FADES_S.map(([value, text]) => element("option", { value }, text)));
   private readonly all = element("fieldset");
+  private readonly every = element("button", { type: "button", class: "every" });
+  private scenes: Scene[] = [];
   private is_busy = false; // a change is on its way: what the daemon said before it is old
 
   constructor(place: HTMLElement, private readonly change: Change) {
@@ -22,13 +24,17 @@ export class ScenesView {
     this.rows = new Rows(list, (name) => this.make_row(name), "No scene is configured.");
     this.fade.value = "2";
     this.all.append(element("legend", { class: "unseen" }, "Show or hide scenes"), list,
-      element("p", { class: "line fade" }, element("label", { for: "fade" }, "Scenes change"), this.fade));
+      element("p", { class: "line fade" }, element("label", { for: "fade" }, "Scenes change"), this.fade), this.every);
+    this.every.addEventListener("click", () => void this.show_or_hide_all());
     place.append(this.all);
   }
 
   show(scenes: Scene[]): void {
     if (this.is_busy) return;
+    this.scenes = scenes;
     this.all.disabled = false;
+    this.every.hidden = scenes.length < 2;
+    set_text(this.every, this.is_any_shown() ? "Hide all" : "Show all");
     const rows = this.rows.for_names(scenes.map((scene) => scene.name));
     scenes.forEach((scene, index) => {
       const row = rows[index];
@@ -51,12 +57,33 @@ export class ScenesView {
     return { item, row: { control, kind } };
   }
 
+  private is_any_shown(): boolean {
+    return this.scenes.some((scene) => scene.is_shown);
+  }
+
   private async show_or_hide(scene: string, control: HTMLInputElement): Promise<void> {
     const shown = control.checked;
+    if (!(await this.order([scene], shown))) control.checked = !shown;
+  }
+
+  private async show_or_hide_all(): Promise<void> {
+    const shown = !this.is_any_shown();
+    await this.order(this.scenes.filter((scene) => scene.is_shown !== shown).map((scene) => scene.name), shown);
+  }
+
+  /** One order after the other; false from the first that is not carried out. */
+  private async order(names: string[], shown: boolean): Promise<boolean> {
     this.is_busy = true;
-    const answer = await this.change.make<{ scenes: Scene[] }>("/api/v1/scenes", { scene, shown, over_s: Number(this.fade.value) });
+    let now: Scene[] | undefined;
+    let is_done = true;
+    for (const scene of names) {
+      const answer = await this.change.make<{ scenes: Scene[] }>("/api/v1/scenes", { scene, shown, over_s: Number(this.fade.value) });
+      is_done = answer !== undefined;
+      if (!answer) break;
+      now = answer.scenes;
+    }
     this.is_busy = false;
-    if (answer) this.show(answer.scenes);
-    else control.checked = !shown;
+    if (now) this.show(now);
+    return is_done;
   }
 }
