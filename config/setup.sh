@@ -15,6 +15,7 @@ build_packages=(
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
   libflatbuffers-dev flatbuffers-compiler flatbuffers-compiler-dev
   prometheus-cpp-dev libssl-dev libcurl4-openssl-dev # metrics; proof of the token; webhooks of alerts
+  esbuild                    # the page that the daemon serves
   libtinygltf-dev            # takes for 3D programs
   libpng-dev libjpeg-dev     # pictures on cloth
   libglfw3-dev libepoxy-dev libglm-dev libimgui-dev libstb-dev
@@ -36,13 +37,33 @@ test_packages=(
   xserver-xorg-core xserver-xorg-video-dummy x11-xserver-utils libx11-dev # monitors that come and go, for its wall
   glslang-tools                                           # an independent judge of the shaders
   systemd lintian man-db                                  # independent judges of the units and of the package
+  chromium nodejs node-typescript                         # the page: a browser, and the types of its scripts
   qemu-system-x86 busybox-static kmod cpio usbip alsa-utils     # USB and sound through a real kernel, in a virtual machine
 )
 
+# playwright-core and axe-core of tests/e2e/browser, where npm can get them.
+install_browser_tools() {
+  local from=tests/e2e/browser to=build/browser
+  cmp -s $from/package-lock.json $to/package-lock.json && [ -d $to/node_modules ] && return
+  mkdir -p $to
+  cp $from/package.json $from/package-lock.json $to
+  if npm ci --prefix $to --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null; then
+    echo "setup: the browser's tests have what they need in $to."
+  else
+    rm -f $to/package-lock.json # tried again the next time
+    echo "setup: npm could not install $from: the browser's tests will be skipped."
+  fi
+}
+
+cd "$(dirname "$0")/.."
 packages=("${build_packages[@]}")
+finish() { :; }
 case "${1:-}" in
   "") ;;
-  --test) packages+=("${test_packages[@]}") ;;
+  --test)
+    packages+=("${test_packages[@]}")
+    command -v npm >/dev/null || packages+=(npm) # Node.js of others brings its own
+    finish() { install_browser_tools; } ;;
   *) echo "usage: config/setup.sh [--test]" >&2; exit 64 ;;
 esac
 
@@ -53,6 +74,7 @@ for package in "${packages[@]}"; do
 done
 if [ ${#missing[@]} -eq 0 ]; then
   echo "setup: all ${#packages[@]} packages are installed."
+  finish
   exit 0
 fi
 
@@ -67,4 +89,5 @@ if removed=$(grep '^Remv' <<<"$plan"); then
   exit 1
 fi
 DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
+finish
 echo "setup: done."

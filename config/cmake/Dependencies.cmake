@@ -25,6 +25,7 @@ pkg_check_modules(UMOCKDEV IMPORTED_TARGET umockdev-1.0) # yuragi-sim's --umockd
 find_package(nlohmann_json REQUIRED)
 find_package(TinyGLTF REQUIRED)
 find_program(FLATC_PROGRAM flatc REQUIRED)
+find_program(ESBUILD_PROGRAM esbuild REQUIRED)
 find_program(PYTHON3_PROGRAM NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED) # that of Debian
 
 # Asio compiled once, as its documentation's "separate compilation" has it, and not in each file that includes it.

@@ -95,6 +95,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         .content_type = field(http::field::content_type),
         .authorization = field(http::field::authorization),
         .cookie = field(http::field::cookie),
+        .if_none_match = field(http::field::if_none_match),
         .body = message.body(),
         .is_forwarded = message.count("Forwarded") + message.count("X-Forwarded-For") + message.count("X-Real-IP") > 0,
         .is_https = text_of(message["X-Forwarded-Proto"]) == "https",

@@ -28,6 +28,7 @@ struct HttpRequest {
   std::string content_type = {};
   std::string authorization = {};
   std::string cookie = {};
+  std::string if_none_match = {};
   std::string body = {};
   bool is_forwarded = false;  ///< a proxy says that it sends it for another
   bool is_https = false;      ///< a proxy says that it came to it by HTTPS

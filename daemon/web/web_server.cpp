@@ -12,6 +12,7 @@
 
 #include "daemon/web/http_server.hpp"
 #include "daemon/web/known_host.hpp"
+#include "daemon/web/page.hpp"
 #include "daemon/web/permission.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/routes.hpp"
@@ -101,6 +102,8 @@ class WebServer::Thread {
                                "\" is no name of this machine: call it by its address, or add that "
                                "name to [http] hosts"));
     }
+    // Before who asks is looked at: those who are to be paired need it.
+    if (auto page = page_answer(request)) return reply(std::move(*page));
     const bool only_reads = request.method == "GET" || request.method == "HEAD";
     if (!only_reads && !is_same_origin(request.origin, request.host))
       return reply(problem(403, "Another page's request", "only pages of this daemon may change something"));

@@ -114,6 +114,16 @@ TEST_F(WebServerTest, AnswersRequestAfterRequestOnOneConnection) {
   EXPECT_THAT(client.get("/healthz", "Connection: close\r\n"), HasSubstr("all is well"));
   EXPECT_TRUE(client.is_closed());
 }
+TEST_F(WebServerTest, ThePageIsKeptByTheBrowser) {
+  Client client(server_.local_endpoint());
+  const std::string whole = client.get("/");
+  EXPECT_THAT(whole, StartsWith("HTTP/1.1 200 OK"));
+  EXPECT_THAT(whole, HasSubstr("Cache-Control: no-cache\r\n"));
+  const std::size_t tag = whole.find("ETag: ") + 6;
+  const std::string again = "If-None-Match: " + whole.substr(tag, whole.find("\r\n", tag) - tag) + "\r\n";
+  EXPECT_THAT(client.get("/", again), StartsWith("HTTP/1.1 304 Not Modified"));
+  EXPECT_THAT(client.get("/healthz"), StartsWith("HTTP/1.1 200 OK"));
+}
 TEST_F(WebServerTest, TheNewestNewsWin) {
   server_.publish_sensors(status_of("mast"), nullptr);
   EXPECT_THAT(Client(server_.local_endpoint()).get("/api/v1/status"), HasSubstr("\"mast\""));

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "daemon/web/http_server.hpp"
+
+namespace yuragi::daemon::web {
+
+/// One of the files that make the page; all of them are compiled in.
+struct PageFile {
+  std::string_view path;  ///< "/page.js"
+  std::string_view content_type;
+  std::string_view entity_tag;  ///< a digest of the text, in quotes (R. Fielding and others, RFC 9110, 2022, 8.8.3)
+  std::string_view text;
+};
+
+std::span<const PageFile> page_files();
+
+/// The file of the page that a GET or HEAD asks for, or that the browser has it already (304). Nothing: it asks for
+/// something else. The files are the same for everybody and hold no secret. Pure.
+std::optional<HttpResponse> page_answer(const HttpRequest& request);
+
+}  // namespace yuragi::daemon::web

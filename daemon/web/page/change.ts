@@ -1,0 +1,38 @@
+// What changes something: carried out, paired for where that is needed, and told.
+import { by_id, set_text } from "./element";
+import { Pairing } from "./pairing";
+import { ask, Refused } from "./request";
+
+const TOLD_FOR_MS = 6000;
+
+export class Change {
+  private hide: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(private readonly pairing: Pairing) {}
+
+  /** Asks for it; undefined where it was not done, which the person has been told. */
+  async make<T>(path: string, body: object): Promise<T | undefined> {
+    try {
+      return await ask<T>(path, body);
+    } catch (error) {
+      if (error instanceof Refused && error.status === 401) {
+        if (await this.pairing.open(error.message)) return this.make<T>(path, body);
+      } else {
+        this.tell(error instanceof Refused ? error.message : "Not done: the daemon does not answer.");
+      }
+      return undefined;
+    }
+  }
+
+  private tell(text: string): void {
+    const toast = by_id("toast");
+    set_text(by_id("alert"), text);
+    set_text(toast, text);
+    toast.hidden = false;
+    clearTimeout(this.hide);
+    this.hide = setTimeout(() => {
+      toast.hidden = true;
+      set_text(by_id("alert"), "");
+    }, TOLD_FOR_MS);
+  }
+}

@@ -1,0 +1,68 @@
+// The connection to the daemon: its state over the WebSocket /ws where it has one, else asked for twice a second.
+import { ask, Refused } from "./request";
+import { Status } from "./status";
+
+const ASK_EVERY_MS = 500;
+const TRY_AGAIN_AFTER_MS = 500;
+const SILENCE_MS = 2500; // of a WebSocket that speaks ten times a second
+
+export interface Listener {
+  news(status: Status): void;
+  /** The daemon answers, but says nothing of its state. */
+  refused(refusal: Refused): void;
+  /** It does not answer. */
+  lost(): void;
+}
+
+const after = (time_ms: number) => new Promise((resolve) => setTimeout(resolve, time_ms));
+
+/** Does the daemon say that it has /ws? */
+async function has_web_socket(): Promise<boolean> {
+  const description = await ask<{ paths: object }>("/api/v1/openapi.json");
+  return "/ws" in description.paths;
+}
+
+/** Hears the WebSocket until it ends. */
+function hear(listener: Listener): Promise<void> {
+  return new Promise((resolve) => {
+    const socket = new WebSocket((location.protocol === "https:" ? "wss://" : "ws://") + location.host + "/ws");
+    const end = () => {
+      socket.onclose = socket.onmessage = null;
+      socket.close();
+      resolve();
+    };
+    let silence = setTimeout(end, SILENCE_MS);
+    socket.onclose = () => {
+      clearTimeout(silence);
+      end();
+    };
+    socket.onmessage = (message) => {
+      if (typeof message.data !== "string") return;
+      clearTimeout(silence);
+      silence = setTimeout(end, SILENCE_MS);
+      const said = JSON.parse(message.data) as Partial<Status>;
+      if (said.wind && said.sensors) listener.news(said as Status);
+    };
+  });
+}
+
+/** Never ends. Each failure is told at once. */
+export async function listen(listener: Listener): Promise<never> {
+  for (;;) {
+    try {
+      listener.news(await ask<Status>("/api/v1/status"));
+      if (await has_web_socket()) {
+        await hear(listener);
+        listener.lost();
+      }
+      for (;;) {
+        await after(ASK_EVERY_MS);
+        listener.news(await ask<Status>("/api/v1/status"));
+      }
+    } catch (error) {
+      if (error instanceof Refused) listener.refused(error);
+      else listener.lost();
+    }
+    await after(TRY_AGAIN_AFTER_MS);
+  }
+}

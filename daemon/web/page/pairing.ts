@@ -1,0 +1,44 @@
+// The dialog for the code that lets this browser in.
+import { by_id, set_text } from "./element";
+import { ask, Refused } from "./request";
+
+export class Pairing {
+  private readonly dialog = by_id("pairing") as HTMLDialogElement;
+  private readonly code = by_id("pairing-code") as HTMLInputElement;
+  private readonly error = by_id("pairing-error");
+  private done: ((is_paired: boolean) => void) | undefined;
+
+  constructor() {
+    by_id("pairing-form").addEventListener("submit", (event) => {
+      event.preventDefault();
+      void this.send();
+    });
+    by_id("pairing-cancel").addEventListener("click", () => this.dialog.close());
+    this.dialog.addEventListener("close", () => this.end(false));
+  }
+
+  /** Opens it; true once this browser is paired, false where the person leaves it. */
+  open(why = ""): Promise<boolean> {
+    this.end(false);
+    this.code.value = "";
+    set_text(this.error, why.includes("token_file") ? why : "");
+    this.dialog.showModal();
+    return new Promise((resolve) => (this.done = resolve));
+  }
+
+  private end(is_paired: boolean): void {
+    this.done?.(is_paired);
+    this.done = undefined;
+  }
+
+  private async send(): Promise<void> {
+    try {
+      await ask("/api/v1/pair", { code: this.code.value });
+      this.end(true);
+      this.dialog.close();
+    } catch (error) {
+      set_text(this.error, error instanceof Refused ? error.message : "The daemon does not answer.");
+      this.code.select();
+    }
+  }
+}

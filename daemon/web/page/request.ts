@@ -1,0 +1,40 @@
+// Requests to the daemon, each within a time.
+
+const PATIENCE_MS = 2500;
+
+/** A daemon that answered, but not with what was asked for. */
+export class Refused extends Error {
+  constructor(
+    readonly status: number,
+    detail: string,
+  ) {
+    super(detail);
+  }
+}
+
+/** The JSON of its answer. Throws Refused, or any other error where no answer came. */
+export async function ask<T>(path: string, body?: object): Promise<T> {
+  const abort = new AbortController();
+  const patience = setTimeout(() => abort.abort(), PATIENCE_MS + (body ? PATIENCE_MS : 0));
+  try {
+    const answer = await fetch(path, {
+      signal: abort.signal,
+      ...(body && { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) }),
+    });
+    if (answer.ok) return (await answer.json()) as T;
+    throw new Refused(answer.status, await detail_of(answer));
+  } finally {
+    clearTimeout(patience);
+  }
+}
+
+/** Of a problem (RFC 9457), or what else it is. */
+async function detail_of(answer: Response): Promise<string> {
+  try {
+    const problem = (await answer.clone().json()) as { detail?: unknown };
+    if (typeof problem.detail === "string") return problem.detail;
+  } catch {
+    // It is no JSON: a server in front of the daemon says so.
+  }
+  return `${answer.status} ${answer.statusText}`.trim();
+}

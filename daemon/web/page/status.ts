@@ -1,0 +1,80 @@
+// What the daemon answers, as openapi.json describes it. What is not known is null.
+
+export interface Wind {
+  speed_m_s: number;
+  direction_deg: number | null;
+  source: "default" | "handover" | "live" | null;
+  live_weight: number;
+}
+
+export interface Sensor {
+  name: string;
+  driver: string;
+  state: string;
+  state_reason: string;
+  speed_m_s: number | null;
+  direction_deg: number | null;
+  gust_m_s: number | null;
+  age_s: number | null;
+}
+
+export interface Lateness {
+  p50_s: number;
+  p99_s: number;
+  max_s: number;
+}
+
+export interface Recorder {
+  state: "writing" | "retrying" | "hanging" | null;
+  written: number;
+  waiting: number;
+  lost: number;
+  free_bytes: number | null;
+  error: string;
+}
+
+export interface Status {
+  verdict: "well" | "attention";
+  attention: string[];
+  age_s: number;
+  address: string;
+  software: string;
+  tick_rate_hz: number;
+  wind: Wind;
+  sensors: Sensor[];
+  recorder: Recorder | null;
+  clients: { connected: number; refused: number; stuck: number; idle: number };
+  late_ticks: number;
+  io_lateness: Lateness | null;
+  tick_lateness: Lateness | null;
+}
+
+export interface Scene {
+  name: string;
+  kind: string;
+  is_shown: boolean;
+}
+
+export interface Player {
+  sensor: string;
+  file: string;
+  is_open: boolean;
+  position_s: number | null;
+  length_s: number | null;
+  rate: number | null;
+  is_paused: boolean | null;
+  is_finished: boolean | null;
+  refusal: string;
+}
+
+/** The states of a sensor whose readings make the wind. */
+const BELIEVED = ["live", "replayed", "simulated"];
+
+export const is_believed = (sensor: Sensor) => BELIEVED.includes(sensor.state);
+
+/** The sensor that the page speaks of: the most real one that is believed, and of these the first. */
+export function leading_sensor(status: Status): Sensor | undefined {
+  return status.sensors
+    .filter(is_believed)
+    .sort((one, other) => BELIEVED.indexOf(one.state) - BELIEVED.indexOf(other.state))[0];
+}

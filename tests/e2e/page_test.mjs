@@ -1,0 +1,308 @@
+// The daemon's page in a real browser. Each test waits for what the page shows; HANG_MS is reached only by what hangs.
+// usage: page_test.py
+import assert from "node:assert/strict";
+import { spawn, execFileSync } from "node:child_process";
+import fs from "node:fs";
+import { createRequire } from "node:module";
+import os from "node:os";
+import path from "node:path";
+import { after, before, test } from "node:test";
+
+const HANG_MS = 60_000;
+const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
+const [httpPort, sensorPort, pairingPort, readingPort, playerPort] = ports;
+const require = createRequire(path.join(tools, "package.json"));
+const { chromium } = require("playwright-core");
+const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+
+const HOSTILE = `<img src=x onerror="document.title='owned'">`;
+const SCENES = `
+[[scene]]
+name = "meadow"
+kind = "grass"
+blades_across = 20
+blades_deep = 20
+[[scene]]
+name = "lawn"
+kind = "grass"
+blades_across = 20
+blades_deep = 20
+`;
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), "yuragi-page-"));
+const running = new Set();
+let browser;
+
+/** Runs one of our programs until it says so. */
+function start(program, args, says) {
+  const child = spawn(path.join(programs, program), args, { stdio: ["ignore", "pipe", "pipe"] });
+  running.add(child);
+  child.ended = new Promise((resolve) => child.on("exit", resolve));
+  let said = "";
+  return new Promise((resolve, reject) => {
+    const hear = (text) => {
+      said += text;
+      if (says.test(said)) resolve(child);
+    };
+    child.stdout.on("data", hear);
+    child.stderr.on("data", hear);
+    child.on("exit", () => reject(new Error(`${program} ended: ${said}`)));
+  });
+}
+async function kill(child) {
+  child.kill("SIGKILL");
+  await child.ended;
+  running.delete(child);
+}
+function configured(name, text) {
+  const file = path.join(folder, name);
+  fs.writeFileSync(file, text + SCENES);
+  return file;
+}
+const startDaemon = (file) => start("yuragi", ["run", "--config", file, "--listen", "127.0.0.1:0"], /answering at/);
+const startSensor = () => start("yuragi-sim", ["nmea", "--tcp", `127.0.0.1:${sensorPort}`, "--rate", "5"], /listening|127\.0\.0\.1/);
+
+/** A page, and all that it says on its console or asks of others. */
+async function open(url, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1920, height: 1080 }, ...options });
+  const page = await context.newPage();
+  page.setDefaultTimeout(HANG_MS);
+  page.complaints = [];
+  page.on("console", (message) => page.complaints.push(message.text()));
+  page.on("pageerror", (error) => page.complaints.push(error.message));
+  page.on("request", (request) => {
+    if (!request.url().startsWith(url)) page.complaints.push("asks for " + request.url());
+  });
+  await page.goto(url);
+  return page;
+}
+const sentence = (page) => page.textContent("#sentence");
+const waitForSentence = (page, pattern) =>
+  page.waitForFunction((source) => new RegExp(source).test(document.getElementById("sentence").textContent), pattern.source);
+async function assertAccessible(page, what) {
+  const faults = await page.evaluate(async (source) => {
+    if (!window.axe) Object.assign(window, { axe: new Function(source + "; return axe;")() });
+    const { violations } = await window.axe.run();
+    return violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => `${node.html} ${node.failureSummary}`).join("; ")}`);
+  }, axe);
+  assert.deepEqual(faults, [], what);
+}
+const screenshot = (page, name) => page.screenshot({ path: path.join(screenshots, name + ".png"), fullPage: true });
+
+const LIVE = /^Live: roof, (\d+\.\d m\/s from the [a-z-]+|calm), \d+(\.\d)? s old$/;
+let config, daemon, sensor, url;
+
+before(async () => {
+  fs.mkdirSync(screenshots, { recursive: true });
+  browser = await chromium.launch({
+    executablePath: chromiumPath,
+    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist"],
+  });
+  config = configured("live.toml", `
+[http]
+listen = "127.0.0.1:${httpPort}"
+[[sensor]]
+name = "roof"
+driver = "nmea"
+transport = "tcp"
+host = "127.0.0.1"
+port = ${sensorPort}
+`);
+  url = `http://127.0.0.1:${httpPort}/`;
+  sensor = await startSensor();
+  daemon = await startDaemon(config);
+});
+after(async () => {
+  await browser?.close();
+  for (const child of running) await kill(child);
+  fs.rmSync(folder, { recursive: true });
+});
+
+test("it needs nothing but the daemon, and says nothing on the console", { timeout: 2 * HANG_MS }, async () => {
+  for (const [colorScheme, width] of [["light", 320], ["dark", 1920]]) {
+    const page = await open(url, { colorScheme, viewport: { width, height: 800 } });
+    await waitForSentence(page, LIVE);
+    await page.waitForSelector("#scenes [role=switch]");
+    await page.waitForSelector(".trace canvas");
+    assert.match(await page.title(), /^Live(, with faults)? – Yuragi$/); // faults: ticks are late where the machine has much to do
+    assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width, "wider than the screen");
+    await assertAccessible(page, colorScheme);
+    await screenshot(page, `live-${width}-${colorScheme}`);
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+  }
+});
+
+test("the keyboard shows and hides a scene", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  const meadow = page.getByRole("switch", { name: /meadow/ });
+  await meadow.waitFor();
+  await page.selectOption("#fade", "0");
+  await meadow.focus();
+  const [answer] = await Promise.all([page.waitForResponse((response) => response.request().method() === "POST"), page.keyboard.press("Space")]);
+  assert.equal((await answer.json()).scenes[0].is_shown, false);
+  await page.waitForFunction(() => !document.querySelector("#scenes [role=switch]").checked);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("one button hides all scenes, and shows them again", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await page.getByRole("switch", { name: /lawn/ }).waitFor();
+  await page.selectOption("#fade", "0");
+  const shown = () => page.$$eval("#scenes [role=switch]", (all) => all.map((one) => one.checked));
+  await page.getByRole("button", { name: "Hide all" }).click();
+  await page.getByRole("button", { name: "Show all" }).waitFor();
+  assert.deepEqual(await shown(), [false, false]);
+  await page.getByRole("button", { name: "Show all" }).click();
+  await page.getByRole("button", { name: "Hide all" }).waitFor();
+  assert.deepEqual(await shown(), [true, true]);
+  await page.context().close();
+});
+
+test("motion is left out for whoever wants none", { timeout: 2 * HANG_MS }, async () => {
+  for (const [reducedMotion, duration] of [["reduce", "0s"], ["no-preference", "0.4s"]]) {
+    const page = await open(url, { reducedMotion });
+    await waitForSentence(page, LIVE);
+    assert.equal(await page.evaluate(() => getComputedStyle(document.querySelector(".needle")).transitionDuration), duration);
+    await page.context().close();
+  }
+});
+
+test("the sentence follows a sensor that is killed, and one that is back", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await waitForSentence(page, LIVE);
+  await kill(sensor);
+  await waitForSentence(page, /because roof is disconnected$/);
+  assert.equal(await page.getAttribute("#verdict", "data-light"), "other");
+  assert.match(await page.textContent("#attention"), /sensor roof is disconnected: /);
+  assert.equal(await page.textContent("#sensors .badge"), "disconnected");
+  await screenshot(page, "sensor-killed-1920-light");
+  sensor = await startSensor();
+  await waitForSentence(page, LIVE);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("a daemon that is killed is told at once, nothing old is shown, and it is back without a reload", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url, { viewport: { width: 320, height: 800 }, colorScheme: "dark" });
+  await waitForSentence(page, LIVE);
+  await page.waitForSelector("#scenes [role=switch]");
+  await page.evaluate(() => (window.loadedOnce = true));
+  await kill(daemon);
+  await waitForSentence(page, /^No connection since \d\d:\d\d:\d\d$/);
+  assert.equal(await page.getAttribute("#verdict", "data-light"), "lost");
+  const numbers = await page.$$eval(".figure .number, #sensors li > .line:nth-child(2) > :first-child, #health dd", (all) => all.map((one) => one.textContent));
+  assert.deepEqual([...new Set(numbers)], ["–"]);
+  assert.equal(await page.textContent("#sensors .badge"), "not known");
+  assert.ok(await page.isDisabled("#scenes [role=switch]"));
+  await assertAccessible(page, "lost");
+  await screenshot(page, "lost-320-dark");
+  daemon = await startDaemon(config);
+  await waitForSentence(page, LIVE);
+  assert.equal(await page.evaluate(() => window.loadedOnce), true);
+  await page.context().close();
+});
+
+test("a recording that plays is paused and resumed", { timeout: 2 * HANG_MS }, async () => {
+  const table = path.join(folder, "wind.csv");
+  const rows = Array.from({ length: 300 }, (_, i) => `2026-01-01T00:${String(Math.floor(i / 60)).padStart(2, "0")}:${String(i % 60).padStart(2, "0")}Z,3.${i % 10},200`);
+  fs.writeFileSync(table, ["time,speed,direction", ...rows, ""].join("\n"));
+  const recording = path.join(folder, "summer.windlog");
+  execFileSync(path.join(programs, "yuragi"), ["import", table, "-o", recording]);
+  await startDaemon(configured("player.toml", `
+[http]
+listen = "127.0.0.1:${playerPort}"
+[[sensor]]
+name = "summer"
+driver = "windlog"
+file = "${recording}"
+loop = true
+`));
+  const page = await open(`http://127.0.0.1:${playerPort}/`);
+  await waitForSentence(page, /^A recording, not live: summer, /);
+  await page.click("#recordings button:text-is('Pause')");
+  await page.waitForSelector("#recordings button:text-is('Resume')");
+  assert.match(await page.textContent("#recordings .reason"), /^\d:\d\d of 4:59, paused$/);
+  await page.click("#recordings button:text-is('Resume')");
+  await page.waitForSelector("#recordings button:text-is('Pause')");
+  await page.selectOption("#recordings select", "10");
+  await page.waitForResponse(async (response) => response.url().endsWith("/player") && (await response.json()).players[0].rate === 10);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
+});
+
+test("by WebSocket: each message is shown, and silence is no connection", { timeout: 2 * HANG_MS }, async () => {
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  page.setDefaultTimeout(HANG_MS);
+  const status = await (await fetch(url + "api/v1/status")).json();
+  let open;
+  const opened = new Promise((resolve) => (open = resolve));
+  await page.routeWebSocket(/\/ws$/, open);
+  await page.route("**/api/v1/openapi.json", (route) => route.fulfill({ json: { paths: { "/ws": {} } } }));
+  await page.goto(url);
+  const socket = await opened;
+  const sensors = [{ ...status.sensors[0], state: "live", speed_m_s: 17.3, direction_deg: 225, age_s: 0.1 }];
+  for (const [attention, light] of [[[], "live"], [["the disk is nearly full"], "attention"]]) {
+    socket.send(JSON.stringify({ ...status, sensors, attention, verdict: attention.length === 0 ? "well" : "attention" }));
+    await page.waitForSelector(`[data-light=${light}]`);
+    assert.match(await sentence(page), /^Live: roof, 17\.3 m\/s from the south-west, /);
+    assert.equal(await page.textContent("#attention"), attention.join());
+  }
+  await page.route("**/api/v1/status", (route) => route.abort());
+  await waitForSentence(page, /^No connection since /);
+  await page.unroute("**/api/v1/status");
+  await waitForSentence(page, LIVE);
+  await context.close();
+});
+
+/** A daemon with a token, asked as from another machine: the page, and the code of now. */
+async function openFromElsewhere(port, settings) {
+  const file = configured(`paired-${port}.toml`, `
+[http]
+listen = "127.0.0.1:${port}"
+token_file = "${path.join(folder, `token-${port}`)}"
+${settings}
+[[sensor]]
+name = ${JSON.stringify(HOSTILE)}
+driver = "synthetic"
+`);
+  const token = (...args) => execFileSync(path.join(programs, "yuragi"), ["token", "--config", file, ...args], { encoding: "utf8" });
+  token("--new");
+  await startDaemon(file);
+  const page = await open(`http://127.0.0.1:${port}/`, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
+  return { page, code: () => JSON.parse(token("--json")).pairing_code };
+}
+
+test("another machine reads, and pairs before it changes something; hostile names stay text", { timeout: 2 * HANG_MS }, async () => {
+  const { page, code } = await openFromElsewhere(pairingPort, "");
+  await waitForSentence(page, /^Synthetic wind, not measured: <img/);
+  assert.ok((await sentence(page)).includes(HOSTILE));
+  assert.equal(await page.textContent("#sensors h3"), HOSTILE);
+  assert.equal(await page.$("main img"), null);
+  assert.equal(await page.title(), "Not live – Yuragi");
+  assert.deepEqual(page.complaints, []);
+
+  await page.getByRole("switch", { name: /meadow/ }).click();
+  await page.fill("#pairing-code", "0000-0000");
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => /not the code/.test(document.getElementById("pairing-error").textContent));
+  await assertAccessible(page, "pairing");
+  await screenshot(page, "pairing-1920-light");
+  await page.fill("#pairing-code", code());
+  const done = page.waitForResponse((response) => response.url().endsWith("/scenes") && response.request().method() === "POST" && response.ok());
+  await page.click("#pairing button.primary");
+  assert.equal((await (await done).json()).scenes[0].is_shown, false);
+  await page.context().close();
+});
+
+test("where reading takes the token, another machine sees nothing until it is paired", { timeout: 2 * HANG_MS }, async () => {
+  const { page, code } = await openFromElsewhere(readingPort, 'readers = "token"');
+  await waitForSentence(page, /until it is paired$/);
+  assert.equal(await page.isVisible("#cards"), false);
+  await page.click("#pair-now");
+  await page.fill("#pairing-code", code());
+  await page.keyboard.press("Enter");
+  await waitForSentence(page, /^Synthetic wind, not measured: /);
+  await page.context().close();
+});
