@@ -57,7 +57,8 @@ struct ClientCounts {
 
 /// The stream of engine/wire/pose.fbs over TCP: size-prefixed messages to any number of clients.
 ///
-/// Each client gets a Hello, subscribes once, and is then sent the newest messages of that kind (ClientQueue). Where
+/// Each client gets a Hello, subscribes once, and is then sent the newest messages of that kind (ClientQueue), thinned
+/// out as it asked for (PoseViews, FramePace). Where
 /// the scenes change, a client that takes new ones gets them before the first frame of them; another one is let go.
 /// After that it may send Controls, each of which gets a reply. A client that sends anything else, does not subscribe,
 /// asks for nothing, or stops reading is disconnected, and that is logged (ClientLog); where it can still read, it is
