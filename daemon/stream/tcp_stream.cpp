@@ -69,7 +69,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
       : socket_(std::move(socket)),
         feed_(std::move(feed)),
         queue_(feed_->settings.limits, feed_->hello, feed_->settings.now()),
-        peer_(std::move(peer)) {
+        peer_(std::move(peer)),
+        is_trusted_(peer_.is_local) {
     error_code ignored;
     endpoint_ = text_of(socket_.remote_endpoint(ignored));
     socket_.set_option(tcp::no_delay(true), ignored);
@@ -103,7 +104,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   void offer_newest_sensors() {
-    if (const SharedBytes& sensors = feed_->newest_sensors(peer_.is_local)) queue_.offer_sensors(sensors);
+    if (const SharedBytes& sensors = feed_->newest_sensors(is_trusted_)) queue_.offer_sensors(sensors);
     write();
   }
 
@@ -211,9 +212,14 @@ class Connection : public std::enable_shared_from_this<Connection> {
     feed_->log->info("client {} {} subscribes to{}{}{}{}", endpoint_, client_name_, wish->poses ? " poses" : "",
                      wish->sensors ? " sensors" : "", wish->raw ? " raw messages" : "",
                      wish->poses || wish->sensors || wish->raw ? "" : " nothing");
+    if (!is_trusted_ && !wish->token.is_empty()) {
+      const auto& is_token = feed_->settings.is_token;
+      is_trusted_ = is_token && is_token(wish->token.reveal());
+      if (!is_trusted_) return dismiss("its token is not that of this installation");
+    }
     const auto& raw_refusal = feed_->settings.raw_refusal;
     if (wish->raw && raw_refusal) {
-      if (auto why = raw_refusal(peer_.is_local)) return dismiss(std::move(*why));
+      if (auto why = raw_refusal(is_trusted_)) return dismiss(std::move(*why));
     }
     takes_new_scenes_ = wish->takes_new_scenes;
     wants_traces_ = wish->raw;
@@ -222,7 +228,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (wish->poses) poses_ = feed_->poses.view(wish->thinning);
     if (wish->rate_hz > 0.0) pace_.emplace(wish->rate_hz, now);
     queue_.subscribe({.poses = wish->poses, .sensors = wish->sensors, .traces = wish->raw},
-                     poses_ ? poses_->scenes() : nullptr, nullptr, feed_->newest_sensors(peer_.is_local), now);
+                     poses_ ? poses_->scenes() : nullptr, nullptr, feed_->newest_sensors(is_trusted_), now);
     offer_frame();
     write();
     read_prefix();  // notices when it closes the connection
@@ -234,7 +240,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (wish.parameters && feed_->settings.on_parameters) return take_parameters(*wish.parameters);
     const auto& answer = feed_->settings.on_control;
     const wire::ControlReply reply =
-        answer ? answer(wish, peer_.is_local)
+        answer ? answer(wish, is_trusted_)
                : wire::ControlReply{.done = false, .message = "this daemon has no scenes", .scenes = {}};
     const bool changes_players = wish.player && wish.player->action != wire::PlayerAction::kReport;
     if (!wish.scene.empty() || changes_players) {
@@ -246,7 +252,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// The reply comes later, unless the client has gone by then.
   void take_reload(const wire::ReloadCommand& command) {
-    feed_->settings.on_reload(command, peer_.is_local, [weak = weak_from_this()](const wire::ControlReply& reply) {
+    feed_->settings.on_reload(command, is_trusted_, [weak = weak_from_this()](const wire::ControlReply& reply) {
       if (const auto self = weak.lock()) self->send_reply(reply);
     });
     if (is_open()) read_prefix();
@@ -254,7 +260,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void take_parameters(const wire::ParameterCommand& command) {
     const bool sets = !command.edits.empty();
-    feed_->settings.on_parameters(command, peer_.is_local,
+    feed_->settings.on_parameters(command, is_trusted_,
                                   [weak = weak_from_this(), sets](const wire::ControlReply& reply) {
                                     const auto self = weak.lock();
                                     if (!self) return;
@@ -279,6 +285,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::shared_ptr<PoseView> poses_;  // null: it wants none
   std::optional<FramePace> pace_;    // none: every frame
   Peer peer_;
+  bool is_trusted_;  // of this machine, or it has shown the token
   std::string endpoint_, client_name_;
   std::string dismissed_because_;
   bool takes_new_scenes_ = false;

@@ -65,6 +65,9 @@ bool read(const fb::Subscribe& from, Subscribe& to) {
     const auto* name = from.scenes()->Get(static_cast<flatbuffers::uoffset_t>(i));
     if (!read_text(name, to.thinning.scenes.emplace_back())) return false;
   }
+  std::string token;
+  if (!read_text(from.token(), token)) return false;
+  to.token = Secret(std::move(token));
   return is_within(to.thinning.every, 1, kMaxEvery) && is_within(to.rate_hz, 0.0, kMaxRate_hz) &&
          read_text(from.client(), to.client) && read_text(from.raw_sensor(), to.raw_sensor);
 }

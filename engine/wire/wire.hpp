@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/base/result.hpp"
+#include "engine/base/secret.hpp"
 #include "engine/base/time.hpp"
 #include "engine/look/camera.hpp"
 #include "engine/look/cloth_look.hpp"
@@ -87,6 +88,7 @@ struct Subscribe {
   bool takes_new_scenes = false;  ///< Scenes may come again; otherwise it is let go when the scenes change
   Thinning thinning = {};
   double rate_hz = 0.0;  ///< at most so many frames a second, up to kMaxRate_hz; 0: all
+  Secret token = {};     ///< the installation's; empty: none is shown
 };
 
 /// A skeleton of a kind that this build does not know is decoded as one of no strands, and so are its poses.

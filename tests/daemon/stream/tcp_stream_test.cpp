@@ -179,6 +179,7 @@ class TcpStreamTest : public testing::Test {
     settings.raw_refusal = [](bool is_local) {
       return is_local ? std::nullopt : std::optional<std::string>("raw messages are not for other machines");
     };
+    settings.is_token = [](const std::string& token) { return token == "a token of this wall"; };
     settings.on_control = [this](const wire::Control& control, bool is_local) {
       controls_.push_back(control);
       all_were_local_ = all_were_local_ && is_local;
@@ -339,6 +340,44 @@ TEST_F(TcpStreamTest, ASlowClientInTheMiddleOfAFrameFinishesItAndThenGetsTheNewS
   EXPECT_LT(slow.frames.size(), 20U);
   EXPECT_LE(old.frames.back(), kFramesEach);
   EXPECT_EQ(old.hellos.back().refused, "the scenes have changed; connect again");
+}
+
+wire::Bytes subscribe_with(const char* token) {
+  return wire::encode(wire::Subscribe{.sensors = true, .client = "a phone", .raw = true, .token = Secret(token)});
+}
+
+TEST_F(TcpStreamTest, WhoeverShowsTheTokenIsTreatedAsOneOfThisMachine) {
+  const LogCapture log;
+  RemoteClient phone(io_, stream_.local_endpoint());
+  phone.send(subscribe_with("a token of this wall"));
+  ASSERT_TRUE(turn_until([&] { return !phone.scenes.empty(); }));
+  EXPECT_TRUE(stream_.wants_trace("roof"));
+  phone.send(wire::encode(samples::control()));
+  phone.send(wire::encode(wire::Control{.scene = "", .reload = wire::ReloadCommand{}}));
+  ASSERT_TRUE(turn_until([&] { return phone.replies.size() == 1 && reloads_.size() == 1; }));
+  EXPECT_TRUE(all_were_local_);
+  publish_sensors();  // for clients of this machine alone
+  ASSERT_TRUE(turn_until([&] { return phone.sensors.size() == 1; }));
+  EXPECT_EQ(log.text().find("a token of"), std::string::npos) << "it is never logged";
+}
+
+TEST_F(TcpStreamTest, WhoeverShowsAWrongTokenIsToldSoAndLetGo) {
+  const LogCapture log;
+  RemoteClient phone(io_, stream_.local_endpoint());
+  phone.send(subscribe_with("a token of that wall"));
+  ASSERT_TRUE(turn_until([&] { return phone.closed; }));
+  ASSERT_EQ(phone.hellos.size(), 2u);
+  EXPECT_THAT(phone.hellos[1].refused.value_or(""), testing::HasSubstr("token"));
+  EXPECT_TRUE(phone.scenes.empty());
+  EXPECT_EQ(log.text().find("a token of"), std::string::npos);
+}
+
+TEST_F(TcpStreamTest, WithoutATokenAClientOfAnotherMachineStaysOne) {
+  RemoteClient phone(io_, stream_.local_endpoint());
+  phone.send(wire::encode(wire::Subscribe{.poses = false, .client = "a phone"}));
+  phone.send(wire::encode(samples::control()));
+  ASSERT_TRUE(turn_until([&] { return phone.replies.size() == 1; }));
+  EXPECT_FALSE(all_were_local_);
 }
 
 wire::Bytes subscribe_to(const wire::Thinning& thinning, double rate_hz = 0.0) {

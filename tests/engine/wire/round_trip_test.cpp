@@ -38,11 +38,14 @@ TEST(WireRoundTrip, SubscribeComesBackAsItWas) {
   Subscribe less = samples::subscribe();
   less.thinning = {.scenes = {"elm", "pond"}, .every = 8};
   less.rate_hz = 12.5;
+  less.token = Secret("a token of this wall");
   EXPECT_EQ(decoded<Subscribe>(encode(less)).thinning, less.thinning);
   EXPECT_EQ(decoded<Subscribe>(encode(less)).rate_hz, 12.5);
+  EXPECT_EQ(decoded<Subscribe>(encode(less)).token, less.token);
   const Subscribe plain = decoded<Subscribe>(encode(Subscribe{.client = ""}));
   EXPECT_TRUE(plain.thinning.is_all());
   EXPECT_EQ(plain.rate_hz, 0.0);
+  EXPECT_TRUE(plain.token.is_empty());
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.client = ""})).raw) << "only where it is asked for";
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.client = ""})).takes_new_scenes);
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.poses = false, .client = ""})).poses);
