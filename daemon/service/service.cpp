@@ -174,6 +174,9 @@ class Service::Io {
     settings.raw_refusal = [this](bool is_local) {
       return daemon::settings::control_refusal(control_, is_local, "raw messages cannot be watched");
     };
+    if (const Secret token = token_of(config.http); !token.is_empty()) {
+      settings.is_token = [access = web::Access(token)](const std::string& given) { return access.is_token(given); };
+    }
     settings.admission = admission_of(config.stream);
     return settings;
   }

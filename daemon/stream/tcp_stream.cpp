@@ -12,6 +12,8 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "daemon/stream/client_log.hpp"
+#include "daemon/stream/frame_pace.hpp"
+#include "daemon/stream/pose_views.hpp"
 #include "daemon/stream/tcp_listening.hpp"
 #include "engine/base/address.hpp"
 #include "engine/base/printable_text.hpp"
@@ -43,8 +45,7 @@ SharedBytes share(wire::Bytes bytes) {
 struct Feed {
   TcpStreamSettings settings;
   SharedBytes hello;
-  SharedBytes scenes;
-  SharedBytes newest_frame;
+  PoseViews poses;
   SharedBytes newest_sensors_here, newest_sensors_elsewhere;
   std::size_t send_buffer_bytes = kMinSendBufferBytes;
   std::unique_ptr<ClientLog> log;
@@ -64,11 +65,12 @@ struct Feed {
 /// One client. Its pending handlers hold it, so it lives until the last of them has run.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(tcp::socket socket, Peer peer, std::shared_ptr<const Feed> feed)
+  Connection(tcp::socket socket, Peer peer, std::shared_ptr<Feed> feed)
       : socket_(std::move(socket)),
         feed_(std::move(feed)),
         queue_(feed_->settings.limits, feed_->hello, feed_->settings.now()),
-        peer_(std::move(peer)) {
+        peer_(std::move(peer)),
+        is_trusted_(peer_.is_local) {
     error_code ignored;
     endpoint_ = text_of(socket_.remote_endpoint(ignored));
     socket_.set_option(tcp::no_delay(true), ignored);
@@ -85,20 +87,24 @@ class Connection : public std::enable_shared_from_this<Connection> {
     write();
   }
 
-  void offer_frame(const SharedBytes& frame) {
-    queue_.offer_frame(frame);
+  /// Offers the newest frame, unless the client has had it or one has been too short a time ago.
+  void offer_frame() {
+    if (!is_open() || !queue_.wants_poses() || !poses_->has_frame() || poses_->sequence() == offered_frame_) return;
+    if (pace_ && !pace_->take(feed_->settings.now())) return;
+    offered_frame_ = poses_->sequence();
+    queue_.offer_frame(poses_->frame());
     write();
   }
 
-  void offer_scenes(const SharedBytes& scenes) {
+  void offer_scenes() {
     if (!queue_.wants_poses()) return;
     if (!takes_new_scenes_) return dismiss("the scenes have changed; connect again");
-    queue_.offer_scenes(scenes);
+    queue_.offer_scenes(poses_->scenes());
     write();
   }
 
   void offer_newest_sensors() {
-    if (const SharedBytes& sensors = feed_->newest_sensors(peer_.is_local)) queue_.offer_sensors(sensors);
+    if (const SharedBytes& sensors = feed_->newest_sensors(is_trusted_)) queue_.offer_sensors(sensors);
     write();
   }
 
@@ -127,6 +133,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// Disconnects the client if it has exceeded a time limit, which is returned.
   std::optional<Overdue> check(MonoTime now) {
+    offer_frame();  // the last one, where no other comes to be offered in its stead
     const auto overdue = is_open() ? queue_.overdue(now) : std::nullopt;
     if (!overdue) return overdue;
     const std::string why = reason_text(*overdue, feed_->settings.limits);
@@ -205,15 +212,24 @@ class Connection : public std::enable_shared_from_this<Connection> {
     feed_->log->info("client {} {} subscribes to{}{}{}{}", endpoint_, client_name_, wish->poses ? " poses" : "",
                      wish->sensors ? " sensors" : "", wish->raw ? " raw messages" : "",
                      wish->poses || wish->sensors || wish->raw ? "" : " nothing");
+    if (!is_trusted_ && !wish->token.is_empty()) {
+      const auto& is_token = feed_->settings.is_token;
+      is_trusted_ = is_token && is_token(wish->token.reveal());
+      if (!is_trusted_) return dismiss("its token is not that of this installation");
+    }
     const auto& raw_refusal = feed_->settings.raw_refusal;
     if (wish->raw && raw_refusal) {
-      if (auto why = raw_refusal(peer_.is_local)) return dismiss(std::move(*why));
+      if (auto why = raw_refusal(is_trusted_)) return dismiss(std::move(*why));
     }
     takes_new_scenes_ = wish->takes_new_scenes;
     wants_traces_ = wish->raw;
     traced_sensor_ = wish->raw_sensor;
-    queue_.subscribe({.poses = wish->poses, .sensors = wish->sensors, .traces = wish->raw}, feed_->scenes,
-                     feed_->newest_frame, feed_->newest_sensors(peer_.is_local), feed_->settings.now());
+    const MonoTime now = feed_->settings.now();
+    if (wish->poses) poses_ = feed_->poses.view(wish->thinning);
+    if (wish->rate_hz > 0.0) pace_.emplace(wish->rate_hz, now);
+    queue_.subscribe({.poses = wish->poses, .sensors = wish->sensors, .traces = wish->raw},
+                     poses_ ? poses_->scenes() : nullptr, nullptr, feed_->newest_sensors(is_trusted_), now);
+    offer_frame();
     write();
     read_prefix();  // notices when it closes the connection
   }
@@ -224,7 +240,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (wish.parameters && feed_->settings.on_parameters) return take_parameters(*wish.parameters);
     const auto& answer = feed_->settings.on_control;
     const wire::ControlReply reply =
-        answer ? answer(wish, peer_.is_local)
+        answer ? answer(wish, is_trusted_)
                : wire::ControlReply{.done = false, .message = "this daemon has no scenes", .scenes = {}};
     const bool changes_players = wish.player && wish.player->action != wire::PlayerAction::kReport;
     if (!wish.scene.empty() || changes_players) {
@@ -236,7 +252,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// The reply comes later, unless the client has gone by then.
   void take_reload(const wire::ReloadCommand& command) {
-    feed_->settings.on_reload(command, peer_.is_local, [weak = weak_from_this()](const wire::ControlReply& reply) {
+    feed_->settings.on_reload(command, is_trusted_, [weak = weak_from_this()](const wire::ControlReply& reply) {
       if (const auto self = weak.lock()) self->send_reply(reply);
     });
     if (is_open()) read_prefix();
@@ -244,7 +260,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   void take_parameters(const wire::ParameterCommand& command) {
     const bool sets = !command.edits.empty();
-    feed_->settings.on_parameters(command, peer_.is_local,
+    feed_->settings.on_parameters(command, is_trusted_,
                                   [weak = weak_from_this(), sets](const wire::ControlReply& reply) {
                                     const auto self = weak.lock();
                                     if (!self) return;
@@ -264,15 +280,19 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   tcp::socket socket_;
-  std::shared_ptr<const Feed> feed_;
+  std::shared_ptr<Feed> feed_;
   ClientQueue queue_;
+  std::shared_ptr<PoseView> poses_;  // null: it wants none
+  std::optional<FramePace> pace_;    // none: every frame
   Peer peer_;
+  bool is_trusted_;  // of this machine, or it has shown the token
   std::string endpoint_, client_name_;
   std::string dismissed_because_;
   bool takes_new_scenes_ = false;
   bool wants_traces_ = false;
   std::string traced_sensor_;                         // empty: all of them
   std::map<std::string, std::uint64_t> lost_traces_;  // of each sensor, since the last trace that was queued
+  std::uint64_t offered_frame_ = 0;                   // by its number in PoseView::sequence()
   bool is_writing_ = false;
   std::array<std::uint8_t, wire::kSizePrefixBytes> prefix_{};
   wire::Bytes body_;
@@ -286,7 +306,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   Server(asio::io_context& io, std::string_view listen, TcpStreamSettings settings)
       : acceptor_(open_acceptor(io, listen)), check_timer_(io), accept_timer_(io) {
     feed_->hello = share(wire::encode(settings.hello));
-    feed_->scenes = share(wire::encode(settings.scenes));
+    feed_->poses.set_scenes(share(wire::encode(settings.scenes)));
     settings.scenes.scenes.clear();  // only the encoded bytes are needed from here on
     feed_->log = std::make_unique<ClientLog>(settings.log, settings.now);
     feed_->settings = std::move(settings);
@@ -316,14 +336,13 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
       feed_->send_buffer_bytes = 2 * frame->size();
       for (const auto& connection : connections_) connection->limit_send_buffer();
     }
-    feed_->newest_frame = std::move(frame);
-    for (const auto& connection : connections_) connection->offer_frame(feed_->newest_frame);
+    feed_->poses.set_frame(std::move(frame));
+    for (const auto& connection : connections_) connection->offer_frame();
   }
 
   void publish_scenes(SharedBytes scenes) {
-    feed_->scenes = std::move(scenes);
-    feed_->newest_frame.reset();
-    for (const auto& connection : connections_) connection->offer_scenes(feed_->scenes);
+    feed_->poses.set_scenes(std::move(scenes));
+    for (const auto& connection : connections_) connection->offer_scenes();
   }
 
   void publish_sensors(SharedBytes here, SharedBytes elsewhere) {

@@ -22,7 +22,7 @@ struct TcpStreamSettings {
   wire::Scenes scenes;  ///< the second message to clients that subscribe to poses, until others are published
   AdmissionLimits admission = {};  ///< further clients are refused with a Hello that says why
   /// Carries out a client's request about scenes or recordings and returns the reply; `is_local`: the client is on this
-  /// machine. Empty: every request is refused.
+  /// machine, or has shown the token. Empty: every request is refused.
   std::function<wire::ControlReply(const wire::Control& control, bool is_local)> on_control = {};
   /// Has the configuration read again for a client, and calls `reply` once on this thread, at once or later. Empty:
   /// such a request goes to on_control.
@@ -35,6 +35,10 @@ struct TcpStreamSettings {
       on_parameters = {};
   /// Why a client may not have raw messages, if so; then the connection ends with that reason. Empty: everybody may.
   std::function<std::optional<std::string>(bool is_local)> raw_refusal = {};
+  /// Is this the installation's token? A client of another machine that shows it in its Subscribe is then treated as
+  /// one of this machine, wherever `is_local` is asked about above; one that shows a wrong token is let go. Empty:
+  /// there is no token.
+  std::function<bool(const std::string& token)> is_token = {};
   ClientLimits limits = {};
   LogAllowance::Settings log = {};                           ///< how many lines clients may cause in the log
   Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are checked
@@ -57,7 +61,8 @@ struct ClientCounts {
 
 /// The stream of engine/wire/pose.fbs over TCP: size-prefixed messages to any number of clients.
 ///
-/// Each client gets a Hello, subscribes once, and is then sent the newest messages of that kind (ClientQueue). Where
+/// Each client gets a Hello, subscribes once, and is then sent the newest messages of that kind (ClientQueue), thinned
+/// out as it asked for (PoseViews, FramePace). Where
 /// the scenes change, a client that takes new ones gets them before the first frame of them; another one is let go.
 /// After that it may send Controls, each of which gets a reply. A client that sends anything else, does not subscribe,
 /// asks for nothing, or stops reading is disconnected, and that is logged (ClientLog); where it can still read, it is

@@ -57,7 +57,19 @@ bool read(const fb::Subscribe& from, Subscribe& to) {
   to.sensors = from.sensors();
   to.raw = from.raw();
   to.takes_new_scenes = from.takes_new_scenes();
-  return read_text(from.client(), to.client) && read_text(from.raw_sensor(), to.raw_sensor);
+  to.thinning.every = from.every();
+  to.rate_hz = from.rate_hz();
+  const std::size_t named = from.scenes() == nullptr ? 0 : from.scenes()->size();
+  if (named > kMaxScenes) return false;
+  for (std::size_t i = 0; i < named; ++i) {
+    const auto* name = from.scenes()->Get(static_cast<flatbuffers::uoffset_t>(i));
+    if (!read_text(name, to.thinning.scenes.emplace_back())) return false;
+  }
+  std::string token;
+  if (!read_text(from.token(), token)) return false;
+  to.token = Secret(std::move(token));
+  return is_within(to.thinning.every, 1, kMaxEvery) && is_within(to.rate_hz, 0.0, kMaxRate_hz) &&
+         read_text(from.client(), to.client) && read_text(from.raw_sensor(), to.raw_sensor);
 }
 
 bool read(const fb::Scenes& from, Scenes& to) {

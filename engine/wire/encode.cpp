@@ -300,9 +300,14 @@ Bytes encode(const Subscribe& subscribe) {
   Builder builder;
   const auto client = add_text(builder, subscribe.client);
   const auto raw_sensor = subscribe.raw_sensor.empty() ? Text() : add_text(builder, subscribe.raw_sensor);
+  std::vector<Text> names;
+  for (const std::string& name : subscribe.thinning.scenes) names.push_back(add_text(builder, name));
+  const auto token = subscribe.token.is_empty() ? Text() : add_text(builder, subscribe.token.reveal());
+  const auto scenes = names.empty() ? 0 : builder.CreateVector(names);
   return finish(builder, fb::Body_Subscribe,
                 fb::CreateSubscribe(builder, subscribe.protocol, subscribe.poses, subscribe.sensors, client,
-                                    subscribe.raw, raw_sensor, subscribe.takes_new_scenes));
+                                    subscribe.raw, raw_sensor, subscribe.takes_new_scenes, scenes,
+                                    subscribe.thinning.every, subscribe.rate_hz, token));
 }
 
 namespace {

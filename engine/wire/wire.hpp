@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/base/result.hpp"
+#include "engine/base/secret.hpp"
 #include "engine/base/time.hpp"
 #include "engine/look/camera.hpp"
 #include "engine/look/cloth_look.hpp"
@@ -45,6 +46,8 @@ inline constexpr std::size_t kMaxStrands = 1u << 22;
 inline constexpr std::size_t kMaxPixels = 1u << 23;  ///< in the pictures of all cloths of a message together
 inline constexpr std::size_t kMaxLinksPerStrand = 256;
 inline constexpr std::size_t kMaxSensors = 256;
+inline constexpr std::uint32_t kMaxEvery = 65536;
+inline constexpr double kMaxRate_hz = 1000.0;
 inline constexpr std::size_t kMaxRefusalReasons = 64;
 inline constexpr double kMaxFade_s = 3600.0;
 inline constexpr std::size_t kMaxReloadItems = 1024;  ///< of each kind in a ReloadReport; encoders leave out more
@@ -66,6 +69,15 @@ struct Hello {
 /// program protocol 1: update this program". Nothing where both speak the same.
 std::optional<std::string> protocol_mismatch(const Hello& hello);
 
+/// Which part of the poses a client wants (Subscribe in pose.fbs; thinner.hpp).
+struct Thinning {
+  std::vector<std::string> scenes = {};  ///< by their names; none: all
+  std::uint32_t every = 1;               ///< of strands, columns and rows every so many-th, 1 to kMaxEvery
+
+  bool is_all() const { return scenes.empty() && every == 1; }
+  friend bool operator==(const Thinning&, const Thinning&) = default;
+};
+
 struct Subscribe {
   std::uint32_t protocol = kProtocol;
   bool poses = true;
@@ -74,6 +86,9 @@ struct Subscribe {
   bool raw = false;               ///< RawTrace
   std::string raw_sensor = {};    ///< of this one only; empty: of every sensor
   bool takes_new_scenes = false;  ///< Scenes may come again; otherwise it is let go when the scenes change
+  Thinning thinning = {};
+  double rate_hz = 0.0;  ///< at most so many frames a second, up to kMaxRate_hz; 0: all
+  Secret token = {};     ///< the installation's; empty: none is shown
 };
 
 /// A skeleton of a kind that this build does not know is decoded as one of no strands, and so are its poses.

@@ -92,14 +92,29 @@ def messages(source):
         yield Message.GetRootAs(body, 0), 4 + size
 
 
-def subscribe_message(poses=True, sensors=False, client="pose_client.py", raw_sensor=None, takes_new_scenes=False):
+def subscribe_message(
+    poses=True,
+    sensors=False,
+    client="pose_client.py",
+    raw_sensor=None,
+    takes_new_scenes=False,
+    scenes=(),
+    every=1,
+    rate_hz=0.0,
+):
     """The one message that a client sends: what it wants to see. raw_sensor: the sensor whose raw messages it wants; "": all.
-    takes_new_scenes: it does not mind that Scenes comes again; otherwise the daemon ends the connection when the scenes change."""
+    takes_new_scenes: it does not mind that Scenes comes again; otherwise the daemon ends the connection when the scenes change.
+    scenes, every, rate_hz: of these scenes alone, every so many-th strand, at most so many frames a second; as they are: all."""
     from yuragi.stream import Body, Message, Subscribe
 
     builder = flatbuffers.Builder(256)
     name = builder.CreateString(client)
     traced = builder.CreateString(raw_sensor or "")
+    names = [builder.CreateString(scene) for scene in scenes]
+    Subscribe.StartScenesVector(builder, len(names))
+    for offset in reversed(names):
+        builder.PrependUOffsetTRelative(offset)
+    wanted = builder.EndVector()
     Subscribe.Start(builder)
     Subscribe.AddProtocol(builder, PROTOCOL)
     Subscribe.AddPoses(builder, poses)
@@ -108,6 +123,9 @@ def subscribe_message(poses=True, sensors=False, client="pose_client.py", raw_se
     Subscribe.AddRaw(builder, raw_sensor is not None)
     Subscribe.AddRawSensor(builder, traced)
     Subscribe.AddTakesNewScenes(builder, takes_new_scenes)
+    Subscribe.AddScenes(builder, wanted)
+    Subscribe.AddEvery(builder, every)
+    Subscribe.AddRateHz(builder, rate_hz)
     subscribe = Subscribe.End(builder)
     Message.Start(builder)
     Message.AddBodyType(builder, Body.Body.Subscribe)
@@ -617,6 +635,9 @@ def parse_arguments():
     parser.add_argument("--check", action="store_true", help="verify everything that the schema promises")
     parser.add_argument("--tips", action="store_true", help="print the first tips or points of the last frame")
     parser.add_argument("--old", action="store_true", help="do not take new scenes: connect again when they change")
+    parser.add_argument("--scene", action="append", default=[], help="of this scene only; may be given again")
+    parser.add_argument("--every", type=int, default=1, help="of strands, and a cloth's columns and rows, every so many-th")
+    parser.add_argument("--rate", type=float, default=0.0, help="at most so many frames a second")
     parser.add_argument("--json", action="store_true", help="print a summary in JSON and nothing else")
     return parser.parse_args()
 
@@ -630,7 +651,8 @@ def main():
     subscribed_s = time.monotonic()
     try:
         source = FileBytes(options.file) if options.file else SocketBytes(options.connect, options.timeout)
-        source.send(subscribe_message(takes_new_scenes=not options.old))
+        wish = {"scenes": options.scene, "every": options.every, "rate_hz": options.rate}
+        source.send(subscribe_message(takes_new_scenes=not options.old, **wish))
         subscribed_s = line_s = time.monotonic()
         line_frames = line_bytes = line_missed = 0
         stream = messages(source)
@@ -647,7 +669,7 @@ def main():
                     # It was let go because the scenes have changed, perhaps: who connects again gets the new ones.
                     say("connecting again")
                     source = SocketBytes(options.connect, options.timeout)
-                    source.send(subscribe_message())
+                    source.send(subscribe_message(**wish))
                     stream = messages(source)
                     continue
                 say(f"{table.Software().decode()}, {table.TickRateHz():g} Hz")

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/wire/message_reader.hpp"
+#include "engine/wire/thinner.hpp"
 #include "engine/wire/wire.hpp"
 #include "tests/engine/wire/samples.hpp"
 #include "tests/engine/wire/soundness.hpp"
@@ -59,6 +60,19 @@ void demand_consistency(const wire::Message& message) {
       pixels += image->rgb.size() / 3;
     }
     if (pixels > wire::kMaxPixels) std::abort();
+    for (const std::uint32_t every : {1U, 2U, 7U, wire::kMaxEvery}) {
+      const wire::Thinner thinner(*scenes, {.every = every});
+      for (const auto& scene : thinner.scenes().scenes)
+        if (!samples::is_sound(scene.skeleton)) std::abort();
+      // The frame is of other scenes than these, mostly.
+      static const wire::Bytes frame = samples::frame_of_all_kinds();
+      if (!wire::decode(samples::body(thinner.frame(frame)))) std::abort();
+    }
+  }
+  if (const auto* wish = std::get_if<wire::Subscribe>(&message)) {
+    if (wish->thinning.scenes.size() > wire::kMaxScenes) std::abort();
+    if (wish->thinning.every < 1 || wish->thinning.every > wire::kMaxEvery) std::abort();
+    if (!(wish->rate_hz >= 0.0 && wish->rate_hz <= wire::kMaxRate_hz)) std::abort();
   }
   if (const auto* trace = std::get_if<wire::RawTrace>(&message)) {
     if (trace->bytes.size() > wire::kMaxRawBytes || trace->bytes.size() > trace->length) std::abort();

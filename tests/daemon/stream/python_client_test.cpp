@@ -86,6 +86,12 @@ TEST_F(PythonClient, ItFindsNothingWrongWithALiveStreamOfAHundredThousandNodes) 
   EXPECT_THAT(said, testing::HasSubstr("\"nodes\": 100000,"));
 }
 
+TEST_F(PythonClient, ItGetsAsMuchAsItAsksFor) {
+  const auto strands = [](std::uint64_t) { return std::size_t{1'000}; };
+  const std::string said = run("--frames 60 --scene meadow --every 10 --rate 100", strands, [](TcpStream&, auto) {});
+  EXPECT_THAT(said, testing::HasSubstr("\"nodes\": 1000,")) << "of 10000";
+}
+
 /// The scenes change again and again, once every 50 frames: it is of another number of strands then.
 TEST_F(PythonClient, ItTakesNewScenesOrConnectsAgain) {
   const auto strands = [](std::uint64_t tick) { return static_cast<std::size_t>(10 + tick / 50); };

@@ -114,6 +114,7 @@ class TestClient {
   std::vector<wire::Hello> hellos;
   std::vector<wire::Scenes> scenes;
   std::vector<std::uint64_t> frames;  // their sequence numbers
+  wire::Frame last_frame;
   std::vector<wire::Sensors> sensors;
   std::vector<wire::ControlReply> replies;
   std::vector<wire::RawTrace> traces;
@@ -125,6 +126,7 @@ class TestClient {
     if (auto* hello = std::get_if<wire::Hello>(&message)) hellos.push_back(*hello);
     if (auto* set = std::get_if<wire::Scenes>(&message)) scenes.push_back(*set);
     if (auto* one = std::get_if<wire::Frame>(&message)) frames.push_back(one->info.sequence);
+    if (auto* one = std::get_if<wire::Frame>(&message)) last_frame = std::move(*one);
     if (auto* state = std::get_if<wire::Sensors>(&message)) sensors.push_back(*state);
     if (auto* trace = std::get_if<wire::RawTrace>(&message)) traces.push_back(*trace);
     if (auto* reply = std::get_if<wire::ControlReply>(&message)) replies.push_back(*reply);
@@ -177,6 +179,7 @@ class TcpStreamTest : public testing::Test {
     settings.raw_refusal = [](bool is_local) {
       return is_local ? std::nullopt : std::optional<std::string>("raw messages are not for other machines");
     };
+    settings.is_token = [](const std::string& token) { return token == "a token of this wall"; };
     settings.on_control = [this](const wire::Control& control, bool is_local) {
       controls_.push_back(control);
       all_were_local_ = all_were_local_ && is_local;
@@ -337,6 +340,94 @@ TEST_F(TcpStreamTest, ASlowClientInTheMiddleOfAFrameFinishesItAndThenGetsTheNewS
   EXPECT_LT(slow.frames.size(), 20U);
   EXPECT_LE(old.frames.back(), kFramesEach);
   EXPECT_EQ(old.hellos.back().refused, "the scenes have changed; connect again");
+}
+
+wire::Bytes subscribe_with(const char* token) {
+  return wire::encode(wire::Subscribe{.sensors = true, .client = "a phone", .raw = true, .token = Secret(token)});
+}
+
+TEST_F(TcpStreamTest, WhoeverShowsTheTokenIsTreatedAsOneOfThisMachine) {
+  const LogCapture log;
+  RemoteClient phone(io_, stream_.local_endpoint());
+  phone.send(subscribe_with("a token of this wall"));
+  ASSERT_TRUE(turn_until([&] { return !phone.scenes.empty(); }));
+  EXPECT_TRUE(stream_.wants_trace("roof"));
+  phone.send(wire::encode(samples::control()));
+  phone.send(wire::encode(wire::Control{.scene = "", .reload = wire::ReloadCommand{}}));
+  ASSERT_TRUE(turn_until([&] { return phone.replies.size() == 1 && reloads_.size() == 1; }));
+  EXPECT_TRUE(all_were_local_);
+  publish_sensors();  // for clients of this machine alone
+  ASSERT_TRUE(turn_until([&] { return phone.sensors.size() == 1; }));
+  EXPECT_EQ(log.text().find("a token of"), std::string::npos) << "it is never logged";
+}
+
+TEST_F(TcpStreamTest, WhoeverShowsAWrongTokenIsToldSoAndLetGo) {
+  const LogCapture log;
+  RemoteClient phone(io_, stream_.local_endpoint());
+  phone.send(subscribe_with("a token of that wall"));
+  ASSERT_TRUE(turn_until([&] { return phone.closed; }));
+  ASSERT_EQ(phone.hellos.size(), 2u);
+  EXPECT_THAT(phone.hellos[1].refused.value_or(""), testing::HasSubstr("token"));
+  EXPECT_TRUE(phone.scenes.empty());
+  EXPECT_EQ(log.text().find("a token of"), std::string::npos);
+}
+
+TEST_F(TcpStreamTest, WithoutATokenAClientOfAnotherMachineStaysOne) {
+  RemoteClient phone(io_, stream_.local_endpoint());
+  phone.send(wire::encode(wire::Subscribe{.poses = false, .client = "a phone"}));
+  phone.send(wire::encode(samples::control()));
+  ASSERT_TRUE(turn_until([&] { return phone.replies.size() == 1; }));
+  EXPECT_FALSE(all_were_local_);
+}
+
+wire::Bytes subscribe_to(const wire::Thinning& thinning, double rate_hz = 0.0) {
+  return wire::encode(
+      wire::Subscribe{.client = "a phone", .takes_new_scenes = true, .thinning = thinning, .rate_hz = rate_hz});
+}
+
+TEST_F(TcpStreamTest, WhoeverWantsLessGetsLessAndTheOthersAll) {
+  TestClient thin(io_, stream_.local_endpoint());
+  TestClient all(io_, stream_.local_endpoint());
+  thin.send(subscribe_to({.scenes = {"meadow"}, .every = 4}));
+  all.send(wire::encode(samples::subscribe()));
+  ASSERT_TRUE(turn_until([&] { return !thin.scenes.empty() && !all.scenes.empty(); }));
+  stream_.publish(share(samples::frame_bytes()));
+  ASSERT_TRUE(turn_until([&] { return !thin.frames.empty() && !all.frames.empty(); }));
+  ASSERT_EQ(thin.scenes[0].scenes.size(), 1u);
+  EXPECT_EQ(std::get<pose::StrandSkeleton>(thin.scenes[0].scenes[0].skeleton).strand_count, 10u);
+  EXPECT_TRUE(wire::fits(thin.last_frame, thin.scenes[0]));
+  EXPECT_EQ(all.scenes[0].scenes.size(), 2u);
+  EXPECT_TRUE(wire::fits(all.last_frame, all.scenes[0]));
+}
+
+TEST_F(TcpStreamTest, WhoeverWantsLessGetsLessOfNewScenesToo) {
+  TestClient thin(io_, stream_.local_endpoint());
+  thin.send(subscribe_to({.every = 2}));
+  ASSERT_TRUE(turn_until([&] { return thin.scenes.size() == 1; }));
+  stream_.publish_scenes(share(wire::encode(samples::all_kinds())));
+  stream_.publish(share(samples::frame_of_all_kinds()));
+  ASSERT_TRUE(turn_until([&] { return thin.frames.size() == 1; }));
+  ASSERT_EQ(thin.scenes.size(), 2u);
+  EXPECT_EQ(thin.scenes[1].scenes.size(), 5u);
+  EXPECT_TRUE(wire::fits(thin.last_frame, thin.scenes[1]));
+}
+
+TEST_F(TcpStreamTest, ARateIsKeptAndTheLastFrameComesAllTheSame) {
+  TestClient slow(io_, stream_.local_endpoint());
+  TestClient fast(io_, stream_.local_endpoint());
+  slow.send(subscribe_to({}, 10.0));
+  fast.send(subscribe_to({}));
+  ASSERT_TRUE(turn_until([&] { return !slow.scenes.empty() && !fast.scenes.empty(); }));
+  constexpr std::uint64_t kFrames = 61;
+  for (std::uint64_t i = 1; i <= kFrames; ++i) {
+    stream_.publish(frame(i));
+    ASSERT_TRUE(turn_until([&] { return fast.frames.size() == i; })) << i;
+    now_ += Nanoseconds(1s) / 60;
+  }
+  now_ += 1s;  // and no frame comes: the newest is still owed
+  ASSERT_TRUE(turn_until([&] { return !slow.frames.empty() && slow.frames.back() == kFrames; }));
+  EXPECT_GE(slow.frames.size(), 10u);
+  EXPECT_LE(slow.frames.size(), 12u);
 }
 
 TEST_F(TcpStreamTest, OneWhoWatchesSensorsOnlyGetsNoPoses) {

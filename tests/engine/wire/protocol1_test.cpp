@@ -18,6 +18,7 @@
 #include "engine/pose/kinematics.hpp"
 #include "engine/pose/pose_hash.hpp"
 #include "engine/wire/message_reader.hpp"
+#include "engine/wire/thinner.hpp"
 #include "engine/wire/wire.hpp"
 #include "tests/engine/wire/samples.hpp"
 #include "tests/support/places.hpp"
@@ -262,6 +263,32 @@ TEST(Protocol1, ItsClientsRequestsAreUnderstoodToday) {
   EXPECT_TRUE(subscribe.poses);
   EXPECT_EQ(subscribe.client, "a wall");
   EXPECT_FALSE(subscribe.takes_new_scenes) << "it would take other scenes for a mistake";
+  EXPECT_TRUE(subscribe.thinning.is_all()) << "it would not know that there is more";
+  EXPECT_EQ(subscribe.rate_hz, 0.0);
+}
+
+TEST(Protocol1, ItsServerUnderstandsOneWhoWantsLessAndSendsEverything) {
+  const Bytes bytes = encode(Subscribe{
+      .sensors = true, .client = "a phone", .thinning = {.scenes = {"elm", "pond"}, .every = 8}, .rate_hz = 12.5});
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size());
+  ASSERT_TRUE(p1::VerifySizePrefixedMessageBuffer(verifier));
+  const auto* subscribe = p1::GetSizePrefixedMessage(bytes.data())->body_as_Subscribe();
+  ASSERT_NE(subscribe, nullptr);
+  EXPECT_EQ(subscribe->protocol(), 1u);
+  EXPECT_TRUE(subscribe->poses());
+  EXPECT_TRUE(subscribe->sensors());
+  EXPECT_EQ(subscribe->client()->str(), "a phone");
+}
+
+TEST(Protocol1, ItsClientReadsWhatIsThinnedOut) {
+  const Thinner thinner(samples::all_kinds(), {.scenes = {"window", "pond"}, .every = 2});
+  FirstClient client;
+  client.take(encode(thinner.scenes()));
+  client.take(thinner.frame(samples::frame_of_all_kinds()));
+  EXPECT_EQ(client.names(), (std::vector<std::string>{"window", "pond"}));
+  ASSERT_EQ(client.shown().size(), 2u);
+  EXPECT_EQ(client.shown()[0].size(), 11u * 5u);  // of 21 x 9
+  EXPECT_EQ(client.shown()[1].size(), 8u * 4u);   // of 15 x 7
 }
 
 }  // namespace

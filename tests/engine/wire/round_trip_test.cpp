@@ -35,9 +35,30 @@ TEST(WireRoundTrip, SubscribeComesBackAsItWas) {
   EXPECT_TRUE(subscribe.raw);
   EXPECT_EQ(subscribe.raw_sensor, "roof");
   EXPECT_TRUE(subscribe.takes_new_scenes);
+  Subscribe less = samples::subscribe();
+  less.thinning = {.scenes = {"elm", "pond"}, .every = 8};
+  less.rate_hz = 12.5;
+  less.token = Secret("a token of this wall");
+  EXPECT_EQ(decoded<Subscribe>(encode(less)).thinning, less.thinning);
+  EXPECT_EQ(decoded<Subscribe>(encode(less)).rate_hz, 12.5);
+  EXPECT_EQ(decoded<Subscribe>(encode(less)).token, less.token);
+  const Subscribe plain = decoded<Subscribe>(encode(Subscribe{.client = ""}));
+  EXPECT_TRUE(plain.thinning.is_all());
+  EXPECT_EQ(plain.rate_hz, 0.0);
+  EXPECT_TRUE(plain.token.is_empty());
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.client = ""})).raw) << "only where it is asked for";
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.client = ""})).takes_new_scenes);
   EXPECT_FALSE(decoded<Subscribe>(encode(Subscribe{.poses = false, .client = ""})).poses);
+}
+
+TEST(WireRoundTrip, ASubscriptionThatCannotBeMetIsRefused) {
+  const auto outcome = [](const Subscribe& wish) { return decode(samples::body(encode(wish))).has_value(); };
+  EXPECT_TRUE(outcome({.client = "", .thinning = {.every = kMaxEvery}, .rate_hz = kMaxRate_hz}));
+  EXPECT_FALSE(outcome({.client = "", .thinning = {.every = 0}}));
+  EXPECT_FALSE(outcome({.client = "", .thinning = {.every = kMaxEvery + 1}}));
+  EXPECT_FALSE(outcome({.client = "", .rate_hz = -1.0}));
+  EXPECT_FALSE(outcome({.client = "", .rate_hz = std::numeric_limits<double>::quiet_NaN()}));
+  EXPECT_FALSE(outcome({.client = "", .thinning = {.scenes = std::vector<std::string>(kMaxScenes + 1, "elm")}}));
 }
 
 TEST(WireRoundTrip, ScenesComeBackBitForBitAndPaddedToBlocks) {

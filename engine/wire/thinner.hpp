@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::wire {
+
+/// Thins scenes and their frames out, for clients with little bandwidth: of the scenes those that are wanted, of
+/// strands every so many-th, of a cloth or a surface every so many-th column and row.
+///
+/// What is left is whole. Strands on which a kept one grows are kept. Edges of a cloth and an open surface are kept,
+/// and of each ring of a closed one at least three points. Strands on a grid remain on one where `every` divides its
+/// columns; otherwise they are on none. Leaves that were turned by blocks are each turned with the link that they grow
+/// from. The numbers of a frame are copied, not rounded again. Pure. Thread-safe: yes.
+class Thinner {
+ public:
+  Thinner(const Scenes& scenes, const Thinning& thinning);
+
+  const Scenes& scenes() const noexcept { return scenes_; }
+
+  /// `message`: what FrameEncoder made of poses of the scenes that the constructor was given. The same for scenes();
+  /// both with their size prefix. A pose of another size is left out, as that of a hidden scene is.
+  Bytes frame(std::span<const std::uint8_t> message) const;
+
+ private:
+  /// Which values of a scene's arrays are kept, in the message's order, without padding.
+  struct Kept {
+    std::size_t scene = 0;                            ///< its number among all
+    std::vector<std::vector<std::uint32_t>> of = {};  ///< one list a level of a tree; otherwise one
+    std::vector<std::size_t> count_before = {};       ///< how many there were, list by list
+    std::vector<std::uint32_t> rows = {};             ///< of a surface
+    std::size_t rows_before = 0;
+    std::uint32_t columns = 0;  ///< of a cloth, afterwards
+  };
+  struct FrameMaker;
+
+  Kept thin(pose::StrandSkeleton& strands, std::size_t every) const;
+  Kept thin(pose::GridSkeleton& grid, std::size_t every) const;
+  Kept thin(pose::TreeSkeleton& tree, std::size_t every) const;
+  Kept thin(pose::SurfaceSkeleton& surface, std::size_t every) const;
+
+  Scenes scenes_;
+  std::vector<Kept> kept_;
+};
+
+}  // namespace yuragi::wire
