@@ -168,6 +168,8 @@ constexpr glm::vec3 kMoonlitSky(0.0016F, 0.0029F, 0.0058F);
 constexpr glm::vec3 kTurf(0.055F, 0.065F, 0.022F);  // what it reflects
 constexpr glm::vec3 kOvercast(0.93F, 0.99F, 1.06F);
 
+constexpr float kCloudShadow = 0.6F;  // of the sun's light, that a cloud holds back
+
 }  // namespace
 
 glm::vec3 sunlight_at(double height_deg) {
@@ -220,6 +222,11 @@ Light daylight(const Sky& sky) {
                               0.28 * static_cast<double>(rise(0.65, 1.0, sky.clouds));
   const float stars = rise(-7.0, -15.0, sky.sun.height_deg) * (1.0F - covered) * (1.0F - 0.6F * moon);
   light.air = {1.0F, static_cast<float>(haze_per_m), static_cast<float>(clouds_begin), stars};
+  // Shadows of single clouds: none by night, of an overcast sky, or in fog. There are as many as clouds, which are
+  // where a mean of two layers of noise is above clouds_begin: one layer is spread wider.
+  const float held_back =
+      kCloudShadow * (1.0F - covered) * rise(0.0, 6.0, sky.sun.height_deg) * rise(0.9, 0.5, sky.haze);
+  light.drift = {0.0F, 0.0F, held_back, 0.5F + 1.4F * (static_cast<float>(clouds_begin) - 0.45F)};
   return light;
 }
 

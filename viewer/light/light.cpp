@@ -36,7 +36,7 @@ Light mixed(const Light& a, const Light& b, float share) {
   for (glm::vec4 Light::*const part : kPlain) light.*part = glm::mix(a.*part, b.*part, share);
   for (std::size_t i = 0; i < a.petals.size(); ++i)
     light.petals.at(i) = glm::mix(a.petals.at(i), b.petals.at(i), share);
-  light.drift = b.drift;
+  light.drift = {b.drift.x, b.drift.y, glm::mix(a.drift.z, b.drift.z, share), glm::mix(a.drift.w, b.drift.w, share)};
   light.moon_disc = turned(a.moon_disc, b.moon_disc, share);
   light.sun_disc = turned(a.sun_disc, b.sun_disc, share);
   light.to_sun = turned(a.to_sun, b.to_sun, share);

@@ -23,8 +23,10 @@ struct Light {
   glm::vec4 cloud_glow{0.0F};                   ///< what the sun adds to it
   glm::vec4 sun_disc{0.0F, 1.0F, 0.0F, 0.0F};   ///< unit vector toward the sun, set or not; w: how much of it is seen
   glm::vec4 moon_disc{0.0F, 1.0F, 0.0F, 0.0F};  ///< the same of the moon
-  glm::vec4 air{0.0F};    ///< exposure; haze, per metre; where clouds begin (of the noise); how bright the stars are
-  glm::vec4 drift{0.0F};  ///< x, y: how far the clouds have drifted, east and south, in heights of theirs
+  glm::vec4 air{0.0F};  ///< exposure; haze, per metre; where clouds begin (of the noise); how bright the stars are
+  /// How far the clouds have drifted, east and south, in heights of theirs; the share of the sun's light that they hold
+  /// back where their shadows are; the noise (0 to 1) above which there is a shadow
+  glm::vec4 drift{0.0F};
   /// How colorful the picture is, 0 to 1; and what is dark in it; how tall grass may grow, 0.25 (a lawn) to 1, 0: none;
   /// how many doublings brighter the palette is
   glm::vec4 colors{1.0F, 1.0F, 1.0F, 0.0F};

@@ -110,7 +110,7 @@ const Light& SkyKeeper::advance(double utc_s, double dt_s, const glm::dvec2& win
   drift_ = glm::mod(drift_, kDriftPeriod);
 
   Light now = daylight(sky_of(look_, utc_s));
-  now.drift = {drift_.x, drift_.y, 0.0F, 0.0F};
+  now.drift = {drift_.x, drift_.y, now.drift.z, now.drift.w};
   set_colors(look_, now);
   const double wanted_log = exposure_log_for(now);
   // While the look fades, the exposure goes with the fade: what was asked for is not answered by a slow eye.

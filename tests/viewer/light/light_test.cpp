@@ -77,6 +77,33 @@ TEST(Daylight, HasNoCloudsWhereNoneAreAsked) {
   }
 }
 
+TEST(Daylight, HasShadowsOfCloudsByDayWhereSingleCloudsAreInTheSky) {
+  const Sky day{.sun = {40.0, 180.0}, .clouds = 0.3, .haze = 0.15};
+  const auto changed = [&](auto&& change) {
+    Sky sky = day;
+    change(sky);
+    return daylight(sky).drift;
+  };
+  EXPECT_GT(daylight(day).drift.z, 0.3F);
+  EXPECT_EQ(changed([](Sky& sky) { sky.sun.height_deg = -1.0; }).z, 0.0F) << "by night";
+  EXPECT_EQ(changed([](Sky& sky) { sky.clouds = 1.0; }).z, 0.0F) << "overcast";
+  EXPECT_EQ(changed([](Sky& sky) { sky.haze = 1.0; }).z, 0.0F) << "fog";
+  // The noise goes from 0 to 1.
+  EXPECT_GE(changed([](Sky& sky) { sky.clouds = 0.0; }).w, 1.0F) << "no cloud, no shadow";
+  EXPECT_LT(changed([](Sky& sky) { sky.clouds = 0.5; }).w, daylight(day).drift.w) << "more of them";
+}
+
+TEST(SkyKeeper, FadesShadowsOfCloudsAndLetsThemDriftOn) {
+  SkyKeeper keeper;
+  keeper.start({.clouds = 0.3});
+  const Light before = keeper.advance(kDay_s, 0.0, {4.0, 0.0});
+  keeper.set_look({.clouds = 1.0});
+  const Light between = keeper.advance(kDay_s, 0.5 * SkyKeeper::kFade_s, {4.0, 0.0});
+  EXPECT_LT(between.drift.z, before.drift.z);
+  EXPECT_GT(between.drift.z, 0.0F);
+  EXPECT_GT(between.drift.x, before.drift.x);
+}
+
 TEST(Palettes, AreAllOfColorsThatThingsCanHave) {
   for (int palette = 0; palette <= static_cast<int>(look::Palette::kInk); ++palette) {
     for (int ground = 0; ground <= static_cast<int>(look::GroundKind::kSnow); ++ground) {

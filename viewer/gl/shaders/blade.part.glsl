@@ -28,6 +28,9 @@ float ring_at(int ring, float head_from) {
   return ring < stem ? head_from * float(ring) / float(stem) : mix(head_from, 1.0, float(ring - stem) / float(rings - stem));
 }
 
+// The nearest texel of a tile that is 256 of them wide: a blade is so narrow that it needs no value between two.
+vec4 texel_at(sampler2D tile, vec2 at) { return texelFetch(tile, ivec2(floor(at * 256.0)) & 255, 0); }
+
 // Corner v of a blade whose foot is here. `bend`: what the wind does to the grass around it.
 void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, float width_m, float facing_rad, float chance, vec2 patch_at, vec2 bend, float tall) {
   bool has_seeds = is_seed(chance) && rings > 1;
@@ -76,7 +79,7 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
   place += across * (side * half_width_m);
   gl_Position = to_clip * vec4(place, 1.0);
 
-  float sunlight = mix(kSunInShadow, 1.0, sunlight_near(place));
+  float sunlight = mix(kSunInShadow, 1.0, sunlight_near(place)) * under_cloud(texel_at(noise_tile, in_clouds(foot_m.xz)).r);
   // Of a lawn one sees no single blades from so far.
   float is_short = 1.0 - smoothstep(0.12, 0.30, length_m);
   float far = max(smoothstep(kFarFrom_m, kFar_m, distance_m), is_short * smoothstep(0.5, 5.0, distance_m));
@@ -86,12 +89,13 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
     vec3 normal = normalize(cross(across, along));
     normal *= dot(normal, to_eye) < 0.0 ? -1.0 : 1.0;
     normal = normalize(normal + across * (side * 0.55));
-    light = blade_light(to_eye, along, normal, t, tint, lean, sunlight);
+    light = blade_light(to_eye, along, normal, t, tint, lean, 1.0, sunlight);
   }
   // Far away it takes on the light of the grass as a whole, as the ground behind it has it.
   if (far > 0.0) {
     // Toward the last ones it is the ground's, so that no edge is seen where blades end.
     float tufts = ((t - 0.55) * 0.6 + 0.35 * (fract(chance * 61.0) - 0.5)) * (1.0 - smoothstep(0.25 * reach_m, 0.8 * reach_m, distance_m));
+    tufts += clump_of(texel_at(turf_tile, in_clumps(foot_m.xz)).b);
     vec3 canopy = canopy_light(bend, to_eye, patch_at, tufts, tall * (1.0 - is_short), sunlight);
     light = mix(light, canopy, far);
   }

@@ -28,7 +28,7 @@ layout(std140) uniform Light {
   vec4 sun_disc;      // w: how much of it is seen
   vec4 moon_disc;
   vec4 air;           // exposure; haze, per metre; where clouds begin; stars
-  vec4 drift;         // of the clouds
+  vec4 drift;         // of the clouds; how dark their shadows are; the noise above which there is one
   vec4 colors;        // how colorful the picture is, and what is dark in it; how tall grass may grow
   vec4 grass_lush;    // w: more straw above 0
   vec4 grass_fresh;   // w: how many flowers

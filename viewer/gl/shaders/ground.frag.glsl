@@ -27,9 +27,10 @@ void main() {
   vec2 turned_m = mat2(0.8, 0.6, -0.6, 0.8) * at_m * (0.5 * per_m) + 0.31;
   float fine = textureLod(turf_tile, at_m * per_m, blur).b - 0.5;
   float coarse = textureLod(turf_tile, turned_m, blur - 1.0).b - 0.5;
-  float tufts = clamp(2.6 * mix(fine, coarse, next), -0.5, 0.5);
+  float tufts = clamp(3.2 * mix(fine, coarse, next) + clumps_at(at_m, blur - log2(256.0 * per_m)), -0.5, 0.5);
 
   float lit = sunlight * mix(kSunInShadow, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
+  lit *= under_clouds(at_m, distance_m * eye_m.w * inversesqrt(max(to_eye.y, 0.02)));
   vec3 canopy = canopy_light(bend_at(at_m, tall), to_eye, patch_at, tufts, tall, lit);
 
   // Shaded earth and stems.

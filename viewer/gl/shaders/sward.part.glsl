@@ -43,11 +43,30 @@ vec2 patches(vec2 at_m, float blur) {
   return textureLod(turf_tile, mat2(0.8, 0.6, -0.6, 0.8) * at_m * 0.0061 + 0.17, blur).rg - 0.5;
 }
 
+// Clumps of 0.3 to 1.5 m that stand above what is around them, about from -0.5 to 0.5. `blur`: binary logarithm of a pixel's
+// size, metres.
+const float kClumps_per_m = 0.045;
+vec2 in_clumps(vec2 at_m) { return mat2(0.6, -0.8, 0.8, 0.6) * at_m * kClumps_per_m + 0.53; }
+float clump_of(float relief) { return 4.0 * (relief - 0.5); }
+float clumps_at(vec2 at_m, float blur) {
+  return clump_of(textureLod(turf_tile, in_clumps(at_m), blur + log2(256.0 * kClumps_per_m)).b);
+}
+
 // The colour of a blade's upper part: from a young blue-green over fresh green to straw. `chance` from 0 to 1.
 vec3 tint_of(vec2 patch_at, float chance) {
   // Kinds of grass grow through each other: at a patch's edge blade by blade, so that it has no outline.
   float dryness = clamp(0.44 + grass_lush.w + 0.42 * patch_at.x + 0.50 * patch_at.y + 0.62 * (chance - 0.5), 0.0, 1.0);
   return dryness < 0.6 ? mix(grass_lush.rgb, grass_fresh.rgb, dryness / 0.6) : mix(grass_fresh.rgb, grass_straw.rgb, (dryness - 0.6) / 0.4);
+}
+
+// The share of the sun's light that clouds let through to a place on the ground. Their shadows go with the wind as fast as they
+// do, but are smaller, so that one sees several at once.
+const float kShadows_m = 300.0;  // after so far they repeat
+const float kDrift_m = 1500.0;   // a height of the clouds (sky_keeper.cpp)
+vec2 in_clouds(vec2 at_m) { return at_m * (1.0 / kShadows_m) - drift.xy * (kDrift_m / kShadows_m); }
+float under_cloud(float cloud) { return 1.0 - drift.z * smoothstep(drift.w - 0.06, drift.w + 0.06, cloud); }
+float under_clouds(vec2 at_m, float pixel_m) {
+  return under_cloud(textureLod(noise_tile, in_clouds(at_m), log2(max(pixel_m * (256.0 / kShadows_m), 1.0))).r);
 }
 
 // A direction that is turned from upright by this vector's length, toward it.
@@ -67,7 +86,7 @@ const float kSunInShadow = 0.16;  // leaves, threads and the air let some throug
 // The light of a blade at height t (0 foot, 1 tip) above its foot, where this share of the sunlight comes. `lean`: the
 // sine of its chord; between upright blades the dark ground shows, of blades that the wind has bent one sees the lit
 // sides, and neighbours bend alike.
-vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float lean, float sunlight) {
+vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float lean, float shine, float sunlight) {
   vec3 sun = sun_light.rgb * sunlight;
   float facing = dot(normal, to_sun.xyz);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
@@ -85,9 +104,13 @@ vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float
   sheen *= sheen;
   sheen *= sheen;
   sheen *= sheen;
-  sum += sun * vec3(0.15, 0.155, 0.12) * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
-  return sum * exp2(4.0 * (lean - 0.60));
+  vec3 glint = sun * vec3(0.15, 0.155, 0.12) * shine * sheen * deep * (0.4 + 1.1 * (1.0 - along.y));
+  // (It is all there where the sides are seen: what bends farther is no whiter.)
+  float sides = exp2(4.0 * (lean - 0.60));
+  return sum * sides + glint * min(sides, 1.0);
 }
+
+const float kShineFar = 0.35;  // of the sheen: blades lie in many directions
 
 // How much more the grass is bent at a place than on the average: where a gust is.
 float gust_of(vec2 bend) { return clamp(length(bend) - length(bend_mean.xy), -0.35, 0.45); }
@@ -100,8 +123,9 @@ vec3 canopy_light(vec2 bend, vec3 to_eye, vec2 patch_at, float tufts, float tall
   // What leans shows its side, of which one sees less from above.
   float from_side = 1.0 - 0.6 * to_eye.y * to_eye.y;
   float gust = (0.42 + kGust) * from_side * gust_of(bend);
-  float lean = mix(0.55, clamp(0.36 + 0.42 * length(bend_mean.xy) + gust + 0.45 * tufts, 0.0, 0.92), tall);
-  vec3 light = blade_light(to_eye, along, normal, mix(0.72, 0.82, tall) + 0.3 * tufts, tint_of(patch_at, 0.5 + 0.8 * tufts), lean, sunlight);
+  // As far as blades do: their own tilt and the wind's bend are seldom one way.
+  float lean = mix(0.55, clamp(length(vec2(0.42, 0.45 * length(bend_mean.xy))) + gust + 0.45 * tufts + 0.40 * patch_at.y, 0.0, 0.88), tall);
+  vec3 light = blade_light(to_eye, along, normal, mix(0.72, 0.82, tall) + 0.3 * tufts, tint_of(patch_at, 0.5 + 0.8 * tufts), lean, kShineFar, sunlight);
   // From above one looks down between the blades.
   return light * (1.0 - tall * (0.15 + 0.30 * to_eye.y * to_eye.y * (1.0 - 0.6 * min(length(bend), 1.0))));
 }
