@@ -42,10 +42,12 @@ void main() {
 
   // Farther away one hair stands for more and more of them.
   // Where the wind parts the coat, one sees down to its wool; where it presses hairs together, their dark tips alone.
-  float parted = smoothstep(0.02, 0.17, traits.z);
-  float pressed = smoothstep(0.02, 0.17, -traits.z);
+  // From afar its hairs hide that again, or the coat would look spotted.
   float height_px = whole_m / (eye_m.w * distance(eye_m.xyz, root_width.xyz));
   float near = smoothstep(20.0, 50.0, height_px);
+  float open_seen = mix(0.15, 0.70, smoothstep(10.0, 90.0, height_px));
+  float parted = open_seen * smoothstep(0.0, 0.28, traits.z);
+  float pressed = open_seen * smoothstep(0.0, 0.28, -traits.z);
   float shown = copies > 1 ? 1.0 + float(copies - 1) * near : 1.0;
   float is_up = clamp(shown - float(copy), 0.0, 1.0);
   if (is_up <= 0.0) {
@@ -85,7 +87,16 @@ void main() {
   vec3 to_eye = eye_m.xyz - place;
   float distance_m = length(to_eye);
   to_eye /= distance_m;
-  float half_width = 0.5 * root_width.w * is_up * pow(shown, -0.36) * (is_guard ? 1.30 : 1.15) * sqrt(1.0 - t) * (1.0 - 0.2 * t);
+
+  // A hair that points at the eye would be a dot, with skin around it: it curves aside, and looks thicker.
+  float end_on = smoothstep(0.60, 0.97, abs(dot(along, to_eye)));
+  vec3 curves_to = cross(along, vec3(0.31, 0.17, 0.93));
+  float curve_turn = 1.6 + 2.2 * (other - 0.5);
+  curves_to = normalize(curves_to * cos(curve_turn) + cross(along, curves_to) * sin(curve_turn));
+  place += curves_to * (0.42 * end_on * t * t * length_m);
+  along = normalize(along + curves_to * (0.84 * end_on * t));
+
+  float half_width = 0.5 * root_width.w * is_up * pow(shown, -0.36) * (is_guard ? 1.30 : 1.15) * sqrt(1.0 - t) * (1.0 - 0.2 * t) * (1.0 + 0.6 * end_on);
   half_width = max(half_width, is_up * mix(0.62, 0.45, near) * eye_m.w * distance_m * min(1.0, 3.0 * (1.0 - t)));
   place += normalize(cross(along, to_eye)) * (side * half_width);
   gl_Position = to_clip * vec4(place, 1.0);
