@@ -142,6 +142,9 @@ meshes::CameraPlace Stage::home(double aspect) const {
   }
   if (count == 1 && views_[scene]->shore.is_pond()) return meshes::place_on_shore(views_[scene]->shore);
   if (count == 1 && views_[scene]->scene.kind == "fur") return meshes::place_beside(bounds());
+  // A flag fills the picture, which its pole leaves below.
+  if (count == 1 && views_[scene]->scene.kind == "flag")
+    return meshes::place_around(meshes::bounds_of(views_[scene]->scene.skeleton), aspect);
   return meshes::place_around(bounds(), aspect);
 }
 
