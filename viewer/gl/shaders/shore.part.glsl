@@ -18,7 +18,9 @@ vec2 stones(vec2 at_m, float size_m, float share, float pixel_m) {
 // The colour of the earth at a place that is this much above the water. `height`: a bump, for its light.
 vec3 earth_at(vec2 at_m, float above_m, float pixel_m, out float height) {
   float broad = texture(noise_tile, at_m * 0.11).r;
-  float fine = texture(noise_tile, at_m * 1.3 + 0.3).r;
+  // Without the broad waves of the tile, which one would see come again every 0.77 m.
+  vec2 fine_at = at_m * 1.3 + 0.3;
+  float fine = clamp(0.5 + texture(noise_tile, fine_at).r - textureLod(noise_tile, fine_at, 5.0).r, 0.0, 1.0);
   vec3 earth = mix(vec3(0.105, 0.080, 0.052), vec3(0.205, 0.165, 0.112), 0.35 * broad + 0.65 * fine);
   height = 0.35 * fine;
   // Gravel where the waves wash, silt with some stones below.
