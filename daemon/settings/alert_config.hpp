@@ -31,10 +31,10 @@ struct AlertConfig {
   std::string name;
   ParameterValues values{};  ///< of alert_parameters(), from which the members below were made
   AlertCondition when = AlertCondition::kSensorSilent;
-  std::string sensor = {};  ///< kSensorSilent: the sensor's name; empty: each one by itself
-  double speed_m_s = 0.0;   ///< kWindAbove
-  double free_bytes = 0.0;  ///< kDiskBelow
-  double after_s = 0.0;     ///< it begins when it has held for so long
+  std::string sensor = {};   ///< kSensorSilent: the sensor's name; empty: each one by itself
+  double speed_m_s = 0.0;    ///< kWindAbove
+  double free_bytes = 0.0;   ///< kDiskBelow
+  double after_s = 0.0;      ///< it begins when it has held for so long
   double end_after_s = 0.0;  ///< it ends when it has not held for so long
   std::string command = {};  ///< for /bin/sh; empty: none
   Secret webhook = {};       ///< http or https; empty: none
