@@ -30,19 +30,15 @@ std::string history_json(const WindHistory& history) {
                           {"step_count", history.step_count},
                           {"sensors", ordered_json::array()}};
   for (const SensorHistory& sensor : history.sensors) {
-    ordered_json min = ordered_json::array(), mean = min, max = min, direction = min;
+    ordered_json& row = content["sensors"].emplace_back();
+    row["name"] = sensor.name;
     for (const HistoryStep& step : sensor.steps) {
       const bool is_gap = step.readings == 0;
-      min.push_back(is_gap ? ordered_json() : ordered_json(rounded(step.min_m_s)));
-      mean.push_back(is_gap ? ordered_json() : ordered_json(rounded(step.mean_m_s())));
-      max.push_back(is_gap ? ordered_json() : ordered_json(rounded(step.max_m_s)));
-      direction.push_back(direction_of(step));
+      row["min_m_s"].push_back(is_gap ? ordered_json() : ordered_json(rounded(step.min_m_s)));
+      row["mean_m_s"].push_back(is_gap ? ordered_json() : ordered_json(rounded(step.mean_m_s())));
+      row["max_m_s"].push_back(is_gap ? ordered_json() : ordered_json(rounded(step.max_m_s)));
+      row["direction_deg"].push_back(direction_of(step));
     }
-    content["sensors"].push_back({{"name", sensor.name},
-                                  {"min_m_s", std::move(min)},
-                                  {"mean_m_s", std::move(mean)},
-                                  {"max_m_s", std::move(max)},
-                                  {"direction_deg", std::move(direction)}});
   }
   return content.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/history/history_json.hpp"
+#include "drivers/windlog/recording_parts.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -80,6 +81,18 @@ TEST(WindHistory, ASensorOfTwoSessionsIsOne_AndWhatIsBeingWrittenIsRead) {
   EXPECT_EQ(history->sensors[0].steps[0].readings + history->sensors[0].steps[2].readings, 2U);
   EXPECT_EQ(history->sensors[1].name, "roof");
   ASSERT_TRUE(writer->close());
+}
+
+TEST(WindHistory, CompletedFilesOfASeriesBelongToIt) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a.windlog";
+  test::write_session(drivers::windlog::part_name(file, after_minutes(0)), {test::reading_at(0, 2.0)});
+  test::write_session(file, {test::reading_at(10 * kMinute_ms, 5.0)});
+  const auto history = read_wind_history(file, after_minutes(60), 1);
+  ASSERT_TRUE(history) << history.error().message;
+  ASSERT_EQ(history->sensors.size(), 1U);
+  EXPECT_EQ(history->sensors[0].steps[0].max_m_s, 2.0);
+  EXPECT_EQ(history->sensors[0].steps[60].max_m_s, 5.0);
 }
 
 TEST(WindHistory, WithoutARecordingItSaysSo) {
