@@ -1,7 +1,10 @@
 #include "daemon/commands/daemon_log.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <poll.h>
 #include <spdlog/async.h>
@@ -60,11 +63,14 @@ bool BoundedLogSink::takes_a_line() {
   return poll(&stream, 1, is_stuck_ ? 0 : kPatience_ms) == 1 && (stream.revents & (POLLERR | POLLNVAL)) == 0;
 }
 
-DaemonLog::DaemonLog(bool verbose) : verbose_(verbose), sink_(std::make_shared<BoundedLogSink>(stderr)) {
+DaemonLog::DaemonLog(bool verbose)
+    : verbose_(verbose),
+      sink_(std::make_shared<BoundedLogSink>(stderr)),
+      kept_(std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(kMostKept)) {
   writer_ = std::make_shared<spdlog::details::thread_pool>(kMostWaiting, 1);
   sink_->count_overruns_of(writer_);
-  const auto logger =
-      std::make_shared<spdlog::async_logger>("yuragi", sink_, writer_, spdlog::async_overflow_policy::overrun_oldest);
+  const auto logger = std::make_shared<spdlog::async_logger>("yuragi", spdlog::sinks_init_list{kept_, sink_}, writer_,
+                                                             spdlog::async_overflow_policy::overrun_oldest);
   spdlog::set_default_logger(logger);
   spdlog::set_pattern(kPattern);
   spdlog::set_level(verbose ? spdlog::level::debug : spdlog::level::info);
@@ -81,6 +87,20 @@ void DaemonLog::set_level(settings::LogLevel level) const {
     case settings::LogLevel::kError:
       return spdlog::set_level(spdlog::level::err);
   }
+}
+
+web::LogTail DaemonLog::tail() const {
+  return [kept = kept_](std::size_t most) {
+    std::vector<web::LogLine> lines;
+    for (const auto& message : kept->last_raw(most)) {
+      const auto level = spdlog::level::to_string_view(message.level);
+      const std::size_t size = std::min(message.payload.size(), BoundedLogSink::kMaxTextBytes);
+      lines.push_back({.time_s = std::chrono::duration<double>(message.time.time_since_epoch()).count(),
+                       .level = {level.data(), level.size()},
+                       .text = {message.payload.data(), size}});
+    }
+    return lines;
+  };
 }
 
 DaemonLog::~DaemonLog() {

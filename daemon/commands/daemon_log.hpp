@@ -7,8 +7,10 @@
 #include <utility>
 
 #include <spdlog/sinks/ansicolor_sink.h>
+#include <spdlog/sinks/ringbuffer_sink.h>
 
 #include "daemon/settings/log_config.hpp"
+#include "daemon/web/log_line.hpp"
 
 namespace spdlog::details {
 class thread_pool;
@@ -60,6 +62,10 @@ class DaemonLog {
   /// Writes lines of this level and above from now on; with `verbose` all.
   void set_level(settings::LogLevel level) const;
 
+  /// Gives the last lines, at most kMostKept, also those that nobody read. Thread-safe; may outlive this object.
+  web::LogTail tail() const;
+  static constexpr std::size_t kMostKept = 500;
+
   ~DaemonLog();  ///< writes what waits, as far as it is taken
   DaemonLog(const DaemonLog&) = delete;
   DaemonLog& operator=(const DaemonLog&) = delete;
@@ -67,6 +73,7 @@ class DaemonLog {
  private:
   bool verbose_;
   std::shared_ptr<BoundedLogSink> sink_;
+  std::shared_ptr<spdlog::sinks::ringbuffer_sink_mt> kept_;
   std::shared_ptr<spdlog::details::thread_pool> writer_;
 };
 

@@ -34,7 +34,8 @@ void run_daemon(const RunOptions& options, const std::optional<std::filesystem::
   service::ServiceOptions service{.record = record ? record : config.recording.file,
                                   .duration_s = options.duration_s,
                                   .with_scenes = with_scenes,
-                                  .set_log_level = [&log](settings::LogLevel level) { log.set_level(level); }};
+                                  .set_log_level = [&log](settings::LogLevel level) { log.set_level(level); },
+                                  .log_tail = log.tail()};
   if (options.config_file) {
     service.config_file = *options.config_file;
     service.read_config = [options] { return config_with_warnings(options); };

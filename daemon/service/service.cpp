@@ -19,6 +19,9 @@
 #include "daemon/animation/animation_loop.hpp"
 #include "daemon/animation/scene_director.hpp"
 #include "daemon/animation/scene_exchange.hpp"
+#include "daemon/history/history_json.hpp"
+#include "daemon/history/history_reader.hpp"
+#include "daemon/history/wind_history.hpp"
 #include "daemon/recording/recorder.hpp"
 #include "daemon/sensing/player_director.hpp"
 #include "daemon/sensing/recorded_silence.hpp"
@@ -105,6 +108,7 @@ class Service::Io {
       scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);
       frame_ready_.assign(dup(loop_->frame_ready_fd()));
     }
+    if (options.record) history_ = make_history(*options.record);
     if (!config.http.listen.empty()) web_ = std::make_unique<web::WebServer>(web_settings(config));
     // What is replayed has happened already.
     if (!options.recorded_from) alerts_.emplace(config.alerts, asio::ip::host_name());
@@ -192,7 +196,23 @@ class Service::Io {
     settings.ask = [this](const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply) {
       asio::post(io_, [this, control, is_local, reply = std::move(reply)] { reply(handle(control, is_local)); });
     };
+    if (history_) {
+      settings.history = [this](unsigned hours, const history::HistoryReader::Reply& reply) {
+        history_->ask(hours, reply);
+      };
+    }
+    settings.log = options_.log_tail;
     return settings;
+  }
+
+  /// Reads what the daemon records itself; it owns all that it uses.
+  static std::unique_ptr<history::HistoryReader> make_history(const std::filesystem::path& file) {
+    return std::make_unique<history::HistoryReader>(
+        [file](unsigned hours, const std::stop_token& stop) -> Result<std::string, Failure> {
+          const auto history = history::read_wind_history(file, std::chrono::system_clock::now(), hours, stop);
+          if (!history) return history.error();
+          return {boost::system::in_place_value, history::history_json(*history)};
+        });
   }
 
   static Secret token_of(const settings::HttpConfig& http) {
@@ -479,8 +499,9 @@ class Service::Io {
   std::unique_ptr<animation::SceneExchange> scenes_;
   std::unique_ptr<animation::SceneChange> next_scenes_;  ///< of a reload, not yet the animation's
   std::unique_ptr<recording::Recorder> recorder_;
-  std::unique_ptr<web::WebServer> web_;   ///< nothing: not asked for
-  std::optional<alerts::Alerts> alerts_;  ///< nothing: nobody is told
+  std::unique_ptr<history::HistoryReader> history_;  ///< nothing: not recorded
+  std::unique_ptr<web::WebServer> web_;              ///< nothing: not asked for
+  std::optional<alerts::Alerts> alerts_;             ///< nothing: nobody is told
   ServiceManager manager_{options_.with_scenes};
   bool is_up_ = false;  ///< it has begun, with its first frame where it has scenes
 

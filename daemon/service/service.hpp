@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "daemon/settings/config.hpp"
+#include "daemon/web/log_line.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi::daemon::service {
@@ -24,6 +25,8 @@ struct ServiceOptions {
   std::function<settings::Config()> read_config = {};
   /// Called with [log] level when it has changed.
   std::function<void(settings::LogLevel)> set_log_level = {};
+  /// The last lines of the log. Thread-safe. Empty: there is none.
+  web::LogTail log_tail = {};
 };
 
 /// The daemon: joins sensors, wind, animation, stream and recording. The data flow:

@@ -13,6 +13,7 @@
 #include "daemon/web/metrics.hpp"
 #include "daemon/web/openapi.hpp"
 #include "daemon/web/problem.hpp"
+#include "daemon/web/query.hpp"
 
 namespace yuragi::daemon::web {
 namespace {
@@ -112,6 +113,23 @@ Answer pair(const HttpRequest& request, const Facts& /*facts*/) {
   return std::move(*pairing);
 }
 
+Answer history(const HttpRequest& request, const Facts& /*facts*/) {
+  const auto hours = number_in_query(request.query, {.name = "hours", .least = 1, .most = 168, .otherwise = 24});
+  if (!hours) return problem(400, "Not understood", hours.error().message);
+  return HistoryQuestion{*hours};
+}
+
+Answer log(const HttpRequest& request, const Facts& facts) {
+  const auto count = number_in_query(request.query, {.name = "lines", .least = 1, .most = 500, .otherwise = 200});
+  if (!count) return problem(400, "Not understood", count.error().message);
+  ordered_json lines = ordered_json::array();
+  if (facts.log) {
+    for (const LogLine& line : facts.log(*count))
+      lines.push_back({{"time_s", line.time_s}, {"level", line.level}, {"text", line.text}});
+  }
+  return json_response({{"lines", std::move(lines)}});
+}
+
 constexpr std::array kRoutes = {
     Route{"GET", "/healthz", health},
     Route{"GET", "/metrics", metrics},
@@ -121,6 +139,8 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/scenes", change_scene},
     Route{"GET", "/api/v1/player", players},
     Route{"POST", "/api/v1/player", change_player},
+    Route{"GET", "/api/v1/history", history},
+    Route{"GET", kLogPath, log},
     Route{"POST", kPairPath, pair},
 };
 

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "daemon/web/http_server.hpp"
+#include "daemon/web/log_line.hpp"
 #include "daemon/web/request_body.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -20,6 +21,7 @@ struct Facts {
   const wire::Sensors* sensors = nullptr;  ///< the daemon's last news; null: there was none yet
   double age_s = 0.0;                      ///< of them
   double patience_s = 5.0;                 ///< news that are older are no news
+  LogTail log = {};
 };
 
 /// A request that the daemon has to carry out, and the answer that its reply becomes.
@@ -28,10 +30,18 @@ struct Question {
   std::function<HttpResponse(const wire::ControlReply& reply)> answer;
 };
 
-using Answer = std::variant<HttpResponse, Question, Pairing>;
+/// A request for the recorded wind.
+struct HistoryQuestion {
+  unsigned hours = 0;
+};
+
+using Answer = std::variant<HttpResponse, Question, Pairing, HistoryQuestion>;
 
 /// What those may do, too, who are let in nowhere else yet.
 inline constexpr std::string_view kPairPath = "/api/v1/pair";
+
+/// What takes the token from other machines in any case: the log names files and addresses.
+inline constexpr std::string_view kLogPath = "/api/v1/log";
 
 /// One thing that can be asked for.
 struct Route {

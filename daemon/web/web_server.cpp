@@ -51,6 +51,27 @@ struct Pending {
   HttpReply reply;
 };
 
+HttpResponse nothing_recorded() {
+  return problem(404, "Nothing is recorded",
+                 "the daemon records nothing: name a file in [recording] file, or start it with --record FILE.windlog");
+}
+
+HttpResponse ask_again(const std::string& why) {
+  HttpResponse response = problem(503, "Not yet", why);
+  response.fields.push_back({"Retry-After", "5"});
+  return response;
+}
+
+/// `is_trusted`: a failure may name the recording.
+HttpResponse history_answer(const Result<std::string, Failure>& read, bool is_trusted) {
+  if (read) return {.body = *read};
+  const Failure& failure = read.error();
+  if (failure.kind == FailureKind::kUnavailable) return ask_again(failure.message);
+  const std::string why = is_trusted ? failure.message : "this machine itself is told why";
+  return failure.kind == FailureKind::kNoInput ? problem(404, "Nothing is recorded", why)
+                                               : problem(500, "The recording cannot be read", why);
+}
+
 }  // namespace
 
 class WebServer::Thread {
@@ -114,7 +135,8 @@ class WebServer::Thread {
     const double utc_s = seconds(std::chrono::system_clock::now().time_since_epoch());
     const bool trusted = is_trusted(request, access_ ? &*access_ : nullptr, utc_s);
     if (request.path != kPairPath) {
-      auto refusal = permission_refusal(request, trusted, access_.has_value(), settings_.reading_takes_token);
+      const bool takes_token = settings_.reading_takes_token || request.path == kLogPath;
+      auto refusal = permission_refusal(request, trusted, access_.has_value(), takes_token);
       if (refusal) return reply(std::move(*refusal));
     }
 
@@ -124,24 +146,23 @@ class WebServer::Thread {
                       .tick_rate_hz = settings_.tick_rate_hz,
                       .sensors = news ? &news->sensors : nullptr,
                       .age_s = news ? seconds(steady_clock::now() - news->at) : 0.0,
-                      .patience_s = seconds(settings_.patience)};
+                      .patience_s = seconds(settings_.patience),
+                      .log = settings_.log};
     Answer answer = answer_to(request, facts);
     if (auto* const response = std::get_if<HttpResponse>(&answer)) return reply(std::move(*response));
     if (const auto* const pairing = std::get_if<Pairing>(&answer)) {
       const double now_s = seconds(steady_clock::now().time_since_epoch());
       return reply(pairing_answer(pairing->code, request, access_ ? &*access_ : nullptr, pairing_tries_, utc_s, now_s));
     }
+    if (const auto* const question = std::get_if<HistoryQuestion>(&answer))
+      return read_history(question->hours, trusted, std::move(reply));
     ask(std::get<Question>(std::move(answer)), trusted, std::move(reply));
   }
 
   void ask(Question question, bool is_local, HttpReply reply) {
     if (!settings_.ask) return reply(problem(503, "Not here", "this daemon takes no requests"));
-    const auto pending = std::make_shared<Pending>(*io_, std::move(reply));
-    pending->given_up.expires_after(settings_.patience);
-    pending->given_up.async_wait([pending](const boost::system::error_code& error) {
-      if (!error)
-        pending->answer(problem(503, "No reply", "the daemon does not reply: it hangs, or has far too much to do"));
-    });
+    const auto pending = wait_for_reply(
+        std::move(reply), problem(503, "No reply", "the daemon does not reply: it hangs, or has far too much to do"));
     // The reply comes on another thread, perhaps when the question has been given up or this object is gone.
     settings_.ask(question.control, is_local,
                   [io = std::weak_ptr(io_), asked = std::weak_ptr(pending),
@@ -152,6 +173,30 @@ class WebServer::Thread {
                       if (const auto still = asked.lock()) still->answer(make(given));
                     });
                   });
+  }
+
+  void read_history(unsigned hours, bool is_trusted, HttpReply reply) {
+    if (!settings_.history) return reply(nothing_recorded());
+    const auto pending =
+        wait_for_reply(std::move(reply), ask_again("the recording is still being read; it is kept when it is there"));
+    settings_.history(hours, [io = std::weak_ptr(io_), asked = std::weak_ptr(pending),
+                              is_trusted](Result<std::string, Failure> read) {
+      const auto alive = io.lock();
+      if (!alive) return;
+      asio::post(*alive, [asked, is_trusted, read = std::move(read)] {
+        if (const auto still = asked.lock()) still->answer(history_answer(read, is_trusted));
+      });
+    });
+  }
+
+  /// What is waited for, with the answer where it does not come in time.
+  std::shared_ptr<Pending> wait_for_reply(HttpReply reply, HttpResponse otherwise) {
+    const auto pending = std::make_shared<Pending>(*io_, std::move(reply));
+    pending->given_up.expires_after(settings_.patience);
+    pending->given_up.async_wait([pending, otherwise = std::move(otherwise)](const boost::system::error_code& error) {
+      if (!error) pending->answer(otherwise);
+    });
+    return pending;
   }
 
   WebSettings settings_;

@@ -10,6 +10,8 @@
 
 #include "daemon/stream/client_admission.hpp"
 #include "daemon/stream/transport.hpp"
+#include "daemon/web/log_line.hpp"
+#include "engine/base/result.hpp"
 #include "engine/base/secret.hpp"
 #include "engine/base/time.hpp"
 
@@ -28,6 +30,13 @@ struct WebSettings {
   /// wait. `is_local`: the client is of this machine, or trusted as if it were. Empty: every request is refused.
   std::function<void(const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply)> ask =
       {};
+  /// Reads the wind of the last hours as JSON and calls `reply` once, on any thread. Called on the web server's own;
+  /// must not wait. Fails with kNoInput where there is none, with kUnavailable where it is to be asked again. Empty:
+  /// nothing is recorded.
+  std::function<void(unsigned hours, std::function<void(Result<std::string, Failure>)> reply)> history = {};
+  /// The last lines of the log, oldest first. Called on the web server's own thread; must not wait. Empty: there is
+  /// none.
+  LogTail log = {};
   /// After so long without news of the daemon the page says that it hangs, and a question is given up.
   Nanoseconds patience = std::chrono::seconds(5);
 };

@@ -68,6 +68,24 @@ class Http(unittest.TestCase):
         self.assertEqual(code, 409)
         self.assertIn("sea", json.loads(text)["detail"])
 
+    def test_the_history_of_what_it_records_and_its_log(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        sensor = '[[sensor]]\nname = "roof"\ndriver = "synthetic"\n'
+        self.start_daemon(sensor)
+        code, text = self.ask("/api/v1/history")
+        self.assertEqual(code, 404)
+        self.assertIn("[recording] file", json.loads(text)["detail"])
+        recording = f'[recording]\nfile = "{folder}/wall.windlog"\n'
+        self.start_daemon(recording + sensor)
+        self.wait_for("/api/v1/status", 200, r'"written": [1-9]')
+        history = json.loads(self.wait_for("/api/v1/history?hours=1", 200, '"roof"'))
+        self.assertEqual(history["step_count"], len(history["sensors"][0]["mean_m_s"]))
+        self.assertIn(None, history["sensors"][0]["mean_m_s"])
+        self.assertTrue(any(mean is not None for mean in history["sensors"][0]["mean_m_s"]))
+        lines = json.loads(self.ask("/api/v1/log")[1])["lines"]
+        self.assertIn(f"recording to {folder}/wall.windlog", [line["text"] for line in lines])
+        self.assertEqual(self.ask("/api/v1/log", X_Forwarded_For="192.0.2.7")[0], 401)
+
     def test_a_sensor_that_is_not_there_is_told_with_what_to_do(self):
         self.start_daemon(f'[[sensor]]\nname = "roof"\ndriver = "nmea"\ntransport = "tcp"\nhost = "127.0.0.1"\nport = {free_port()}\n')
         self.wait_for("/healthz", 503, "roof.*127.0.0.1")

@@ -10,7 +10,7 @@ import { after, before, test } from "node:test";
 
 const HANG_MS = 60_000;
 const [chromiumPath, programs, tools, screenshots, ...ports] = process.argv.slice(2);
-const [httpPort, sensorPort, pairingPort, readingPort, playerPort] = ports;
+const [httpPort, sensorPort, pairingPort, readingPort, playerPort, recordingPort] = ports;
 const require = createRequire(path.join(tools, "package.json"));
 const { chromium } = require("playwright-core");
 const axe = fs.readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
@@ -130,6 +130,63 @@ test("it needs nothing but the daemon, and says nothing on the console", { timeo
     assert.deepEqual(page.complaints, []);
     await page.context().close();
   }
+});
+
+test("24 hours: says what to do where nothing is recorded, and draws what is", { timeout: 2 * HANG_MS }, async () => {
+  const page = await open(url);
+  await page.waitForSelector("#history .empty:text('[recording] file')");
+  assert.deepEqual(page.complaints, []);
+  const row = (values) => Array.from({ length: 481 }, (_, step) => (step > 100 && step < 160 ? null : values(step)));
+  const roof = { name: HOSTILE, min_m_s: row(() => 1), mean_m_s: row((step) => 3 + Math.sin(step / 30)), max_m_s: row(() => 6), direction_deg: row(() => 220) };
+  const mast = { ...roof, name: "mast", mean_m_s: row(() => 2) };
+  const history = { begin_s: 1_780_000_000, step_s: 180, step_count: 481, sensors: [roof, mast] };
+  let asked = 0;
+  await page.route("**/api/v1/history?hours=24", (route) =>
+    asked++ === 0 ? route.fulfill({ status: 503, json: { detail: "busy" } }) : route.fulfill({ json: history }));
+  const status = await (await fetch(url + "api/v1/status")).json();
+  const recorder = { state: "writing", written: 1, waiting: 0, lost: 0, free_bytes: null, error: "" };
+  await page.route("**/api/v1/status", (route) => route.fulfill({ json: { ...status, recorder } }));
+  await page.reload();
+  await page.waitForSelector("#history canvas");
+  assert.ok(asked >= 2, "a daemon that is busy is asked again");
+  assert.deepEqual(await page.$$eval("#history .legend li", (all) => all.map((one) => one.textContent)), [HOSTILE, "mast"]);
+  assert.match(await page.getAttribute("#history .history", "aria-label"), /24 hours: .*mast/);
+  await assertAccessible(page, "24 hours");
+  await screenshot(page, "24-hours-1920-light");
+  await page.context().close();
+});
+
+test("24 hours of a daemon that records, and its log", { timeout: 2 * HANG_MS }, async () => {
+  await startDaemon(configured("recorded.toml", `
+[http]
+listen = "127.0.0.1:${recordingPort}"
+[recording]
+file = "${path.join(folder, "wall.windlog")}"
+[[sensor]]
+name = "wall"
+driver = "synthetic"
+`));
+  const base = `http://127.0.0.1:${recordingPort}/`;
+  const page = await open(base, { viewport: { width: 320, height: 800 }, colorScheme: "dark" });
+  await page.waitForSelector("#history canvas, #history .empty:text('Nothing was recorded')");
+  assert.equal(await page.isVisible("#log-lines"), false);
+  await page.click("#log summary");
+  await page.waitForSelector("#log-lines li:text('recording to')");
+  const line = { time_s: 1_780_000_000.5, level: "warning", text: HOSTILE };
+  await page.route("**/api/v1/log?lines=200", (route) => route.fulfill({ json: { lines: [{ ...line, level: "info" }, line] } }));
+  await page.waitForSelector("#log-lines li.serious");
+  assert.deepEqual(await page.$$eval("#log-lines li", (all) => all.map((one) => one.className)), ["", "serious"]);
+  assert.ok((await page.textContent("#log-lines li.serious")).endsWith(`warning ${HOSTILE}`));
+  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 320, "wider than the screen");
+  await assertAccessible(page, "log");
+  await screenshot(page, "log-320-dark");
+  assert.deepEqual(page.complaints.filter((complaint) => !complaint.includes("503")), []); // where the machine has much to do
+  await page.context().close();
+
+  const elsewhere = await open(base, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
+  await elsewhere.click("#log summary");
+  await elsewhere.waitForSelector("#log-note:text('paired')");
+  await elsewhere.context().close();
 });
 
 test("the keyboard shows and hides a scene", { timeout: 2 * HANG_MS }, async () => {

@@ -2,7 +2,9 @@
 import { Change } from "./change";
 import { by_id, element, set_text } from "./element";
 import { HealthView } from "./health_view";
+import { HistoryView } from "./history_view";
 import { listen } from "./link";
+import { LogView } from "./log_view";
 import { Pairing } from "./pairing";
 import { PlayersView } from "./players_view";
 import { ask } from "./request";
@@ -22,6 +24,8 @@ const wind = new WindView(by_id("wind"));
 const sensors = new SensorsView(by_id("sensors"));
 const scenes = new ScenesView(by_id("scenes"), change);
 const players = new PlayersView(by_id("recordings-card"), by_id("recordings"), change);
+const history = new HistoryView(by_id("history"));
+const log = new LogView(by_id("log") as HTMLDetailsElement, by_id("log-note"), by_id("log-lines"));
 const health = new HealthView(by_id("health"));
 
 let knowledge: Knowledge = { kind: "connecting" };
@@ -109,10 +113,15 @@ void listen({
     by_id("cards").hidden = false;
     wind.show(status);
     health.show(status);
+    history.show(status.recorder !== null);
     show_attention(status.attention);
     set_text(by_id("host"), location.host);
     redraw();
-    if (is_back) void ask_for_lists();
+    if (is_back) {
+      void ask_for_lists();
+      history.ask_now();
+      log.ask_now();
+    }
   },
   refused(refusal) {
     forget({ kind: "refused", needs_pairing: refusal.status === 401, why: refusal.message });

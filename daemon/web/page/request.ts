@@ -13,9 +13,9 @@ export class Refused extends Error {
 }
 
 /** The JSON of its answer. Throws Refused, or any other error where no answer came. */
-export async function ask<T>(path: string, body?: object): Promise<T> {
+export async function ask<T>(path: string, body?: object, patience_ms = PATIENCE_MS + (body ? PATIENCE_MS : 0)): Promise<T> {
   const abort = new AbortController();
-  const patience = setTimeout(() => abort.abort(), PATIENCE_MS + (body ? PATIENCE_MS : 0));
+  const patience = setTimeout(() => abort.abort(), patience_ms);
   try {
     const answer = await fetch(path, {
       signal: abort.signal,

@@ -67,6 +67,26 @@ export interface Player {
   refusal: string;
 }
 
+/** Of the recording, in steps of equal length; null: a gap. */
+export interface History {
+  begin_s: number;
+  step_s: number;
+  step_count: number;
+  sensors: {
+    name: string;
+    min_m_s: (number | null)[];
+    mean_m_s: (number | null)[];
+    max_m_s: (number | null)[];
+    direction_deg: (number | null)[];
+  }[];
+}
+
+export interface LogLine {
+  time_s: number;
+  level: string;
+  text: string;
+}
+
 /** The states of a sensor whose readings make the wind. */
 const BELIEVED = ["live", "replayed", "simulated"];
 

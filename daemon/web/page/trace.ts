@@ -1,17 +1,11 @@
 // The last minutes of the wind as lines: measured, as it is blended, and the share of noise in it.
+import { color, root_px } from "./style";
 import uPlot from "./vendor/uplot/uPlot.esm.js";
 
 const LENGTH_S = 180;
 const LEAST_LENGTH_S = 30; // while there is little to show
 const HEIGHT_REM = 12;
 const LEAST_SCALE_M_S = 2;
-
-/** uPlot writes on a canvas, which knows no style sheet. */
-function color(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-}
-
-const root_px = () => parseFloat(getComputedStyle(document.documentElement).fontSize);
 
 export class Trace {
   readonly place = document.createElement("div");

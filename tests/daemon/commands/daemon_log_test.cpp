@@ -90,6 +90,25 @@ TEST(BoundedLogSink, WithoutAReaderItDropsAtOnce) {
   std::signal(SIGPIPE, SIG_DFL);
 }
 
+TEST(DaemonLog, ItsLastLinesAreKept_AlsoThoseThatNobodyReads) {
+  web::LogTail tail;
+  {
+    const DaemonLog log(false);
+    for (int i = 0; i < 600; ++i) spdlog::info("line {} of the log", i);
+    spdlog::debug("not said");
+    spdlog::warn("{}", std::string(10'000, 'x'));
+    tail = log.tail();
+  }  // which waits until all is written
+  const auto lines = tail(3);
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[1].text, "line 599 of the log");
+  EXPECT_EQ(lines[1].level, "info");
+  EXPECT_GT(lines[1].time_s, 1.7e9);
+  EXPECT_EQ(lines[2].level, "warning");
+  EXPECT_EQ(lines[2].text.size(), BoundedLogSink::kMaxTextBytes);
+  EXPECT_EQ(tail(10'000).size(), DaemonLog::kMostKept);
+}
+
 TEST(DaemonLog, IsDelayedByNobodyAndEndsAlthoughNobodyReads) {
   Pipe pipe;
   std::fflush(stderr);

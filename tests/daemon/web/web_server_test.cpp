@@ -1,6 +1,7 @@
 // Real connections to the loopback. The server answers on its own thread; a read waits for what comes, or for the end.
 #include "daemon/web/web_server.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>
@@ -23,6 +24,7 @@ namespace yuragi::daemon::web {
 namespace {
 
 using boost::asio::ip::tcp;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -192,6 +194,58 @@ class SilentDaemonTest : public WebServerTest {
 };
 TEST_F(SilentDaemonTest, AQuestionIsGivenUp) {
   EXPECT_THAT(Client(silent_->local_endpoint()).get("/api/v1/scenes"), StartsWith("HTTP/1.1 503"));
+}
+
+/// A daemon that records: its recording, and its log.
+class RecordingDaemonTest : public WebServerTest {
+ protected:
+  /// What the daemon answers to who asks for `path`.
+  std::string answer(const std::string& path, const std::string& fields = "") {
+    WebSettings recording = settings();
+    if (history_) recording.history = history_;
+    recording.log = [](std::size_t most) {
+      return std::vector<LogLine>(std::min<std::size_t>(most, 3), {1.5, "warning", "\xff"});
+    };
+    const WebServer server(std::move(recording));
+    return Client(server.local_endpoint()).get(path, fields);
+  }
+  /// Its reading fails so.
+  void fails(Failure failure) {
+    history_ = [failure = std::move(failure)](unsigned, const auto& reply) { reply(failure); };
+  }
+  static constexpr const char* kElsewhere = "X-Forwarded-For: 192.0.2.7\r\n";
+
+  std::function<void(unsigned, std::function<void(Result<std::string, Failure>)>)> history_;
+};
+TEST_F(RecordingDaemonTest, TheHistoryOfSoManyHours) {
+  history_ = [](unsigned hours, const auto& reply) {
+    reply({boost::system::in_place_value, std::to_string(hours) + " h"});
+  };
+  EXPECT_THAT(answer("/api/v1/history"), HasSubstr("24 h"));
+  EXPECT_THAT(answer("/api/v1/history?hours=168", kElsewhere), HasSubstr("168 h"));
+  for (const char* const query : {"?hours=0", "?hours=169", "?hours=", "?hours=-1", "?hours=1x", "?days=1"})
+    EXPECT_THAT(answer(std::string("/api/v1/history") + query), StartsWith("HTTP/1.1 400")) << query;
+}
+TEST_F(RecordingDaemonTest, WhyThereIsNoHistory) {
+  EXPECT_THAT(answer("/api/v1/history"), AllOf(StartsWith("HTTP/1.1 404"), HasSubstr("[recording] file")));
+  fails({"busy", FailureKind::kUnavailable});
+  EXPECT_THAT(answer("/api/v1/history"), AllOf(StartsWith("HTTP/1.1 503"), HasSubstr("Retry-After: 5")));
+  fails({"/home/anna/a.windlog: is damaged"});
+  EXPECT_THAT(answer("/api/v1/history"), AllOf(StartsWith("HTTP/1.1 500"), HasSubstr("anna")));
+  EXPECT_THAT(answer("/api/v1/history", kElsewhere), AllOf(StartsWith("HTTP/1.1 500"), Not(HasSubstr("anna"))));
+}
+TEST_F(RecordingDaemonTest, AReadingThatHangsHoldsUpNobody) {
+  replies_ = false;  // nobody waits for long
+  history_ = [](unsigned, const auto&) {};
+  EXPECT_THAT(answer("/api/v1/history"), AllOf(StartsWith("HTTP/1.1 503"), HasSubstr("Retry-After: 5")));
+}
+TEST_F(RecordingDaemonTest, TheLogIsForWhoHasTheToken) {
+  EXPECT_THAT(answer("/api/v1/log"), HasSubstr("\"level\": \"warning\""));
+  EXPECT_THAT(answer("/api/v1/log?lines=501"), StartsWith("HTTP/1.1 400"));
+  EXPECT_THAT(answer("/api/v1/log", kElsewhere), StartsWith("HTTP/1.1 401"));
+  EXPECT_THAT(
+      answer("/api/v1/log?lines=1", std::string(kElsewhere) + "Authorization: Bearer correct horse battery staple\r\n"),
+      StartsWith("HTTP/1.1 200"));
 }
 
 /// A server that is turned on a thread of the test's, with limits of the test's choice.

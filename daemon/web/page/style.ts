@@ -1,0 +1,9 @@
+// What the style sheet says, for canvases, which know none.
+
+/** The value of a variable: "#67d3c8". */
+export function color(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+/** The length of 1 rem. */
+export const root_px = () => parseFloat(getComputedStyle(document.documentElement).fontSize);
