@@ -33,7 +33,7 @@ test_packages=(
   mosquitto-clients openssl                               # a publisher that is not ours; a certificate for the broker
   umockdev libumockdev-dev                                # USB devices without a kernel's
   libasound2-dev libasound2-plugins pulseaudio pulseaudio-utils # sound cards without a card
-  xvfb                                                    # a display for the viewer's window
+  xvfb libxtst-dev                                        # a display for the viewer's window, with keys and a mouse
   xserver-xorg-core xserver-xorg-video-dummy x11-xserver-utils libx11-dev # monitors that come and go, for its wall
   glslang-tools                                           # an independent judge of the shaders
   systemd lintian man-db                                  # independent judges of the units and of the package

@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "tests/support/places.hpp"
-#include "tests/viewer/virtual_screen.hpp"
+#include "tests/viewer/started_program.hpp"
 
 namespace yuragi::viewer {
 

@@ -25,7 +25,7 @@ namespace {
 
 using namespace yuragi;
 using namespace yuragi::viewer;
-using Pixels = VirtualMonitors::Pixels;
+using Pixels = ScreenPixels;
 
 constexpr int kWidth_px = 640;  // of DUMMY0 and DUMMY1; DUMMY2 has 800 x 600
 constexpr int kHeight_px = 480;

@@ -10,9 +10,9 @@
 
 #include "tests/support/temporary_folder.hpp"
 #include "tests/viewer/running_viewer.hpp"
+#include "tests/viewer/started_program.hpp"
 #include "tests/viewer/stream_server.hpp"
 #include "tests/viewer/test_meadow.hpp"
-#include "tests/viewer/virtual_screen.hpp"
 #include "tests/viewer/wall/virtual_monitors.hpp"
 
 namespace yuragi::viewer {
@@ -82,7 +82,7 @@ class WallTest : public testing::Test {
   /// How many pixels of a monitor are another color than those of the picture from a place on. Not those of the border
   /// of two pixels, which a test card marks.
   int differences(const std::vector<std::uint32_t>& picture, int picture_width_px, int from_x, int monitor_x) const {
-    const VirtualMonitors::Pixels seen = monitors_.pixels();
+    const ScreenPixels seen = monitors_.pixels();
     int count = 0;
     for (int y = 2; y < kHeight_px - 2; ++y) {
       for (int x = 2; x < kWidth_px - 2; ++x) {
@@ -95,7 +95,7 @@ class WallTest : public testing::Test {
 
   /// Is all of a monitor of this color?
   bool is_all(std::uint32_t color, int monitor_x) const {
-    const VirtualMonitors::Pixels seen = monitors_.pixels();
+    const ScreenPixels seen = monitors_.pixels();
     if (seen.width_px < monitor_x + kWidth_px) return false;
     for (int y = 0; y < kHeight_px; ++y) {
       for (int x = 0; x < kWidth_px; ++x) {
@@ -146,7 +146,7 @@ TEST_F(WallTest, IsBlackBeforeADaemonAnswersAndShowsWhatItStreamsThen) {
   const StreamServer server(
       greeting_for(meadow) + frame_of(meadow, test_pose(meadow, 0.0, 0.3, 0.0, 140.0), 1, 0.1, 140.0, encoder), port);
   const auto is_lit = [&](int monitor_x) {
-    const VirtualMonitors::Pixels seen = monitors_.pixels();
+    const ScreenPixels seen = monitors_.pixels();
     // Sky above, light.
     return (seen.at(monitor_x + kWidth_px / 2, 20) & 0xFFU) > 100;
   };
@@ -191,7 +191,7 @@ monitor = "DUMMY2"
   })) << viewer->said();
   // The third shows all of the picture, drawn out: its corner is marked, and so is its middle.
   EXPECT_TRUE(comes_true([&] {
-    const VirtualMonitors::Pixels seen = monitors_.pixels();
+    const ScreenPixels seen = monitors_.pixels();
     return seen.width_px == 2080 && (seen.at(1280, 0) >> 16U) > 200 && (seen.at(1280 + 400, 300) & 0xFFU) > 150;
   })) << viewer->said();
   EXPECT_EQ(viewer->end(), 0);
