@@ -88,7 +88,7 @@ class WindowTest : public testing::Test {
     auto viewer = std::make_unique<RunningViewer>(
         std::vector<std::string>{"--connect", "127.0.0.1:" + std::to_string(server.port()), "--size",
                                  std::to_string(kWidth_px) + "x" + std::to_string(kHeight_px), "--no-overlay", "--look",
-                                 "quality=" + quality, "--scale", "0.5"},
+                                 "quality=" + quality, "--look", "clouds=0", "--scale", "0.5"},
         screen_.environment(), folder_.path() / "said.txt");
     EXPECT_TRUE(comes_true([this] { return shows_grass(); })) << viewer->said();
     return viewer;
