@@ -33,9 +33,11 @@ std::unique_ptr<SceneList> first_scenes(const settings::Config& config,
 Animation::Animation(const settings::Config& config, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts)
     : scenes_(first_scenes(config, gusts)), pool_(config.animation.threads), tapes_(most_pens(config)) {}
 
-void Animation::step(const wind::ground::DrivingWind& wind, double dt_s) noexcept {
+void Animation::step(const wind::ground::DrivingWind& wind, double dt_s, std::uint64_t ticks) noexcept {
   if (change_ && !change_->is_over && change_->has_faded_out()) finish_change();
-  const wind::ground::GroundWind ground = written_to(tapes_, wind);
+  wind::ground::GroundWind ground = written_to(tapes_, wind);
+  tick_ += ticks;
+  ground.tick = tick_;
   SceneList& list = *scenes_;
   for (std::size_t i = 0; i < list.size(); ++i) list[i].fade.advance(dt_s);
   list.read_opacities();

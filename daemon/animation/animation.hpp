@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,8 +34,9 @@ class Animation {
   /// `gusts`: of the wind that step() will be given.
   Animation(const settings::Config& config, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts);
 
-  /// Writes the wind onto the tapes, and advances every visible scene and every fade by dt_s.
-  void step(const wind::ground::DrivingWind& wind, double dt_s) noexcept;
+  /// Writes the wind onto the tapes, and advances every visible scene and every fade by dt_s. `ticks`: how many have
+  /// passed since the last step, more than 1 if some were skipped.
+  void step(const wind::ground::DrivingWind& wind, double dt_s, std::uint64_t ticks = 1) noexcept;
 
   /// Begins a fade. Ignored for a scene that does not exist. While a change is carried out, scenes are counted as after
   /// it.
@@ -74,6 +76,7 @@ class Animation {
   std::unique_ptr<SceneChange> change_;  // that is being carried out, or over and not yet taken
   workers::WorkerPool pool_;
   wind::ground::WindTapes tapes_;
+  std::uint64_t tick_ = 0;  // the number of the last one
 };
 
 }  // namespace yuragi::daemon::animation

@@ -109,7 +109,7 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
   const wind::ground::DrivingWind& wind = wind_.value();
   const double dt_s = std::min(static_cast<double>(tick.skipped + 1) / rate_hz_, kLongestStep_s);
   take_orders();
-  animation_.step(wind, dt_s);
+  animation_.step(wind, dt_s, tick.skipped + 1);
   if (auto finished = animation_.take_finished_change()) finished_.store(finished.release(), std::memory_order_release);
 
   // The wind is some milliseconds older than the frame, and with it the age of its newest reading.

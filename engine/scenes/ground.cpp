@@ -57,6 +57,7 @@ std::unique_ptr<Scene> make_ground(const ParameterValues& values, const SceneSet
   std::vector<float> flexibility(nodes.padded_count(), 1.0F);
   const std::vector<float> x_m = nodes.root_x_m;
   const std::vector<float> z_m = nodes.root_z_m;
+  spec.finest_wind_cell_m = values.number("spacing");
   return std::make_unique<StrandSway>(std::move(nodes), x_m, z_m, std::move(flexibility), spec, setup);
 }
 

@@ -87,47 +87,71 @@ std::vector<GustNodes::Between> GustNodes::between(std::size_t nodes, std::size_
   return result;
 }
 
-void GustNodes::read(const wind::turbulence::GustNoise::Moment& moment, const GustWeights& weights) noexcept {
-  read(moment, wind::turbulence::GustNoise::Component::kAlong, weights);
-  read(moment, wind::turbulence::GustNoise::Component::kAcross, weights);
-  for (std::size_t i = 0; i < envelope_.size(); ++i) {
+NodeRange GustNodes::coarse_nodes_of(const NodeRange& lines) const noexcept {
+  if (lines.count == 0) return {};
+  const std::size_t coarse_columns = line_envelope_.size();
+  const std::size_t first = lines_[lines.first].first;
+  const std::size_t end = lines_[lines.first + lines.count - 1].first + 2;  // the line behind it, too
+  return {first * coarse_columns, (std::min(end, envelope_.size() / coarse_columns) - first) * coarse_columns};
+}
+
+void GustNodes::read(const wind::turbulence::GustNoise::Moment& moment, const GustWeights& weights,
+                     const NodeRange& lines) noexcept {
+  read(moment, wind::turbulence::GustNoise::Component::kAlong, weights, lines);
+  read(moment, wind::turbulence::GustNoise::Component::kAcross, weights, lines);
+  const NodeRange coarse = coarse_nodes_of(lines);
+  for (std::size_t i = coarse.first; i < coarse.first + coarse.count; ++i) {
     envelope_[i] = gusts_->envelope(moment, coarse_.x_m[i], coarse_.z_m[i]);
   }
-  add_coarse();
+  add_coarse(lines);
+}
+
+void GustNodes::read_carried(const wind::turbulence::GustNoise::Moment& moment, wind::WindVector carried_m,
+                             const GustWeights& weights, const NodeRange& lines) noexcept {
+  wind::turbulence::GustNoise::Moment later = moment;
+  gusts_->carry(later.carried, carried_m.u_m_s, -carried_m.v_m_s, 1.0);
+  read(later, weights, lines);
 }
 
 /// One component at the nodes, and apart from it at the coarse nodes.
 void GustNodes::read(const wind::turbulence::GustNoise::Moment& moment,
-                     wind::turbulence::GustNoise::Component component, const GustWeights& weights) noexcept {
+                     wind::turbulence::GustNoise::Component component, const GustWeights& weights,
+                     const NodeRange& lines) noexcept {
   const bool is_along = component == wind::turbulence::GustNoise::Component::kAlong;
   std::array<wind::turbulence::GustNoise::Layer, wind::turbulence::GustNoise::kMaxLayers> octaves;
   const std::size_t count = gusts_->layers(moment, component, octaves);
   static_assert(wind::turbulence::GustNoise::kMaxLayers <= operators::SampleJob::kMaxLayers);
   std::array<operators::NoiseLayer, wind::turbulence::GustNoise::kMaxLayers> fine;
   std::array<operators::NoiseLayer, wind::turbulence::GustNoise::kMaxLayers> coarse;
+  const NodeRange fine_range = nodes_of(lines);
+  const NodeRange coarse_range = coarse_nodes_of(lines);
   std::size_t fine_count = 0;
   std::size_t coarse_count = 0;
   for (const wind::turbulence::GustNoise::Layer& layer : std::span(octaves).first(count)) {
     if (held_[layer.octave] == 0.0F) continue;
     const bool is_slow = is_coarse(layer.octave);
     const Nodes& nodes = is_slow ? coarse_ : fine_;
+    const NodeRange& range = is_slow ? coarse_range : fine_range;
     const std::size_t torus = wind::turbulence::GustNoise::torus_of(layer.octave);
-    (is_slow ? coarse[coarse_count++] : fine[fine_count++]) = {
+    const operators::NoiseLayer of_range{
         .tile = layer.tile,
-        .place_x = nodes.on_torus_x[torus],
-        .place_z = nodes.on_torus_z[torus],
+        .place_x = range.of(std::span(nodes.on_torus_x[torus])),
+        .place_z = range.of(std::span(nodes.on_torus_z[torus])),
         .offset = layer.offset,
         .weight = held_[layer.octave] * layer.weight_m_s,
-        .weights = (is_along ? weights.along : weights.across)[layer.octave]};
+        .weights = range.of((is_along ? weights.along : weights.across)[layer.octave])};
+    (is_slow ? coarse[coarse_count++] : fine[fine_count++]) = of_range;
   }
-  add_up(std::span(fine).first(fine_count), row_, is_along ? fine_.along_m_s : fine_.across_m_s);
-  add_up(std::span(coarse).first(coarse_count), row_, is_along ? coarse_.along_m_s : coarse_.across_m_s);
+  add_up(std::span(fine).first(fine_count), row_,
+         fine_range.of(std::span(is_along ? fine_.along_m_s : fine_.across_m_s)));
+  add_up(std::span(coarse).first(coarse_count), row_,
+         coarse_range.of(std::span(is_along ? coarse_.along_m_s : coarse_.across_m_s)));
 }
 
 /// Adds what the coarse nodes have to what the nodes have, and gives it the strength of the place.
-void GustNodes::add_coarse() noexcept {
+void GustNodes::add_coarse(const NodeRange& lines) noexcept {
   const std::size_t coarse_columns = line_envelope_.size();
-  for (std::size_t line = 0; line < lines_.size(); ++line) {
+  for (std::size_t line = lines.first; line < lines.first + lines.count; ++line) {
     const std::size_t north = lines_[line].first;
     const float z_fraction = lines_[line].fraction;
     for (std::size_t column = 0; column < coarse_columns; ++column) {

@@ -21,6 +21,16 @@ struct GroundNodes {
   std::size_t size() const noexcept { return columns * lines; }
 };
 
+/// Some of the nodes of a grid, or of its lines, one after another.
+struct NodeRange {
+  std::size_t first = 0, count = 0;
+
+  template <typename T>
+  std::span<T> of(std::span<T> all) const noexcept {
+    return all.empty() ? all : all.subspan(first, count);
+  }
+};
+
 /// By what the octaves of the tiles are weakened, place by place: a weight for each place, or none at all (1).
 struct GustWeights {
   std::array<std::span<const float>, 2 * wind::turbulence::GustNoise::kTileOctaves> along, across;
@@ -50,11 +60,26 @@ class GustNodes {
     return tile_octave % wind::turbulence::GustNoise::kTileOctaves < wind::turbulence::GustNoise::kLongOctaves;
   }
 
+  /// All lines of nodes.
+  NodeRange all_lines() const noexcept { return {0, lines_.size()}; }
+  /// The nodes of some lines: the first, and how many.
+  NodeRange nodes_of(const NodeRange& lines) const noexcept {
+    return {lines.first * columns_.size(), lines.count * columns_.size()};
+  }
+  /// The coarse nodes among which these lines lie, likewise.
+  NodeRange coarse_nodes_of(const NodeRange& lines) const noexcept;
+
   /// Is an octave of the tiles read at all?
   bool is_held(std::size_t tile_octave) const noexcept { return held_[tile_octave] > 0.0F; }
 
-  /// Reads the gusts of a moment, with weights for each octave: one for each node, or for each coarse node.
-  void read(const wind::turbulence::GustNoise::Moment& moment, const GustWeights& weights = {}) noexcept;
+  /// Reads the gusts of a moment at the nodes of some lines, with weights for each octave: one for each node of the
+  /// grid, or for each coarse node.
+  void read(const wind::turbulence::GustNoise::Moment& moment, const GustWeights& weights,
+            const NodeRange& lines) noexcept;
+  /// The same as it will be when the mean wind has carried the gusts on by `carried_m` (east and north). Their eddies
+  /// do not turn meanwhile.
+  void read_carried(const wind::turbulence::GustNoise::Moment& moment, wind::WindVector carried_m,
+                    const GustWeights& weights, const NodeRange& lines) noexcept;
 
   /// What was read: m/s at each node, along the mean wind and to the left of it.
   std::span<const float> along_m_s() const noexcept { return fine_.along_m_s; }
@@ -75,8 +100,8 @@ class GustNodes {
   };
 
   void read(const wind::turbulence::GustNoise::Moment& moment, wind::turbulence::GustNoise::Component component,
-            const GustWeights& weights) noexcept;
-  void add_coarse() noexcept;
+            const GustWeights& weights, const NodeRange& lines) noexcept;
+  void add_coarse(const NodeRange& lines) noexcept;
   static std::vector<Between> between(std::size_t nodes, std::size_t coarse_nodes);
 
   std::shared_ptr<const wind::turbulence::GustNoise> gusts_;

@@ -62,7 +62,7 @@ StrandSway::OwnGusts::OwnGusts(const StrandSwaySpec& spec, std::span<const float
 
 StrandSway::OutsideGusts::OutsideGusts(const pose::StrandSkeleton& strands, const StrandSwaySpec& spec,
                                        const SceneSetup& setup)
-    : grid(setup.gusts, strands.root_x_m, strands.root_z_m, setup.row),
+    : grid(setup.gusts, strands.root_x_m, strands.root_z_m, setup.row, spec.finest_wind_cell_m, strands.columns),
       east_m_s(strands.padded_count(), 0.0F),
       south_m_s(strands.padded_count(), 0.0F),
       canopy(CarriedNoise::band(spec.shortest_canopy_wave_m, 2.0 * spec.shortest_canopy_wave_m,

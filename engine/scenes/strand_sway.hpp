@@ -32,6 +32,7 @@ struct StrandSwaySpec {
   double canopy_waves = 0.15;   ///< beside the gusts outside: how much the stand's own waves vary the wind, as a part
   CarriedNoiseSpec noise = {};  ///< the wind on the ground
   double shortest_canopy_wave_m = 2.0;  ///< the longest is twice as long
+  double finest_wind_cell_m = 0.5;      ///< the wind outside is read at nodes no nearer to each other (WindGrid)
 };
 
 /// Strands in the wind, after N. Chiba, "Development of core technology for a noise-based real-time animation engine

@@ -1,8 +1,40 @@
 #include "engine/scenes/tape_nodes.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace yuragi::scenes {
+namespace {
+
+/// Nodes are read so many at a time.
+constexpr std::size_t kAtOnce = 128;
+
+/// Where the wind comes from that will be at some places when it has been carried on.
+struct Upwind {
+  std::array<double, kAtOnce> x_m, z_m;
+  std::size_t count = 0;
+};
+Upwind upwind(std::span<const double> x_m, std::span<const double> z_m, wind::WindVector carried_m) noexcept {
+  Upwind from;
+  from.count = x_m.size();
+  for (std::size_t i = 0; i < from.count; ++i) {
+    from.x_m[i] = x_m[i] - carried_m.u_m_s;
+    from.z_m[i] = z_m[i] + carried_m.v_m_s;
+  }
+  return from;
+}
+
+/// `left`: of all nodes; those of the range are read.
+void read_tapes(const wind::ground::WindTapes& tapes, const Upwind& from,
+                std::span<wind::ground::WindTapes::Known> known, wind::ground::WindTapes::NoiseLeft left,
+                const NodeRange& range) noexcept {
+  for (auto* octaves : {&left.along, &left.across}) {
+    for (std::span<float>& octave : *octaves) octave = range.of(octave);
+  }
+  tapes.read(std::span(from.x_m).first(from.count), std::span(from.z_m).first(from.count), known, left);
+}
+
+}  // namespace
 
 TapeNodes::TapeNodes(const GustNodes& nodes) : known_(nodes.x_m().size()), gain_(nodes.x_m().size()) {
   // A cache line between two octaves: arrays whole pages apart drive each other out of the cache.
@@ -28,23 +60,26 @@ TapeNodes::TapeNodes(const GustNodes& nodes) : known_(nodes.x_m().size()), gain_
   }
 }
 
-void TapeNodes::read(const wind::ground::GroundWind& wind, const GustNodes& nodes) noexcept {
-  constexpr std::size_t kAtOnce = 128;
-  std::array<wind::ground::WindTapes::Known, kAtOnce> readings;
-  wind::ground::WindTapes::NoiseLeft left = left_;
-  for (std::size_t begin = 0; begin < known_.size(); begin += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, known_.size() - begin);
-    wind.tapes->read(nodes.x_m().subspan(begin, count), nodes.z_m().subspan(begin, count),
-                     std::span(readings).first(count), left);
-    for (std::size_t i = 0; i < count; ++i) {
-      known_[begin + i] = wind.measured(readings[i], nodes.x_m()[begin + i], nodes.z_m()[begin + i]);
-      gain_[begin + i] = readings[i].gain;
-    }
-    for (auto* octaves : {&left.along, &left.across}) {
-      for (std::span<float>& octave : *octaves) octave = octave.empty() ? octave : octave.subspan(count);
+void TapeNodes::read(const wind::ground::GroundWind& wind, const GustNodes& nodes, const NodeRange& lines,
+                     wind::WindVector carried_m) noexcept {
+  const NodeRange fine = nodes.nodes_of(lines);
+  for (std::size_t begin = fine.first; begin < fine.first + fine.count; begin += kAtOnce) {
+    const NodeRange range{begin, std::min(kAtOnce, fine.first + fine.count - begin)};
+    std::array<wind::ground::WindTapes::Known, kAtOnce> readings;
+    read_tapes(*wind.tapes, upwind(range.of(nodes.x_m()), range.of(nodes.z_m()), carried_m),
+               std::span(readings).first(range.count), left_, range);
+    for (std::size_t i = 0; i < range.count; ++i) {
+      const std::size_t node = begin + i;
+      known_[node] = wind.measured(readings[i], nodes.x_m()[node], nodes.z_m()[node]);
+      gain_[node] = readings[i].gain;
     }
   }
-  wind.tapes->read(nodes.coarse_x_m(), nodes.coarse_z_m(), {}, coarse_left_);
+  const NodeRange coarse = nodes.coarse_nodes_of(lines);
+  for (std::size_t begin = coarse.first; begin < coarse.first + coarse.count; begin += kAtOnce) {
+    const NodeRange range{begin, std::min(kAtOnce, coarse.first + coarse.count - begin)};
+    read_tapes(*wind.tapes, upwind(range.of(nodes.coarse_x_m()), range.of(nodes.coarse_z_m()), carried_m), {},
+               coarse_left_, range);
+  }
 }
 
 }  // namespace yuragi::scenes

@@ -19,8 +19,10 @@ class TapeNodes {
   /// For as many nodes as these.
   explicit TapeNodes(const GustNodes& nodes);
 
-  /// Reads a wind that has tapes where these nodes are.
-  void read(const wind::ground::GroundWind& wind, const GustNodes& nodes) noexcept;
+  /// Reads a wind that has tapes at the nodes of some lines: as it will be when the mean wind has carried it on by
+  /// `carried_m` (east and north).
+  void read(const wind::ground::GroundWind& wind, const GustNodes& nodes, const NodeRange& lines,
+            wind::WindVector carried_m) noexcept;
 
   /// The measured wind at a node.
   wind::WindVector known(std::size_t node) const noexcept { return known_[node]; }

@@ -63,39 +63,82 @@ WindGrid::WindGrid(std::shared_ptr<const wind::turbulence::GustNoise> gusts, std
   for (Component* component : {&east_, &south_}) {
     component->value.assign(count, 0.0F);
     component->target.assign(count, 0.0F);
+    component->next_target.assign(count, 0.0F);
     component->rate_per_s.assign(count, 0.0F);
     component->on_torus = {layout_.torus_nodes, std::vector<float>(layout_.torus_nodes * layout_.torus_nodes)};
   }
+  due_in_s_.assign(layout_.nodes.lines, 0.0);
 }
 
 void WindGrid::step(const wind::ground::GroundWind& wind, double dt_s) noexcept {
-  // What is known at each node, and the noise that fills the rest: along the mean wind and to the left of it, turned
-  // into the world.
-  if (wind.tapes != nullptr) tape_nodes_.read(wind, gusts_);
-  gusts_.read(wind.gusts, wind.tapes != nullptr ? tape_nodes_.weights() : GustWeights{});
+  const ReadingSchedule::Due due = schedule_.advance(wind.tick, dt_s);
+  approach_targets(dt_s);
+  read(wind, due);
+  const double rate_rad_s = ReadingSchedule::matched_rate_rad_s(SceneWind::kOmega_rad_s, due);
+  follow(east_, rate_rad_s, dt_s);
+  follow(south_, rate_rad_s, dt_s);
+}
+
+/// Line by line in a straight line toward what was read last, to be there when it is due.
+void WindGrid::approach_targets(double dt_s) noexcept {
+  for (std::size_t line = 0; line < due_in_s_.size(); ++line) {
+    if (due_in_s_[line] <= 0.0) continue;
+    const auto part = static_cast<float>(std::min(dt_s / due_in_s_[line], 1.0));
+    due_in_s_[line] -= dt_s;
+    const NodeRange nodes = gusts_.nodes_of({line, 1});
+    for (Component* component : {&east_, &south_}) {
+      const std::span<float> target = nodes.of(std::span(component->target));
+      const std::span<const float> next = nodes.of(std::span<const float>(component->next_target));
+      for (std::size_t i = 0; i < target.size(); ++i) target[i] += part * (next[i] - target[i]);
+    }
+  }
+}
+
+/// The parts that are due.
+void WindGrid::read(const wind::ground::GroundWind& wind, const ReadingSchedule::Due& due) noexcept {
+  const std::size_t lines = layout_.nodes.lines;
+  for (std::size_t i = 0; i < due.count; ++i) {
+    const std::size_t part = (due.first + i) % due.parts;
+    const std::size_t begin = part * lines / due.parts;
+    const std::size_t end = (part + 1) * lines / due.parts;
+    read_lines(wind, {begin, end - begin}, due.lead_s);
+    std::fill(due_in_s_.begin() + static_cast<std::ptrdiff_t>(begin),
+              due_in_s_.begin() + static_cast<std::ptrdiff_t>(end), due.lead_s);
+  }
+  if (has_targets_ && due.lead_s > 0.0) return;
+  has_targets_ = true;
+  for (Component* component : {&east_, &south_}) component->target = component->next_target;
+}
+
+/// What is known at each node, and the noise that fills the rest (along the mean wind and to the left of it, turned
+/// into the world), as they will be lead_s later.
+void WindGrid::read_lines(const wind::ground::GroundWind& wind, const NodeRange& lines, double lead_s) noexcept {
+  if (lines.count == 0) return;
+  const wind::WindVector carried_m = lead_s * wind.advection;
+  if (wind.tapes != nullptr) tape_nodes_.read(wind, gusts_, lines, carried_m);
+  gusts_.read_carried(wind.gusts, carried_m, wind.tapes != nullptr ? tape_nodes_.weights() : GustWeights{}, lines);
   const wind::WindVector ahead = wind.gusts.ahead;
-  for (std::size_t i = 0; i < east_.target.size(); ++i) {
+  const NodeRange nodes = gusts_.nodes_of(lines);
+  for (std::size_t i = nodes.first; i < nodes.first + nodes.count; ++i) {
     const auto along = static_cast<double>(gusts_.along_m_s()[i]);
     const auto across = static_cast<double>(gusts_.across_m_s()[i]);
     const wind::WindVector gust{along * ahead.u_m_s - across * ahead.v_m_s, along * ahead.v_m_s + across * ahead.u_m_s};
     const wind::WindVector here = wind.tapes != nullptr ? tape_nodes_.known(i) + tape_nodes_.gain(i) * gust
                                                         : wind.untaped_at(gusts_.x_m()[i], gusts_.z_m()[i]) + gust;
     const wind::WindVector felt = SceneWind::cut(here);
-    east_.target[i] = static_cast<float>(felt.u_m_s);
-    south_.target[i] = static_cast<float>(-felt.v_m_s);
+    east_.next_target[i] = static_cast<float>(felt.u_m_s);
+    south_.next_target[i] = static_cast<float>(-felt.v_m_s);
   }
-  follow(east_, dt_s);
-  follow(south_, dt_s);
 }
 
-/// CriticallyDamped, for all nodes at once.
-void WindGrid::follow(Component& component, double dt_s) const noexcept {
-  const double phase = SceneWind::kOmega_rad_s * dt_s;
+/// SceneWind's filter at each node.
+void WindGrid::follow(Component& component, double rate_rad_s, double dt_s) const noexcept {
+  const double phase = rate_rad_s * dt_s;
   const double decay = std::exp(-phase);
   const auto value_from_distance = static_cast<float>(decay * (1.0 + phase));
   const auto value_from_rate = static_cast<float>(decay * dt_s);
   const auto rate_from_rate = static_cast<float>(decay * (1.0 - phase));
-  const auto rate_from_distance = static_cast<float>(-decay * SceneWind::kOmega_rad_s * phase);
+  const auto rate_from_distance = static_cast<float>(-decay * rate_rad_s * phase);
   for (std::size_t i = 0; i < component.target.size(); ++i) {
     const float target = component.target[i];
     const float distance = component.value[i] - target;

@@ -8,6 +8,7 @@
 #include "engine/base/simd_row.hpp"
 #include "engine/noise/noise_tile.hpp"
 #include "engine/scenes/gust_nodes.hpp"
+#include "engine/scenes/reading_schedule.hpp"
 #include "engine/scenes/scene_wind.hpp"
 #include "engine/scenes/tape_nodes.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
@@ -16,6 +17,16 @@ namespace yuragi::scenes {
 
 /// The wind at each place of a scene: a grid over the scene whose nodes each feel the wind as SceneWind does (cut to
 /// kStrongestSceneWind_m_s, smoothed by 0.1 s), gusts of the place included; places between nodes read it bilinearly.
+///
+/// Reading the wind at a node costs most, and 15 times a second is enough (ReadingSchedule): at each tick a part of the
+/// lines of nodes is read, as the wind will be there when it is their turn again. That is known already, since the mean
+/// wind carries gusts and tapes there from where they are now; what it does not carry (a slope of the mean, a wind
+/// without tapes) comes later by the same 1/15 s. Until then a node's target goes there in a straight line, and the
+/// smoothing is quicker by what that line smooths. A wind without a tick's number is read everywhere at once.
+///
+/// The bound of a tick holds for this, too: a target goes from one end of its range to the other in 1/15 s at the
+/// soonest, so that the value's rate is at most twice the strongest wind times the mean of the filter's impulse
+/// response over the 1/15 s of its peak, 7.34 a second; of SceneWind it is the peak itself, 7.36.
 ///
 /// So a place's wind is never stronger than kStrongestSceneWind_m_s, and changes in a tick by at most
 /// SceneWind::largest_step_m_s, whatever comes in. Nodes are half a metre apart in scenes of up to 31 m; in larger ones
@@ -48,10 +59,14 @@ class WindGrid {
   /// One component of the wind at the nodes: toward where it goes, and how quickly it does.
   struct Component {
     std::vector<float> value, target, rate_per_s;
-    noise::NoiseTile2 on_torus;  ///< the values, where places read them
+    std::vector<float> next_target;  ///< where the target goes
+    noise::NoiseTile2 on_torus;      ///< the values, where places read them
   };
 
-  void follow(Component& component, double dt_s) const noexcept;
+  void approach_targets(double dt_s) noexcept;
+  void read(const wind::ground::GroundWind& wind, const ReadingSchedule::Due& due) noexcept;
+  void read_lines(const wind::ground::GroundWind& wind, const NodeRange& lines, double lead_s) noexcept;
+  void follow(Component& component, double rate_rad_s, double dt_s) const noexcept;
   void read(const Component& component, std::size_t first, std::span<float> out) const noexcept;
 
   SimdRow row_;
@@ -60,6 +75,9 @@ class WindGrid {
   TapeNodes tape_nodes_;
   std::vector<std::uint32_t> column_x_, row_z_;  ///< of the places, where they are a grid along the axes; else none
   Component east_, south_;
+  ReadingSchedule schedule_;
+  std::vector<double> due_in_s_;  ///< of each line: when its targets are to be the next ones
+  bool has_targets_ = false;
 };
 
 }  // namespace yuragi::scenes

@@ -27,6 +27,7 @@ TestWind::TestWind(std::shared_ptr<const wind::turbulence::GustNoise> noise, con
   const wind::turbulence::GustVariances variances =
       wind::turbulence::gust_variances(*noise_, settings.intensity, settings.length_m);
   wind_.gusts.ahead = wind::wind_from(1.0, settings.direction_deg);
+  wind_.advection = mean_;
   wind_.gusts.carried = noise_->begin(settings.seed);
   for (std::size_t i = 0; i < wind::turbulence::GustNoise::kOctaves; ++i) {
     if (is_short(noise_->octaves()[i], settings.shortest_wave_m)) continue;
@@ -40,6 +41,7 @@ TestWind::TestWind(std::shared_ptr<const wind::turbulence::GustNoise> noise, con
 const wind::ground::GroundWind& TestWind::step(double dt_s) noexcept {
   noise_->carry(wind_.gusts.carried, mean_.u_m_s, -mean_.v_m_s, dt_s, turnover_m23_s_);
   wind_.everywhere = mean_ + noise_->everywhere(wind_.gusts);
+  wind_.tick = ++tick_;
   return wind_;
 }
 

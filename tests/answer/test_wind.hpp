@@ -45,6 +45,7 @@ class TestWind {
   wind::WindVector mean_;
   double turnover_m23_s_;
   wind::ground::GroundWind wind_;
+  std::uint64_t tick_ = 0;
 };
 
 /// The noise of all test winds: large, and made once.

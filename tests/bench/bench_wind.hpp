@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <utility>
 
@@ -21,6 +22,7 @@ class BenchWind {
   /// `has_tape`: or nothing is measured, and the breeze is the same everywhere.
   explicit BenchWind(std::shared_ptr<const wind::turbulence::GustNoise> gusts = nullptr, bool has_tape = true)
       : gusts_(std::move(gusts)) {
+    wind_.advection = kBreeze;
     if (!gusts_) return;
     wind_.gusts.ahead = (1.0 / speed_of(kBreeze)) * kBreeze;
     wind_.gusts.along_m_s.fill(kOctave_m_s);
@@ -40,6 +42,7 @@ class BenchWind {
   const wind::ground::GroundWind& next() noexcept {
     if (gusts_) gusts_->carry(wind_.gusts.carried, kBreeze.u_m_s, -kBreeze.v_m_s, kBenchTick_s, kTurnover_m23_s);
     if (wind_.tapes != nullptr) write();
+    wind_.tick = ++tick_;
     return wind_;
   }
 
@@ -66,6 +69,7 @@ class BenchWind {
   wind::ground::WindTapes tapes_{1};
   wind::ground::WindStroke stroke_;
   wind::ground::GroundWind wind_ = kBreeze;
+  std::uint64_t tick_ = 0;
 };
 
 }  // namespace yuragi::bench

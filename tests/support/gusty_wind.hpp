@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 
 #include "engine/wind/ground/ground_wind.hpp"
@@ -21,18 +22,21 @@ class GustyWind {
   GustyWind(wind::WindVector mean, float deviation_m_s) : wind_(mean) {
     const double speed_m_s = std::hypot(mean.u_m_s, mean.v_m_s);
     if (speed_m_s > 0.0) wind_.gusts.ahead = (1.0 / speed_m_s) * mean;
+    wind_.advection = mean;
     wind_.gusts.along_m_s.fill(deviation_m_s);
     wind_.gusts.across_m_s.fill(deviation_m_s);
   }
 
   const wind::ground::GroundWind& step(double dt_s) {
     shared_gusts()->carry(wind_.gusts.carried, wind_.everywhere.u_m_s, -wind_.everywhere.v_m_s, dt_s);
+    wind_.tick = ++tick_;
     return wind_;
   }
   const wind::ground::GroundWind& wind() const { return wind_; }
 
  private:
   wind::ground::GroundWind wind_;
+  std::uint64_t tick_ = 0;
 };
 
 }  // namespace yuragi

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -33,7 +34,9 @@ class MeasuredWind {
     }
     ++tick_;
     const wind::WindState state = estimator_.advance(now_);
-    return {state, estimator_.ground(), estimator_.stroke()};
+    wind::ground::DrivingWind wind{state, estimator_.ground(), estimator_.stroke()};
+    wind.ground.tick = static_cast<std::uint64_t>(tick_);
+    return wind;
   }
 
  private:

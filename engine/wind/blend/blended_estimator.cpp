@@ -288,7 +288,8 @@ void BlendedEstimator::carry_gusts(const MeasuredMean& measured, double dt_s) no
   advection_m_s_ = std::max(speed_m_s, kLeastAdvection_m_s);
   const turbulence::Turbulence now = turbulence();
   const double length_m = now.time_scale_s * std::max(measured.speed_m_s, kLeastSpeed_m_s);
-  noise_->carry(ground_.gusts.carried, advection_m_s_ * ahead.u_m_s, -advection_m_s_ * ahead.v_m_s, dt_s,
+  ground_.advection = advection_m_s_ * ahead;
+  noise_->carry(ground_.gusts.carried, ground_.advection.u_m_s, -ground_.advection.v_m_s, dt_s,
                 kTurnoverRate * turbulence::eddy_turnover_m23_s(now.intensity * measured.speed_m_s, length_m));
 
   // The tapes go the same way.

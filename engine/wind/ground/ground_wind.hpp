@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <span>
 
 #include "engine/wind/ground/wind_stroke.hpp"
@@ -38,6 +40,10 @@ struct GroundWind {
   double gain = 1.0;       ///< on all wind that is read from the tapes
   double gust_gain = 1.0;  ///< and on its gusts besides
   WindVector breeze;       ///< blows everywhere besides
+  WindVector advection;    ///< how fast the mean wind carries the gusts and the tapes, m/s
+  /// The number of the animation's tick, by which scenes spread slow work over several ticks (ReadingSchedule). Without
+  /// it, all is done at once.
+  std::optional<std::uint64_t> tick;
 
   GroundWind() = default;
   /// The same wind everywhere.

@@ -225,6 +225,7 @@ void WindShaping::add_breeze(ground::DrivingWind& wind, double dt_s) noexcept {
   ground::GroundWind& ground = wind.ground;
   turbulence::GustNoise::Moment& gusts = ground.gusts;
   blown_m_ = blown_m_ + breeze_m_s * dt_s * gusts.ahead;
+  ground.advection = ground.advection + breeze_m_s * gusts.ahead;
   blown_way_m_ += breeze_m_s * dt_s;
   noise_->carry(gusts.carried, blown_m_.u_m_s, -blown_m_.v_m_s, 1.0);
   carry_tapes(wind.stroke, blown_m_, blown_way_m_);

@@ -36,7 +36,7 @@ TEST(GustNodes, HasTheGustsOfEachNode) {
   for (const float gustiness : {0.0F, 0.3F}) {
     wind::turbulence::GustNoise::Moment gusts = gusts_at_nodes(gustiness);
     gusts.ahead = {0.0, 1.0};  // so that local() is not turned: v along, -u across
-    nodes.read(gusts);
+    nodes.read(gusts, {}, nodes.all_lines());
     double squares = 0.0;
     double scatter = 0.0;
     for (std::size_t i = 0; i < kFieldNodes.size(); ++i) {
@@ -58,7 +58,7 @@ TEST(GustNodes, WithoutSlowGustsItIsExact) {
   for (std::size_t i = 0; i < 2 * wind::turbulence::GustNoise::kTileOctaves; ++i) {
     if (GustNodes::is_coarse(i)) gusts.along_m_s[wind::turbulence::GustNoise::kFirstTileOctave + i] = 0.0F;
   }
-  nodes.read(gusts);
+  nodes.read(gusts, {}, nodes.all_lines());
   for (std::size_t i = 0; i < kFieldNodes.size(); ++i) {
     EXPECT_EQ(static_cast<double>(nodes.along_m_s()[i]),
               shared_gusts()->local(gusts, nodes.x_m()[i], nodes.z_m()[i]).v_m_s);
@@ -76,12 +76,12 @@ TEST(GustNodes, WeightsWeakenAnOctavePlaceByPlace) {
     GustWeights weakened;
     weakened.along[octave] = weights;
     wind::turbulence::GustNoise::Moment gusts = gusts_at_nodes();
-    weighted.read(gusts, weakened);
-    plain.read(gusts);
+    weighted.read(gusts, weakened, weighted.all_lines());
+    plain.read(gusts, {}, plain.all_lines());
     const std::vector<float> with(plain.along_m_s().begin(), plain.along_m_s().end());
     const std::vector<float> across(plain.across_m_s().begin(), plain.across_m_s().end());
     gusts.along_m_s[wind::turbulence::GustNoise::kFirstTileOctave + octave] = 0.0F;
-    plain.read(gusts);
+    plain.read(gusts, {}, plain.all_lines());
     for (std::size_t i = 0; i < kFieldNodes.size(); ++i) {
       EXPECT_EQ(weighted.across_m_s()[i], across[i]);
       if (std::abs(weighted.x_m()[i]) < 16.0) continue;
@@ -91,19 +91,31 @@ TEST(GustNodes, WeightsWeakenAnOctavePlaceByPlace) {
   }
 }
 
+TEST(GustNodes, LinesThatAreReadOneByOneHaveTheSameBits) {
+  GustNodes at_once(shared_gusts(), kFieldNodes, best_simd_row());
+  GustNodes one_by_one(shared_gusts(), kFieldNodes, best_simd_row());
+  const wind::turbulence::GustNoise::Moment gusts = gusts_at_nodes(0.3F);
+  at_once.read(gusts, {}, at_once.all_lines());
+  for (std::size_t line = kFieldNodes.lines; line-- > 0;) one_by_one.read(gusts, {}, {line, 1});
+  for (std::size_t i = 0; i < kFieldNodes.size(); ++i) {
+    ASSERT_EQ(one_by_one.along_m_s()[i], at_once.along_m_s()[i]) << i;
+    ASSERT_EQ(one_by_one.across_m_s()[i], at_once.across_m_s()[i]) << i;
+  }
+}
+
 TEST(GustNodes, WavesThatTheNodesCannotHoldAreNotRead) {
   wind::turbulence::GustNoise::Moment gusts = gusts_at_nodes();
   gusts.along_m_s.fill(0.0F);
   gusts.across_m_s.fill(0.0F);
   gusts.along_m_s.back() = 1.0F;  // waves of 0.8 to 0.4 m
   GustNodes half_a_metre(shared_gusts(), kFieldNodes, best_simd_row());
-  half_a_metre.read(gusts);
+  half_a_metre.read(gusts, {}, half_a_metre.all_lines());
   for (const float along_m_s : half_a_metre.along_m_s()) EXPECT_EQ(along_m_s, 0.0F);
 
   GroundNodes near_nodes = kFieldNodes;
   near_nodes.cell_x_m = near_nodes.cell_z_m = 0.1;
   GustNodes near_gusts(shared_gusts(), near_nodes, best_simd_row());
-  near_gusts.read(gusts);
+  near_gusts.read(gusts, {}, near_gusts.all_lines());
   float largest_m_s = 0.0F;
   for (const float along_m_s : near_gusts.along_m_s()) largest_m_s = std::max(largest_m_s, std::abs(along_m_s));
   EXPECT_GT(largest_m_s, 1.0F);

@@ -60,6 +60,8 @@ wind::ground::GroundWind nasty_gusts(std::uint64_t tick) {
     wind.gusts.across_m_s[i] = static_cast<float>(10.0 * random.uniform(64 * (tick / 7) + 32 + i));
   }
   wind.gusts.carried = shared_gusts()->begin(tick / 3);  // and torn from place to place
+  wind.advection = nasty_wind(tick + 1);
+  wind.tick = tick;
   return wind;
 }
 

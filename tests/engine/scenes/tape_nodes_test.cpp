@@ -53,7 +53,7 @@ TEST(TapeNodes, HasTheMeasuredWindAndWhatIsLeftOfTheNoiseAtEachNode) {
     const wind::ground::GroundWind wind = fill(tapes, sensors).ground;
     const GustNodes nodes(shared_gusts(), kTapeField, best_simd_row());
     TapeNodes at_nodes(nodes);
-    at_nodes.read(wind, nodes);
+    at_nodes.read(wind, nodes, nodes.all_lines(), {});
     float least = 1.0F;
     float most = 0.0F;
     const auto expect_weights = [&](const wind::ground::WindTapes::Reading& there, bool is_coarse, std::size_t node) {

@@ -159,7 +159,11 @@ TEST(WindGrid, CalmIsCalmBitForBitAndComesAgain) {
   EXPECT_TRUE(is_calm());
 }
 
-TEST(WindGrid, IsNeverTooStrongAndNeverTooQuickWhateverComesIn) {
+/// With a tick's number (some are skipped) and without.
+class HostileWind : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(WindGrid, HostileWind, testing::Bool());
+
+TEST_P(HostileWind, IsNeverTooStrongAndNeverTooQuick) {
   Places places(7.0);
   WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
   const math::RandomStream random(8, math::stream_id("hostile gusts"));
@@ -172,6 +176,8 @@ TEST(WindGrid, IsNeverTooStrongAndNeverTooQuickWhateverComesIn) {
     wind.gusts.along_m_s.fill(static_cast<float>(50.0 * random.uniform(4 * tick + 2)));
     wind.gusts.across_m_s.fill(static_cast<float>(50.0 * random.uniform(4 * tick + 3)));
     wind.gusts.carried = shared_gusts()->begin(tick);
+    wind.advection = 100.0 * wind::WindVector{random.uniform(4 * tick), random.uniform(4 * tick + 1)};
+    if (GetParam()) wind.tick = tick + tick / 40 * (tick % 7);
     grid.step(wind, kGridTick_s);
     grid.sample(0, places.east_m_s, places.south_m_s);
     for (std::size_t i = 0; i < places.x_m.size(); ++i) {
@@ -186,6 +192,85 @@ TEST(WindGrid, IsNeverTooStrongAndNeverTooQuickWhateverComesIn) {
     south_before = places.south_m_s;
   }
   EXPECT_GT(largest_m_s, 0.05 * bound_m_s);
+}
+
+/// The wind at places as the same gusts pass, read at each tick or part by part.
+struct PassingGusts {
+  explicit PassingGusts(double side_m, bool has_number)
+      : places(side_m), grid(shared_gusts(), places.x_m, places.z_m, best_simd_row()) {
+    constexpr int kWarmUpTicks = 60;
+    constexpr int kTicks = 600;
+    GustyWind gusty({6.0, 3.0}, 0.5F);
+    for (int tick = 0; tick < kWarmUpTicks + kTicks; ++tick) {
+      wind::ground::GroundWind wind = gusty.step(kGridTick_s);
+      if (!has_number) wind.tick.reset();
+      grid.step(wind, kGridTick_s);
+      grid.sample(0, places.east_m_s, places.south_m_s);
+      if (tick >= kWarmUpTicks) series.push_back(places.east_m_s);
+    }
+  }
+  double largest_change_m_s() const {
+    float largest = 0.0F;
+    for (std::size_t tick = 1; tick < series.size(); ++tick) {
+      for (std::size_t i = 0; i < series[tick].size(); ++i) {
+        largest = std::max(largest, std::abs(series[tick][i] - series[tick - 1][i]));
+      }
+    }
+    return static_cast<double>(largest);
+  }
+
+  Places places;
+  WindGrid grid;
+  std::vector<std::vector<float>> series;  ///< of each tick, the wind to the east at each place
+};
+
+TEST(WindGrid, GustsThatAreReadPartByPartComeNeitherLaterNorWeakerNorInSteps) {
+  for (const double side_m : {7.0, 126.0}) {
+    const PassingGusts at_once(side_m, false);
+    const PassingGusts in_parts(side_m, true);
+    double scatter = 0.0, scatter_in_parts = 0.0, squares = 0.0, slope_squares = 0.0, difference_by_slope = 0.0;
+    for (std::size_t tick = 1; tick + 1 < at_once.series.size(); ++tick) {
+      for (std::size_t i = 0; i < at_once.series[tick].size(); ++i) {
+        const auto value = [&](const PassingGusts& run, std::size_t at) {
+          return static_cast<double>(run.series[at][i]) - 6.0;
+        };
+        const double slope_m_s2 = (value(at_once, tick + 1) - value(at_once, tick - 1)) / (2.0 * kGridTick_s);
+        const double difference = value(in_parts, tick) - value(at_once, tick);
+        scatter += value(at_once, tick) * value(at_once, tick);
+        scatter_in_parts += value(in_parts, tick) * value(in_parts, tick);
+        squares += difference * difference;
+        slope_squares += slope_m_s2 * slope_m_s2;
+        difference_by_slope += difference * slope_m_s2;
+      }
+    }
+    EXPECT_GT(scatter, 0.0);
+    EXPECT_NE(at_once.series.back(), in_parts.series.back());
+    EXPECT_LT(std::sqrt(squares / scatter), 0.03) << side_m;
+    EXPECT_NEAR(scatter_in_parts / scatter, 1.0, 0.01) << side_m;
+    EXPECT_NEAR(-difference_by_slope / slope_squares, 0.0, 0.010) << "s of delay, " << side_m;
+    EXPECT_LT(in_parts.largest_change_m_s(), 1.1 * at_once.largest_change_m_s()) << side_m;
+  }
+}
+
+TEST(WindGrid, SkippedTicksLeaveNoLineBehind) {
+  // A steady wind that turned while ticks were skipped: all nodes have it once each part has been read.
+  Places places(7.0);
+  WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
+  wind::ground::GroundWind wind(wind::WindVector{5.0, 0.0});
+  std::uint64_t tick = 0;
+  const auto step = [&](std::uint64_t ticks) {
+    tick += ticks;
+    wind.tick = tick;
+    grid.step(wind, static_cast<double>(ticks) * kGridTick_s);
+  };
+  for (int i = 0; i < 120; ++i) step(1);
+  wind.everywhere = {0.0, -4.0};
+  for (int i = 0; i < 60; ++i) step(2);  // odd parts fall on skipped ticks
+  grid.sample(0, places.east_m_s, places.south_m_s);
+  for (std::size_t i = 0; i < places.x_m.size(); ++i) {
+    EXPECT_NEAR(places.east_m_s[i], 0.0F, 1e-4F);
+    EXPECT_NEAR(places.south_m_s[i], 4.0F, 1e-4F);
+  }
 }
 
 /// A wind toward north of 6 m/s that has been measured for half a minute south of the places, and stands still now.
