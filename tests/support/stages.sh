@@ -72,7 +72,7 @@ test_preset() {
   check "configuring $preset" cmake --preset "$preset" --log-level=WARNING || return
   check "building $preset" cmake --build --preset "$preset" || return
   # Three times as many at once as there are cores: tests that talk to simulated devices mostly wait. A long output is cut at its
-  # beginning: GoogleTest prints its sum at the end.
+  # beginning: what failed stands at the end.
   ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" --test-output-truncation head \
     --test-output-size-passed 1000000 --test-output-size-failed 1000000 "$@" || status=$?
   # Not where a sanitizer looks: what it finds once is there.
