@@ -41,38 +41,9 @@ check() {
   return 1
 }
 
-# count_results FILE: "PASSED FAILED SKIPPED WITHOUT_RECORD AGAIN" of CTest's JUnit file, then the last words of the first five
-# tests that failed, the names of all, and of those that passed only by themselves. CTest also calls skipped what could not be started (a missing program, a failed fixture):
-# that is a failure here. A test that is skipped for want of a real recording names it.
+# count_results FILE: prints the counts and the failures in CTest's JUnit file, as tests/support/count_results.py describes.
 count_results() {
-  /usr/bin/python3 - "$1" <<'PYTHON'
-import sys
-import xml.etree.ElementTree
-
-counts = [0, 0, 0, 0, 0]
-failures = []
-for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
-    reason = case.find("skipped")
-    asked_to_skip = reason is not None and reason.get("message", "").startswith("SKIP_")
-    if case.get("status") == "run":
-        counts[0] += 1
-        counts[4] += case.get("again") == "true"
-    elif case.get("status") == "disabled" or asked_to_skip:
-        counts[2] += 1
-        counts[3] += "shared/data" in case.findtext("system-out", "")
-    else:
-        counts[1] += 1
-        failures.append(case)
-print(*counts)
-for case in failures[:5]:
-    print(case.get("name") + " said at last:")
-    print(*("    " + line for line in case.findtext("system-out", "").splitlines()[-30:]), sep="\n")
-for case in failures:
-    print("FAILED: " + case.get("name"))
-for case in xml.etree.ElementTree.parse(sys.argv[1]).iter("testcase"):
-    if case.get("again") == "true":
-        print("passed only by itself, failed among all: " + case.get("name"))
-PYTHON
+  /usr/bin/python3 tests/support/count_results.py "$1"
 }
 
 # collect WHAT RESULTS STATUS: adds up CTest's results, given its exit code.
@@ -95,17 +66,21 @@ collect() {
 
 # test_preset PRESET [CTEST ARGUMENT...]: configures, builds and tests a preset of CMakePresets.json.
 test_preset() {
-  local preset=$1 results=$PWD/build/$1/results.xml status=0
+  local preset=$1 results=$PWD/build/$1/results.xml status=0 passed_now failed_now others
   shift
   rm -f "$results"
   check "configuring $preset" cmake --preset "$preset" --log-level=WARNING || return
   check "building $preset" cmake --build --preset "$preset" || return
-  # Three times as many at once as there are cores: those that talk to devices, simulated ones, mostly wait.
-  ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" "$@" || status=$?
+  # Three times as many at once as there are cores: tests that talk to simulated devices mostly wait. A long output is cut at its
+  # beginning: what failed stands at the end.
+  ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" --test-output-truncation head \
+    --test-output-size-passed 1000000 --test-output-size-failed 1000000 "$@" || status=$?
   # Not where a sanitizer looks: what it finds once is there.
   if [ "$status" -ne 0 ] && [ "$preset" = test ] && [ -e "$results" ]; then
     /usr/bin/python3 tests/support/run_again.py "$preset" "$results" || true
-    if [ "$(count_results "$results" | head -n 1 | cut -d ' ' -f 2)" = 0 ]; then status=0; fi
+    # shellcheck disable=SC2034  # all but the second word
+    read -r passed_now failed_now others <<<"$(count_results "$results")"
+    if [ "$failed_now" = 0 ]; then status=0; fi
   fi
   collect "ctest of $preset" "$results" "$status"
 }
