@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cfloat>
 #include <cmath>
 #include <filesystem>
 
@@ -226,11 +225,10 @@ double overlay_scale(double content_scale, const PixelSize& picture, std::option
   return std::max(content_scale, quarters / 4.0);
 }
 
-Overlay::Overlay(GLFWwindow* window, bool draws_cursor) : window_(window), draws_cursor_(draws_cursor) {
+Overlay::Overlay(GLFWwindow* window) : has_window_(window != nullptr) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // nothing is kept on disk
-  if (draws_cursor_) ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
-  if (window_ != nullptr) ImGui_ImplGlfw_InitForOpenGL(window_, false);
+  if (has_window_) ImGui_ImplGlfw_InitForOpenGL(window, true);
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
@@ -254,31 +252,8 @@ void Overlay::set_scale(double scale) {
 
 Overlay::~Overlay() {
   ImGui_ImplOpenGL3_Shutdown();
-  if (window_ != nullptr) ImGui_ImplGlfw_Shutdown();
+  if (has_window_) ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
-}
-
-void Overlay::take(const WindowInput& input, bool has_panel) {
-  pointer_ = input.pointer;
-  are_buttons_down_ = input.are_buttons_down;
-  // Always, for a key may be let go when the panel has gone.
-  for (const KeyStroke& stroke : input.strokes) {
-    ImGui_ImplGlfw_KeyCallback(window_, stroke.key, stroke.scancode, stroke.action, stroke.modifiers);
-  }
-  if (!has_panel) return;
-  ImGuiIO& io = ImGui::GetIO();
-  io.MouseWheel += static_cast<float>(input.scroll_notches);
-  for (const unsigned character : input.characters) io.AddInputCharacter(character);
-}
-
-/// In place of what ImGui finds for its one window.
-void Overlay::give_pointer() {
-  ImGuiIO& io = ImGui::GetIO();
-  const float height = io.DisplaySize.y;
-  io.MousePos = pointer_
-                    ? ImVec2(static_cast<float>(pointer_->right) * height, static_cast<float>(pointer_->down) * height)
-                    : ImVec2(-FLT_MAX, -FLT_MAX);
-  for (std::size_t i = 0; i < are_buttons_down_.size(); ++i) io.MouseDown[i] = are_buttons_down_[i];
 }
 
 bool Overlay::takes_mouse() const {
@@ -371,7 +346,7 @@ void draw_profile(const OverlayFacts& facts) {
   ImGui::End();
 }
 
-void draw_wind_trace(WindTrace& trace) {
+void draw_wind_trace(const WindTrace& trace) {
   begin_at("trace", ImVec2(1.0F, 1.0F));
   const float letter = ImGui::GetFontSize();
   const ImVec2 size(24.0F * letter, 5.0F * letter);
@@ -398,7 +373,7 @@ void draw_wind_trace(WindTrace& trace) {
   ImGui::SameLine();
   write(ImGui::ColorConvertU32ToFloat4(kMeasured), "measured (mean of the sensors)");
 
-  const std::vector<SpectrumBand>& bands = trace.spectrum();
+  const std::vector<SpectrumBand> bands = spectrum_of(speeds);
   const ImVec2 below = ImGui::GetCursorScreenPos();
   ImGui::Dummy(size);
   list->AddRect(below, ImVec2(below.x + size.x, below.y + size.y), kFaint);
@@ -419,17 +394,17 @@ void draw_wind_trace(WindTrace& trace) {
 void Overlay::draw(const PixelSize& size, double scale, const OverlayFacts& facts) {
   set_scale(scale);
   ImGui_ImplOpenGL3_NewFrame();
-  if (window_ != nullptr) ImGui_ImplGlfw_NewFrame();
+  if (has_window_) {
+    ImGui_ImplGlfw_NewFrame();
+  }
   // The picture of a wall has not the size of the window that has the keyboard.
   ImGuiIO& io = ImGui::GetIO();
   const ImVec2 picture(static_cast<float>(size.width_px), static_cast<float>(size.height_px));
   const ImVec2 window(io.DisplaySize.x * io.DisplayFramebufferScale.x, io.DisplaySize.y * io.DisplayFramebufferScale.y);
-  if (window_ == nullptr || std::lround(window.x) != size.width_px || std::lround(window.y) != size.height_px) {
+  if (!has_window_ || std::lround(window.x) != size.width_px || std::lround(window.y) != size.height_px) {
     io.DisplaySize = picture;
     io.DisplayFramebufferScale = ImVec2(1.0F, 1.0F);
   }
-  io.MouseDrawCursor = draws_cursor_ && facts.panel != nullptr;
-  give_pointer();
   ImGui::NewFrame();
   if (facts.has_texts) draw_texts(facts);
   if (facts.passes != nullptr) draw_profile(facts);

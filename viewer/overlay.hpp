@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,7 +36,7 @@ struct OverlayFacts {
   std::string camera;                            ///< which it is, for a person; empty: there is but one
   bool has_help = false;                         ///< of all keys
   bool is_paused = false;
-  WindTrace* wind_trace = nullptr;                           ///< null: it is not shown
+  const WindTrace* wind_trace = nullptr;                     ///< null: it is not shown
   const std::vector<gl::PassClock::Pass>* passes = nullptr;  ///< of the last picture; null: they are not shown
   std::span<const float> picture_times_ms;                   ///< of the last pictures, the oldest first
   bool has_texts = true;                                     ///< otherwise nothing of the above is shown
@@ -52,17 +51,14 @@ double overlay_scale(double content_scale, const PixelSize& picture, std::option
 /// at a time; needs a current context.
 class Overlay {
  public:
-  /// `window`: null where there is none. `draws_cursor`: while there is a panel, since the windows show none.
-  Overlay(GLFWwindow* window, bool draws_cursor);
+  /// `window`: null where there is none.
+  explicit Overlay(GLFWwindow* window);
   ~Overlay();
   Overlay(const Overlay&) = delete;
   Overlay& operator=(const Overlay&) = delete;
 
   /// Draws over the framebuffer that is bound, of this size. `scale`: of all texts, overlay_scale().
   void draw(const PixelSize& size, double scale, const OverlayFacts& facts);
-
-  /// What a person does; of use while the panel is shown.
-  void take(const WindowInput& input, bool has_panel);
 
   /// Is what a person does with the mouse, or types, meant for the panel?
   bool takes_mouse() const;
@@ -71,12 +67,7 @@ class Overlay {
  private:
   void set_scale(double scale);
 
-  void give_pointer();
-
-  GLFWwindow* window_;
-  bool draws_cursor_;
-  std::optional<PicturePlace> pointer_;
-  std::array<bool, 3> are_buttons_down_{};
+  bool has_window_;
   double scale_ = 0.0;
 };
 

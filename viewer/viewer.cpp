@@ -7,8 +7,6 @@
 #include <optional>
 
 #include "engine/base/address.hpp"
-#include "viewer/black_rest.hpp"
-#include "viewer/brightness.hpp"
 #include "viewer/gl/dimmer.hpp"
 #include "viewer/gl_renderer.hpp"
 #include "viewer/light/sky_keeper.hpp"
@@ -32,14 +30,17 @@
 namespace yuragi::viewer {
 namespace {
 
-constexpr double kIdleWait_s = 0.1;    // while there is nothing to draw on
-constexpr double kBlackWait_s = 0.05;  // between two looks for news while all is black
-constexpr double kLookWait_s = 1.0;    // for the daemon's first status, which has its look
-constexpr int kOverlayPictures = 2;    // the overlay's size is known after the first
-constexpr int kSamples = 4;            // a pixel
+constexpr double kIdleWait_s = 0.1;     // while there is nothing to draw on
+constexpr double kBlackWait_s = 0.05;   // between two looks for news while all is black
+constexpr double kBlackAgain_s = 0.5;   // a monitor that has come back is black soon
+constexpr double kDarkest = 1.0 / 512;  // less than a step of a pixel's value
+constexpr double kLookWait_s = 1.0;     // for the daemon's first status, which has its look
+constexpr int kOverlayPictures = 2;     // the overlay's size is known after the first
+constexpr int kSamples = 4;             // a pixel
 constexpr double kRateSmoothing = 0.05;
 constexpr double kHandFade_s = 0.3;  // of the light, while a person moves a handle of the panel
 constexpr double kAgeSaid_s = stream::PictureAge::kSpan_s;
+constexpr double kDimming_s = 0.5;  // between two of the daemon's statuses the brightness goes on
 
 double now_s() {
   return seconds(std::chrono::steady_clock::now().time_since_epoch());
@@ -97,11 +98,10 @@ class Viewer::Show {
                       options.samples.value_or(is_slow ? 1 : kSamples));
     renderer_->set_own_quality(quality_for(look::Quality::kAuto, is_software_));
     if (output_ && output_->screen) see_through(*output_->screen);
-    if (wall_) hear_wall();
     director_.emplace(options_, *renderer_, options_.connect);
     dimmer_.emplace();
     if (options.has_test_card) test_card_.emplace();
-    overlay_.emplace(window_ ? window_->handle() : nullptr, wall_.has_value());
+    overlay_.emplace(window_ ? window_->handle() : nullptr);
     pass_clock_.emplace(is_software_ ? gl::PassClock::By::kProcessor : gl::PassClock::By::kGpu);
     const auto is_shown = [&](const char* panel) {
       return std::ranges::find(options.shown, panel) != options.shown.end();
@@ -124,10 +124,12 @@ class Viewer::Show {
         continue;
       }
       const bool is_black = is_picture_black();
-      if (black_rest_.may_rest(is_black, size, last_s_)) {
+      if (is_black && last_s_ < black_until_s_ && size == black_size_) {
         window_->wait(kBlackWait_s);
         continue;
       }
+      black_until_s_ = is_black ? last_s_ + kBlackAgain_s : 0.0;
+      black_size_ = size;
       is_black ? draw_black(size) : draw(size);
       show(size);
       note_age(display_interval_s());
@@ -184,7 +186,7 @@ class Viewer::Show {
   /// A picture that nobody would see is not drawn. The next news is looked for soon enough that its light, which comes
   /// slowly, is not late.
   bool is_picture_black() const {
-    return brightness_.value() == 0.0 && wanted_brightness() == 0.0 && !has_something_over() && !test_card_;
+    return brightness_ == 0.0 && wanted_brightness() == 0.0 && !has_something_over() && !test_card_;
   }
   void draw_black(const PixelSize& size) {
     renderer_->resize(size.width_px, size.height_px);
@@ -216,17 +218,6 @@ class Viewer::Show {
                                                    place(screen.upper_left_m), place(screen.eye_m)));
   }
 
-  /// What is done on any window of the wall, at the place of the picture that is seen there.
-  void hear_wall() {
-    for (GLFWwindow* const window : wall_->windows()) window_->hear(window);
-    window_->set_place_on_picture([this](GLFWwindow* on, double x_px, double y_px) -> std::optional<PicturePlace> {
-      const auto place = wall_->place_on_picture(on, x_px, y_px);
-      const output::Size size = wall_->picture_size();
-      if (!place) return std::nullopt;
-      return PicturePlace{.right = place->x * size.width_px / size.height_px, .down = place->y};
-    });
-  }
-
   /// Says a change in the log.
   void tell_quality() {
     if (renderer_->quality() == quality_) return;
@@ -243,7 +234,6 @@ class Viewer::Show {
       camera.zoom(input.zoom_notches);
     }
     for (const Key& key : input.keys) use_key(key);
-    overlay_->take(input, has_panel_);
     window_->set_taken(has_panel_ && overlay_->takes_mouse(), has_panel_ && overlay_->takes_keys());
   }
 
@@ -329,7 +319,7 @@ class Viewer::Show {
     last_s_ = now;
     picture_passed_s_ = passed_s;
     moment_ = &paused_.advance(timeline_.advance(now), passed_s);
-    brightness_.advance(wanted_brightness(), is_first_status ? Brightness::kTime_s : passed_s);
+    follow_brightness(is_first_status ? kDimming_s : passed_s);
     // Scenes that are new while a picture stands still come when it goes on.
     if (!paused_.is_paused()) {
       if (auto scenes = timeline_.take_new_scenes()) director_->set_scenes(std::move(*scenes));
@@ -370,6 +360,12 @@ class Viewer::Show {
   }
 
   /// Dark until the first status says whether it is open, so that a wall that starts at night stays dark.
+  void follow_brightness(double passed_s) {
+    const double wanted = wanted_brightness();
+    brightness_ += std::min(1.0, passed_s / kDimming_s) * (wanted - brightness_);
+    if (wanted == 0.0 && brightness_ < kDarkest) brightness_ = 0.0;
+  }
+
   double wanted_brightness() const {
     if (wall_ && timeline_.playback() == stream::Playback::kNothing) return 0.0;
     if (!options_.is_dark_when_closed) return 1.0;
@@ -385,7 +381,7 @@ class Viewer::Show {
     const DrawnPart part = is_drawn_for_pace() ? pace_.drawn() : DrawnPart{};
     renderer_->set_drawn(part);
     director_->draw(*moment_);
-    dimmer_->draw(static_cast<float>(brightness_.value()));
+    dimmer_->draw(static_cast<float>(brightness_));
     if (has_profiler_) passes_ = pass_clock_->end();
     if (!has_something_over()) return;
     const light::Sky sky = light::sky_of(director_->look(), utc_s_);
@@ -469,8 +465,9 @@ class Viewer::Show {
   double last_s_;
   double picture_passed_s_ = 0.0;  // since the picture before
   double picture_s_ = 1.0 / 60.0;  // between pictures, smoothed
-  BlackRest black_rest_;
-  Brightness brightness_;
+  double black_until_s_ = 0.0;     // what is shown is black, and need not be shown again before
+  PixelSize black_size_;
+  double brightness_;  // of the picture, 0 to 1
   bool has_overlay_;
   bool has_panel_;
   bool has_help_ = false;

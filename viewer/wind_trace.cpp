@@ -25,7 +25,6 @@ void WindTrace::hear(double time_s, double speed_m_s, std::optional<double> meas
   if (ends_s_ && (time_s < *ends_s_ - 2.0 * kInterval_s || time_s > *ends_s_ + kAll_s)) {
     speeds_.clear();
     measured_.clear();
-    spectrum_is_due_ = put_count_;
     ends_s_.reset();
   }
   if (!ends_s_) {
@@ -47,18 +46,9 @@ void WindTrace::hear(double time_s, double speed_m_s, std::optional<double> meas
 void WindTrace::put(double speed_m_s, double measured_m_s) {
   speeds_.push_back(static_cast<float>(speed_m_s));
   measured_.push_back(static_cast<float>(measured_m_s));
-  ++put_count_;
   if (speeds_.size() <= kSamples) return;
   speeds_.erase(speeds_.begin());
   measured_.erase(measured_.begin());
-}
-
-const std::vector<SpectrumBand>& WindTrace::spectrum() {
-  if (put_count_ >= spectrum_is_due_) {
-    spectrum_ = spectrum_of(speeds_);
-    spectrum_is_due_ = put_count_ + kSpectrumEvery;
-  }
-  return spectrum_;
 }
 
 std::vector<SpectrumBand> spectrum_of(const std::vector<float>& speeds_m_s) {

@@ -2,25 +2,17 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace yuragi::viewer {
 
-/// A band of a power spectrum.
-struct SpectrumBand {
-  double frequency_hz = 0.0;  ///< its middle
-  double density_m2_s = 0.0;  ///< of the variance, one-sided: (m/s)^2 a hertz
-};
-
 /// The wind's speed of the last minute: what moves the scenes, and what the sensors measured. Pure: time is a
-/// parameter. hear() allocates nothing once it is full. Thread-safe: no.
+/// parameter. Allocates nothing once it is full. Thread-safe: no.
 class WindTrace {
  public:
   static constexpr double kInterval_s = 0.125;
-  static constexpr std::size_t kSamples = 480;        // 60 s
-  static constexpr std::uint64_t kSpectrumEvery = 4;  // 0.5 s
+  static constexpr std::size_t kSamples = 480;  // 60 s
 
   WindTrace();
 
@@ -33,9 +25,6 @@ class WindTrace {
   /// Likewise; 0 where no sensor was believed.
   const std::vector<float>& measured_m_s() const { return measured_; }
 
-  /// spectrum_of() the speeds, renewed each kSpectrumEvery of them: it costs as much as a small picture.
-  const std::vector<SpectrumBand>& spectrum();
-
  private:
   void put(double speed_m_s, double measured_m_s);
 
@@ -44,11 +33,13 @@ class WindTrace {
   double sum_ = 0.0;
   double measured_now_ = 0.0;
   int count_ = 0;
-  std::uint64_t put_count_ = 0;        // of all speeds that have ever been put
-  std::uint64_t spectrum_is_due_ = 0;  // at this count
-  std::vector<SpectrumBand> spectrum_;
 };
 
+/// A band of a power spectrum.
+struct SpectrumBand {
+  double frequency_hz = 0.0;  ///< its middle
+  double density_m2_s = 0.0;  ///< of the variance, one-sided: (m/s)^2 a hertz
+};
 /// The power spectral density of speeds that are WindTrace::kInterval_s apart, in bands of equal ratios from one over
 /// their duration to 4 Hz: a periodogram with Hann's window, of what is left without the mean (Welch 1967, "The use of
 /// fast Fourier transform for the estimation of power spectra", of one segment). Empty below 64 speeds.

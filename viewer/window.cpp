@@ -57,7 +57,14 @@ struct Window::State {
     monitor = options.monitor;
     if (options.is_fullscreen) toggle_fullscreen();
 
-    hear(window);
+    glfwSetWindowUserPointer(window, this);
+    glfwSetKeyCallback(window, [](GLFWwindow* on, int key, int, int action, int) {
+      if (action == GLFW_PRESS) state_of(on).press(key);
+    });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* on, double x, double y) { state_of(on).move(x, y); });
+    glfwSetScrollCallback(window, [](GLFWwindow* on, double, double notches) {
+      if (!state_of(on).is_mouse_taken) state_of(on).input.zoom_notches += notches;
+    });
   }
   ~State() {
     glfwDestroyWindow(window);
@@ -70,69 +77,28 @@ struct Window::State {
     return *static_cast<State*>(glfwGetWindowUserPointer(on));
   }
 
-  void hear(GLFWwindow* on) {
-    glfwSetWindowUserPointer(on, this);
-    glfwSetKeyCallback(on, [](GLFWwindow* of, int key, int scancode, int action, int modifiers) {
-      state_of(of).type({.key = key, .scancode = scancode, .action = action, .modifiers = modifiers});
-    });
-    glfwSetCharCallback(on, [](GLFWwindow* of, unsigned code) { state_of(of).input.characters.push_back(code); });
-    glfwSetCursorPosCallback(on, [](GLFWwindow* of, double x_px, double y_px) { state_of(of).move(of, x_px, y_px); });
-    glfwSetCursorEnterCallback(on, [](GLFWwindow* of, int has_entered) {
-      if (has_entered == GLFW_FALSE) state_of(of).pointer.reset();
-    });
-    glfwSetMouseButtonCallback(
-        on, [](GLFWwindow* of, int button, int action, int) { state_of(of).press(button, action == GLFW_PRESS); });
-    glfwSetScrollCallback(on, [](GLFWwindow* of, double, double notches) { state_of(of).scroll(notches); });
+  void press(int key) {
+    if (are_keys_taken) return;
+    if (const auto found = key_of(key)) input.keys.push_back(*found);
   }
 
-  void type(const KeyStroke& stroke) {
-    input.strokes.push_back(stroke);
-    if (stroke.action != GLFW_PRESS || are_keys_taken) return;
-    if (const auto found = key_of(stroke.key)) input.keys.push_back(*found);
-  }
-
-  void press(int button, bool is_down) {
-    const auto index = static_cast<std::size_t>(button);
-    if (index >= are_buttons_down.size()) return;
-    are_buttons_down[index] = is_down;
-    // A click between two pictures counts.
-    input.are_buttons_down[index] = input.are_buttons_down[index] || is_down;
-  }
-
-  void scroll(double notches) {
-    input.scroll_notches += notches;
-    if (!is_mouse_taken) input.zoom_notches += notches;
-  }
-
-  std::optional<PicturePlace> place_of(GLFWwindow* on, double x_px, double y_px) const {
-    if (place_on_picture) return place_on_picture(on, x_px, y_px);
-    int width_px = 0;
-    int height_px = 0;
-    glfwGetWindowSize(on, &width_px, &height_px);
-    return PicturePlace{.right = x_px / std::max(1, height_px), .down = y_px / std::max(1, height_px)};
-  }
-
-  void move(GLFWwindow* on, double x_px, double y_px) {
-    const auto place = place_of(on, x_px, y_px);
-    const auto before = std::exchange(pointer, place);
-    if (is_mouse_taken || !place || !before) return;
-    const double right = place->right - before->right;
-    const double down = place->down - before->down;
-    if (are_buttons_down[GLFW_MOUSE_BUTTON_LEFT]) {
+  void move(double x, double y) {
+    int width = 0;
+    int height = 1;
+    glfwGetWindowSize(window, &width, &height);
+    const double right = (x - cursor_x) / std::max(1, height);
+    const double down = (y - cursor_y) / std::max(1, height);
+    cursor_x = x;
+    cursor_y = y;
+    if (is_mouse_taken) return;
+    const auto is_down = [&](int button) { return glfwGetMouseButton(window, button) == GLFW_PRESS; };
+    if (is_down(GLFW_MOUSE_BUTTON_LEFT)) {
       input.orbit_right += right;
       input.orbit_down += down;
-    } else if (are_buttons_down[GLFW_MOUSE_BUTTON_RIGHT] || are_buttons_down[GLFW_MOUSE_BUTTON_MIDDLE]) {
+    } else if (is_down(GLFW_MOUSE_BUTTON_RIGHT) || is_down(GLFW_MOUSE_BUTTON_MIDDLE)) {
       input.pan_right += right;
       input.pan_down += down;
     }
-  }
-
-  WindowInput take_input() {
-    input.pointer = pointer;
-    for (std::size_t i = 0; i < are_buttons_down.size(); ++i) {
-      input.are_buttons_down[i] = input.are_buttons_down[i] || are_buttons_down[i];
-    }
-    return std::exchange(input, {});
   }
 
   GLFWmonitor* chosen_monitor() const {
@@ -163,9 +129,8 @@ struct Window::State {
   WindowInput input;
   bool is_mouse_taken = false;
   bool are_keys_taken = false;
-  PlaceOnPicture place_on_picture;
-  std::optional<PicturePlace> pointer;
-  std::array<bool, 3> are_buttons_down{};  // left, right, middle
+  double cursor_x = 0.0;
+  double cursor_y = 0.0;
   int windowed_x = 0;
   int windowed_y = 0;
   int windowed_width = 1280;
@@ -215,13 +180,7 @@ void Window::wait(double limit_s) {
   glfwWaitEventsTimeout(limit_s);
 }
 WindowInput Window::take_input() {
-  return state_->take_input();
-}
-void Window::hear(GLFWwindow* other) {
-  state_->hear(other);
-}
-void Window::set_place_on_picture(PlaceOnPicture place_on_picture) {
-  state_->place_on_picture = std::move(place_on_picture);
+  return std::exchange(state_->input, {});
 }
 void Window::set_taken(bool is_mouse_taken, bool are_keys_taken) {
   state_->is_mouse_taken = is_mouse_taken;

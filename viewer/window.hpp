@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,21 +19,7 @@ struct WindowOptions {
   bool is_hidden = false;      ///< at first, and without a frame: for a wall (viewer/wall), which places it
 };
 
-/// A place on the picture, from its upper left corner, in heights of the picture.
-struct PicturePlace {
-  double right = 0.0;
-  double down = 0.0;
-};
-
-/// A key that went down, up, or repeats, as GLFW tells it.
-struct KeyStroke {
-  int key = 0;
-  int scancode = 0;
-  int action = 0;
-  int modifiers = 0;
-};
-
-/// The user's input since the last take_input(). Drags are in heights of the picture.
+/// The user's input since the last take_input(). Drags are shares of the window's height.
 struct WindowInput {
   double orbit_right = 0.0;
   double orbit_down = 0.0;
@@ -43,13 +27,6 @@ struct WindowInput {
   double pan_down = 0.0;
   double zoom_notches = 0.0;
   std::vector<Key> keys;  ///< that were pressed, in their order
-
-  // All of it, also what is taken (set_taken()).
-  std::optional<PicturePlace> pointer;     ///< where it is; nothing: on no window
-  std::array<bool, 3> are_buttons_down{};  ///< left, right, middle: now, or for a moment
-  double scroll_notches = 0.0;
-  std::vector<KeyStroke> strokes;
-  std::vector<unsigned> characters;  ///< that were typed, of Unicode
 
   bool moves_camera() const {
     return orbit_right != 0.0 || orbit_down != 0.0 || pan_right != 0.0 || pan_down != 0.0 || zoom_notches != 0.0;
@@ -90,13 +67,6 @@ class Window {
   /// Waits for an event, for at most limit_s, and handles it.
   void wait(double limit_s);
   WindowInput take_input();
-
-  /// Takes input on another window, which shows a part of the same picture, as its own. Not after that is destroyed.
-  void hear(GLFWwindow* other);
-  /// Where a place on a window (in pixels from its upper left corner) is on the picture; nothing: nowhere. Without
-  /// this, the window shows the whole picture.
-  using PlaceOnPicture = std::function<std::optional<PicturePlace>(GLFWwindow* on, double x_px, double y_px)>;
-  void set_place_on_picture(PlaceOnPicture place_on_picture);
 
   /// From now on, mouse or keys are meant for what is drawn over the picture, and do not come with take_input(), nor
   /// close the window.

@@ -28,28 +28,6 @@ TEST(WindTrace, AGapIsFilledAndATimeThatGoesBackBeginsAnew) {
   EXPECT_TRUE(trace.speeds_m_s().empty());
 }
 
-TEST(WindTrace, ItsSpectrumIsRenewedTwiceASecond) {
-  WindTrace trace;
-  const auto density = [&trace] {
-    double sum = 0.0;
-    for (const SpectrumBand& band : trace.spectrum()) sum += band.density_m2_s;
-    return sum;
-  };
-  int frame = 0;
-  int renewals = 0;
-  double before = density();
-  EXPECT_EQ(before, 0.0) << "too little has come";
-  for (; frame < 20 * 60; ++frame) {
-    trace.hear(frame / 60.0, 5.0 + std::sin(0.11 * frame), {});
-    if (frame < 10 * 60) continue;
-    renewals += density() != before ? 1 : 0;
-    before = density();
-  }
-  EXPECT_NEAR(renewals, 20, 1);
-  trace.hear(1.0, 3.0, {});
-  EXPECT_TRUE(trace.spectrum().empty()) << "it begins anew with the trace";
-}
-
 TEST(WindTrace, TheSpectrumOfASineHasItsVarianceAtItsFrequency) {
   std::vector<float> speeds;
   constexpr double kFrequency_hz = 0.5;

@@ -8,7 +8,6 @@
 #include <exception>
 #include <memory>
 #include <mutex>
-#include <random>
 #include <thread>
 
 #include <boost/asio/connect.hpp>
@@ -19,7 +18,6 @@
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
-#include "engine/base/backoff.hpp"
 #include "engine/wire/message_reader.hpp"
 
 namespace yuragi::viewer::stream {
@@ -31,8 +29,7 @@ using boost::system::error_code;
 /// does nothing.
 class StreamConnection::Session {
  public:
-  explicit Session(StreamOptions options)
-      : options_(std::move(options)), backoff_(options_.min_backoff, options_.max_backoff, std::random_device{}()) {
+  explicit Session(StreamOptions options) : options_(std::move(options)), backoff_(options_.min_backoff) {
     subscription_ = wire::encode(
         wire::Subscribe{.poses = true, .sensors = true, .client = "yuragi-viewer", .takes_new_scenes = true});
     connect();
@@ -199,7 +196,7 @@ class StreamConnection::Session {
 
   void deliver(wire::Message message) {
     const MonoTime arrival = std::chrono::steady_clock::now();
-    backoff_.reset();
+    backoff_ = options_.min_backoff;
     const std::lock_guard lock(mutex_);
     if (auto* frame = std::get_if<wire::Frame>(&message)) {
       if (inbox_.frames.size() == kMaxWaitingFrames) inbox_.frames.erase(inbox_.frames.begin());
@@ -237,10 +234,11 @@ class StreamConnection::Session {
     silence_.cancel();
     socket_.close(ignored);
     set_status(StreamState::kWaiting, why);
-    retry_.expires_after(backoff_.next());
+    retry_.expires_after(backoff_);
     retry_.async_wait([this](error_code error) {
       if (!error) connect();
     });
+    backoff_ = std::min(2 * backoff_, options_.max_backoff);
   }
 
   const StreamOptions options_;
@@ -255,7 +253,7 @@ class StreamConnection::Session {
   tcp::socket socket_{context_};
   asio::steady_timer silence_{context_};
   asio::steady_timer retry_{context_};
-  Backoff backoff_;
+  Nanoseconds backoff_;
   std::uint64_t attempt_ = 0;
   wire::MessageReader reader_;
   std::array<std::uint8_t, 1u << 16> received_{};

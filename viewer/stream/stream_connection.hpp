@@ -36,7 +36,7 @@ struct StreamStatus {
 struct StreamOptions {
   std::string host = "127.0.0.1";
   std::uint16_t port = wire::kDefaultPort;
-  Nanoseconds min_backoff = std::chrono::milliseconds(200);  ///< before the first new attempt; then as Backoff says
+  Nanoseconds min_backoff = std::chrono::milliseconds(200);  ///< before the first new attempt; doubles
   Nanoseconds max_backoff = std::chrono::seconds(3);
   Nanoseconds silence_limit = std::chrono::seconds(6);  ///< after so long without a byte, or a reply: connect again
 };

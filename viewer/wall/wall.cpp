@@ -67,12 +67,16 @@ struct Wall::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  /// Hidden.
+  /// Hidden, with what is typed going to the first.
   static GLFWwindow* make_sharing(GLFWwindow* first) {
     GLFWwindow* const made = glfwCreateWindow(64, 64, "Yuragi", nullptr, first);
     if (made == nullptr) {
       throw FailureError({"the graphics driver cannot draw one picture in several windows", FailureKind::kUnavailable});
     }
+    glfwSetWindowUserPointer(made, glfwGetWindowUserPointer(first));
+    const GLFWkeyfun when_typed = glfwSetKeyCallback(first, nullptr);
+    glfwSetKeyCallback(first, when_typed);
+    glfwSetKeyCallback(made, when_typed);
     return made;
   }
 
@@ -101,7 +105,6 @@ struct Wall::State {
       glfwSetWindowMonitor(window.handle, monitor->handle, 0, 0, monitor->size.width_px, monitor->size.height_px,
                            monitor->refresh_rate_hz);
       glfwShowWindow(window.handle);
-      blacken(window.handle);
       std::fprintf(stderr, "yuragi-viewer: monitor %s, %d x %d\n", monitor->name.c_str(), monitor->size.width_px,
                    monitor->size.height_px);
     } else {
@@ -109,18 +112,6 @@ struct Wall::State {
       std::fprintf(stderr, "yuragi-viewer: monitor %s is gone\n", window.monitor_name.c_str());
     }
     window.monitor = monitor;
-  }
-
-  /// Shows black at once: the driver may still have pixels of the size that the window had before, and a picture drawn
-  /// into these would stand in the wrong place.
-  static void blacken(GLFWwindow* window) {
-    glfwPollEvents();
-    glfwMakeContextCurrent(window);
-    glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    glClearColor(0.0F, 0.0F, 0.0F, 1.0F);
-    glClear(GL_COLOR_BUFFER_BIT);
-    glfwSwapBuffers(window);
-    glFinish();
   }
 
   output::Output output;
@@ -146,19 +137,6 @@ bool Wall::is_dark() const {
 
 output::Size Wall::picture_size() const {
   return state_->size;
-}
-
-std::vector<GLFWwindow*> Wall::windows() const {
-  std::vector<GLFWwindow*> handles;
-  for (const WallWindow& window : state_->windows) handles.push_back(window.handle);
-  return handles;
-}
-
-std::optional<output::Place> Wall::place_on_picture(const GLFWwindow* on, double x_px, double y_px) const {
-  const auto window = std::ranges::find(state_->windows, on, &WallWindow::handle);
-  if (window == state_->windows.end() || !window->monitor) return std::nullopt;
-  const output::Size& size = window->monitor->size;
-  return wall::place_on_picture(window->settings, {.x = x_px / size.width_px, .y = y_px / size.height_px});
 }
 
 double Wall::picture_interval_s() const {

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
-#include <vector>
 
 #include "engine/output/output.hpp"
 #include "viewer/gl/render_target.hpp"
@@ -13,12 +11,11 @@ namespace yuragi::viewer::wall {
 
 /// The windows of an output, each of which fills its monitor with its part of the picture. A monitor that goes takes
 /// its window with it, and gets it again when it is back; so does one that changes its size. No cursor is seen, and as
-/// long as a window is there GLFW keeps the screen saver off. Who wants what is typed and pointed at on the windows
-/// sets their callbacks. On the main thread.
+/// long as a window is there GLFW keeps the screen saver off. On the main thread.
 class Wall {
  public:
-  /// `first`: a hidden window whose context is current; the others share it. Throws FailureError (kUnavailable) with
-  /// the list of monitors where one of the output's does not exist.
+  /// `first`: a hidden window whose context is current; the others share it, and give it what is typed. Throws
+  /// FailureError (kUnavailable) with the list of monitors where one of the output's does not exist.
   Wall(GLFWwindow* first, const output::Output& output);
   ~Wall();
   Wall(const Wall&) = delete;
@@ -33,12 +30,6 @@ class Wall {
 
   /// The size that the picture should have; that of before where there is no monitor.
   output::Size picture_size() const;
-
-  /// All windows, the first too.
-  std::vector<GLFWwindow*> windows() const;
-  /// The place on the picture that is seen at a place on a window, in pixels from its upper left corner; nothing where
-  /// none is.
-  std::optional<output::Place> place_on_picture(const GLFWwindow* on, double x_px, double y_px) const;
 
   /// The time between two pictures by the displays, s.
   double picture_interval_s() const;

@@ -59,14 +59,6 @@ glm::dvec2 mapped(const glm::dmat3& map, const glm::dvec2& place) {
   return glm::dvec2(at) / at.z;
 }
 
-std::optional<output::Place> place_on_picture(const output::Window& window, const output::Place& on_monitor) {
-  constexpr double kHorizon = 1e-6;
-  const glm::dvec3 at = monitor_to_crop(window) * glm::dvec3(on_monitor.x, on_monitor.y, 1.0);
-  if (at.z < kHorizon) return std::nullopt;
-  return output::Place{.x = window.crop.x + window.crop.width * at.x / at.z,
-                       .y = window.crop.y + window.crop.height * at.y / at.z};
-}
-
 double blend_light(const glm::dvec2& place, const output::Sides& blend) {
   return ramp(place.x, blend.left) * ramp(1.0 - place.x, blend.right) * ramp(place.y, blend.top) *
          ramp(1.0 - place.y, blend.bottom);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include <glm/mat3x3.hpp>
@@ -23,10 +22,6 @@ glm::dmat3 monitor_to_crop(const output::Window& window);
 
 /// A homogeneous map, applied.
 glm::dvec2 mapped(const glm::dmat3& map, const glm::dvec2& place);
-
-/// The place on the picture that is seen at a place on the monitor, also where the picture goes on beyond the window's
-/// crop; nothing beyond the horizon of its corners.
-std::optional<output::Place> place_on_picture(const output::Window& window, const output::Place& on_monitor);
 
 /// The part of the light at a place of the crop that the window shows, 0 to 1. In a strip of the width `blend` (parts
 /// of the crop) it falls so that the neighbour's strip makes it 1 again. (P. Bourke, "Edge blending using commodity

@@ -258,37 +258,6 @@ TEST(StreamConnection, DropsFramesOfTheScenesBefore) {
   EXPECT_TRUE(inbox.frames.empty());
 }
 
-TEST(StreamConnection, WaitsLongerBeforeEachAttemptThatFails) {
-  StreamServer server({});
-  StreamOptions options = options_for(server.port());
-  options.min_backoff = std::chrono::milliseconds(20);
-  options.max_backoff = std::chrono::milliseconds(80);
-  const Viewer viewer(options);
-  ASSERT_TRUE(server.wait_for_subscriptions(1));
-  const auto began = std::chrono::steady_clock::now();
-  for (std::size_t round = 2; round <= 6; ++round) {
-    server.cut();
-    ASSERT_TRUE(server.wait_for_subscriptions(round));
-  }
-  // Each wait is shortened by a quarter at most (Backoff): 20 + 40 + 80 + 80 + 80 ms.
-  EXPECT_GE(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(300 * 3 / 4));
-}
-
-/// Otherwise the last of these waits alone would take minutes.
-TEST(StreamConnection, WaitsAsBrieflyAsAtFirstAfterASuccess) {
-  StreamServer server(kHello);
-  StreamOptions options = options_for(server.port());
-  options.min_backoff = std::chrono::milliseconds(1);
-  options.max_backoff = std::chrono::hours(1);
-  Viewer viewer(options);
-  for (std::size_t round = 1; round <= 20; ++round) {
-    ASSERT_TRUE(server.wait_for_subscriptions(round));
-    ASSERT_TRUE(viewer.wait_for_text("(a test)"));
-    server.cut();
-    ASSERT_TRUE(viewer.wait_until([&] { return viewer.connection.status().state != StreamState::kConnected; }));
-  }
-}
-
 TEST(StreamConnection, StopsWhileItWaitsToTryAgain) {
   // Were the stop to wait for the next attempt, this would take an hour.
   std::uint16_t port = 0;

@@ -1,7 +1,5 @@
 // The real program on virtual monitors that come and go.
 
-#include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <memory>
@@ -122,24 +120,6 @@ TEST_F(WallTest, OnePictureMeetsToThePixelOverTwoMonitors) {
   EXPECT_EQ(viewer->end(), 0) << viewer->said();
 }
 
-TEST_F(WallTest, TheFirstPictureIsInItsPlaceAlready) {
-  const std::vector<std::uint32_t> picture = card(kWidth_px, kHeight_px);
-  // With four refreshes each picture is seen long enough to be looked at.
-  const std::string four_refreshes = "[[output]]\nrefreshes = 4\n[[output.window]]\nmonitor = \"DUMMY0\"\n";
-  const auto viewer = start({"--config", configuration(four_refreshes), "--test-card"});
-  ScreenPixels first;
-  ASSERT_TRUE(comes_true([&] {
-    first = monitors_.pixels();
-    return std::ranges::any_of(first.rows, [](auto color) { return color != kWhite && color != 0; });
-  })) << viewer->said();
-  int others = 0;
-  for (int y = 2; y < kHeight_px - 2; ++y) {
-    for (int x = 2; x < kWidth_px - 2; ++x) others += first.at(x, y) != picture[place(kWidth_px, x, y)] ? 1 : 0;
-  }
-  EXPECT_EQ(others, 0);
-  EXPECT_EQ(viewer->end(), 0) << viewer->said();
-}
-
 TEST_F(WallTest, AMonitorThatLeavesAndReturnsIsFoundAgain) {
   const std::vector<std::uint32_t> picture = card(2 * kWidth_px, kHeight_px);
   const auto viewer = start({"--config", configuration(kTwoHalves), "--test-card"});
@@ -215,44 +195,6 @@ monitor = "DUMMY2"
     return seen.width_px == 2080 && (seen.at(1280, 0) >> 16U) > 200 && (seen.at(1280 + 400, 300) & 0xFFU) > 150;
   })) << viewer->said();
   EXPECT_EQ(viewer->end(), 0);
-}
-
-TEST_F(WallTest, ThePointerIsDrawnWhereItPointsHoweverTheMonitorsHang) {
-  // Turned, and drawn aslant.
-  constexpr const char* kMapped = R"(
-[[output]]
-[[output.window]]
-monitor = "DUMMY0"
-crop = "0 0 0.5 1"
-rotation = 180
-[[output.window]]
-monitor = "DUMMY1"
-crop = "0.5 0 0.5 1"
-corners = "0.1 0.05 0.95 0.1 1 0.9 0 1"
-)";
-  const auto viewer = start({"--config", configuration(kMapped), "--panel", "--scale", "0.5"});
-  struct Spot {
-    int x = 0;
-    int y = 0;
-  };
-  // Where the picture is black: the panel is at its right edge.
-  constexpr std::array kSpots{Spot{120, 90}, Spot{500, 400}, Spot{kWidth_px + 150, 200}, Spot{kWidth_px + 250, 380}};
-  const auto is_pointer_at = [this](const Spot& spot) {
-    const ScreenPixels seen = monitors_.pixels();
-    int count = 0;
-    for (int y = spot.y - 12; y <= spot.y + 12; ++y) {
-      for (int x = spot.x - 12; x <= spot.x + 12; ++x) count += seen.at(x, y) != 0 ? 1 : 0;
-    }
-    return count > 40;
-  };
-  monitors_.point(kWidth_px / 2, kHeight_px / 2);
-  ASSERT_TRUE(comes_true([&] { return std::ranges::none_of(kSpots, is_pointer_at); })) << viewer->said();
-  for (const Spot& spot : kSpots) {
-    monitors_.point(spot.x, spot.y);
-    EXPECT_TRUE(comes_true([&] { return std::ranges::count_if(kSpots, is_pointer_at) == 1 && is_pointer_at(spot); }))
-        << spot.x << " " << spot.y;
-  }
-  EXPECT_EQ(viewer->end(), 0) << viewer->said();
 }
 
 /// Nothing of this needs a monitor.

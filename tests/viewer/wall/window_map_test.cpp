@@ -47,19 +47,6 @@ TEST(SquareTo, KeepsLinesStraight) {
   EXPECT_NEAR(off_line(kAslant[1], kAslant[3]), 0.0, kSmall);
 }
 
-TEST(PlaceOnPicture, IsThePictureThatTheMonitorShowsThere) {
-  const output::Window turned{.crop = {.x = 0.5, .y = 0.25, .width = 0.5, .height = 0.5}, .rotation_deg = 180};
-  const auto place = place_on_picture(turned, {.x = 0.25, .y = 0.0});
-  ASSERT_TRUE(place.has_value());
-  expect_near(on(*place), {0.875, 0.75});
-  const auto beside = place_on_picture(turned, {.x = 1.5, .y = 0.5});
-  ASSERT_TRUE(beside.has_value()) << "a drag may leave the window";
-  expect_near(on(*beside), {0.25, 0.5});
-  const output::Window warped{.corners = {{{0.4, 0.0}, {0.6, 0.0}, {1.0, 1.0}, {0.0, 1.0}}}};
-  expect_near(on(*place_on_picture(warped, {.x = 1.0, .y = 1.0})), {1.0, 1.0});
-  EXPECT_EQ(place_on_picture(warped, {.x = 0.5, .y = -9.0}), std::nullopt) << "above where its sides meet";
-}
-
 TEST(MonitorToCrop, UndoesTheCorners) {
   const output::Window window{.corners = kAslant};
   const glm::dmat3 map = monitor_to_crop(window);

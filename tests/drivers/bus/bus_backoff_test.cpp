@@ -1,10 +1,10 @@
-#include "engine/base/backoff.hpp"
-
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
-namespace yuragi {
+#include "drivers/bus/backoff.hpp"
+
+namespace yuragi::drivers::bus {
 namespace {
 
 using namespace std::chrono_literals;
@@ -27,4 +27,4 @@ TEST(Backoff, DoublesUpToItsCapAndIsTheSameForASeed) {
 }
 
 }  // namespace
-}  // namespace yuragi
+}  // namespace yuragi::drivers::bus
