@@ -1,11 +1,19 @@
 #include "engine/wind/turbulence/wind_turbulence.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace yuragi::wind::turbulence {
 namespace {
 
 constexpr double kLargestDifference = 1.0;
+/// A smaller one is rounding of the sums: a constant wind has no turbulence at all.
+constexpr double kSmallestDifference = 1e-9;
+
+/// Of the longest means, with as many readings before.
+constexpr std::size_t kLongestHistory = std::size_t{2} << (TurbulenceFit::kScales - 1);
+/// Of the ring of sums: with room for the sum before the longest history.
+constexpr std::size_t kRingSize = 2 * kLongestHistory;
 
 TurbulencePrior across_the_wind(TurbulencePrior prior) {
   prior.intensity *= kAcrossPerAlong;
@@ -15,31 +23,36 @@ TurbulencePrior across_the_wind(TurbulencePrior prior) {
 }  // namespace
 
 WindTurbulence::WindTurbulence(const TurbulencePrior& prior, double memory_s)
-    : along_(prior, memory_s),
-      across_(across_the_wind(prior), memory_s),
-      history_(std::size_t{2} << (TurbulenceFit::kScales - 1)) {}
+    : along_(prior, memory_s), across_(across_the_wind(prior), memory_s), sums_(kRingSize) {}
 
 void WindTurbulence::forget(double dt_s) noexcept {
   along_.forget(dt_s);
   across_.forget(dt_s);
 }
 
-void WindTurbulence::take(WindVector wind, WindVector ahead, double speed_m_s, bool has_across) noexcept {
-  const std::size_t size = history_.size();
-  history_[next_] = wind;
-  next_ = (next_ + 1) % size;
-  history_size_ = std::min(history_size_ + 1, size);
+/// From now on sums are counted from the last reading.
+void WindTurbulence::begin_turn() noexcept {
+  const WindVector total = sums_[last_];
+  for (WindVector& sum : sums_) sum = sum - total;
+}
 
-  const auto reading = [&](std::size_t back) { return history_[(next_ + size - 1 - back) % size]; };
-  const auto limited = [](double part) { return std::clamp(part, -kLargestDifference, kLargestDifference); };
-  WindVector newer{};  // the sum of the last 2^s readings
-  std::size_t summed = 0;
+void WindTurbulence::take(WindVector wind, WindVector ahead, double speed_m_s, bool has_across) noexcept {
+  if (last_ == kRingSize - 1) begin_turn();
+  const WindVector before = sums_[last_];
+  last_ = (last_ + 1) % kRingSize;
+  sums_[last_] = before + wind;
+  history_size_ = std::min(history_size_ + 1, kLongestHistory);
+
+  const auto sum_until = [&](std::size_t back) { return sums_[(last_ + kRingSize - back) % kRingSize]; };
+  const auto limited = [](double part) {
+    return std::abs(part) < kSmallestDifference ? 0.0 : std::clamp(part, -kLargestDifference, kLargestDifference);
+  };
   for (std::size_t scale = 0; scale < TurbulenceFit::kScales; ++scale) {
     const std::size_t count = std::size_t{1} << scale;
     if (history_size_ < 2 * count) return;
-    for (; summed < count; ++summed) newer = newer + reading(summed);
-    WindVector older{};
-    for (std::size_t back = count; back < 2 * count; ++back) older = older + reading(back);
+    const WindVector middle = sum_until(count);
+    const WindVector newer = sum_until(0) - middle;
+    const WindVector older = middle - sum_until(2 * count);
     const WindVector difference = 1.0 / (static_cast<double>(count) * speed_m_s) * (newer - older);
     along_.add(scale, limited(difference.u_m_s * ahead.u_m_s + difference.v_m_s * ahead.v_m_s), speed_m_s);
     if (!has_across) continue;
