@@ -12,13 +12,17 @@ namespace yuragi::workers {
 
 /// Threads that share work with the caller, for scenes that are too large for one core in a tick.
 ///
-/// The caller does a part itself. Between two pieces of work a thread polls kSpins times, some tens of microseconds,
+/// A piece of work has as many parts as there are threads; whichever thread is free takes the next part. So the caller
+/// does what no other thread has begun, and where another program holds the other cores it does all: it waits only for
+/// parts that are being worked on. Between two pieces of work a thread polls kSpins times, some tens of microseconds,
 /// and then sleeps: in a loop of work without pauses no thread sleeps, and at 60 Hz none burns a core (waking the
 /// threads then costs some 50 us per tick). Thread-safe: no, one caller. Realtime-safe: run() neither allocates nor
-/// locks; it waits for the slowest part.
+/// locks; it waits for the slowest part that another thread has begun.
 class WorkerPool {
  public:
-  /// `threads`: how many share the work, the caller among them; 0 counts as 1.
+  static constexpr std::size_t kMaxThreads = 255;
+
+  /// `threads`: how many share the work, the caller among them; 0 counts as 1, more than kMaxThreads as that.
   explicit WorkerPool(std::size_t threads);
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
@@ -37,12 +41,15 @@ class WorkerPool {
   using Task = void (*)(const void* work, Part part);
 
   void run_task(Task task, const void* work) noexcept;
-  void serve(std::size_t index) noexcept;
+  bool do_next_part() noexcept;
+  void serve() noexcept;
 
   const std::size_t size_;
+  // Of the present work. Read by a thread that has taken a part: until that is done they do not change.
   Task task_ = nullptr;
   const void* work_ = nullptr;
-  std::atomic<std::uint32_t> works_begun_{0};
+  /// The number of the present work, and in the last eight bits the next part that nobody has taken.
+  std::atomic<std::uint32_t> next_part_;
   std::atomic<std::size_t> parts_to_do_{0};
   std::atomic<bool> is_ending_{false};
   std::vector<std::thread> workers_;
