@@ -11,7 +11,7 @@ namespace yuragi::scenes {
 /// Decides which part of a grid is read at which tick, so that each part is read kReadings_hz times a second and each
 /// tick costs the same.
 ///
-/// A grid has as many parts as ticks fit between two readings of a part: 4 at 60 ticks a second. Part p of n is read at
+/// A grid has as many parts as ticks fit between two readings of a part: 5 at 60 ticks a second. Part p of n is read at
 /// the ticks whose number leaves p when divided by n, so that the schedule depends on the tick's number alone, not on
 /// when the grid was made; the parts of skipped ticks are read at the next one. A part is read as it will be `lead_s`
 /// later, and its values go there in a straight line (WindGrid).
@@ -19,8 +19,8 @@ namespace yuragi::scenes {
 /// Pure. Thread-safe: no. Realtime-safe: yes.
 class ReadingSchedule {
  public:
-  static constexpr double kReadings_hz = 15.0;
-  static constexpr std::size_t kMaxParts = 8;
+  static constexpr double kReadings_hz = 12.0;
+  static constexpr std::size_t kMaxParts = 12;
 
   /// The parts to read at a tick: `count` of `parts`, from `first` on, after the last part the first again.
   struct Due {
@@ -51,7 +51,7 @@ class ReadingSchedule {
   ///
   /// A filter's impulse response has the variance 2 / omega^2. Straight lines between values that are n ticks of p
   /// seconds apart smooth by a triangle of 2 n - 1 ticks, whose variance is (n^2 - 1) p^2 / 6; variances add up. To
-  /// 2 Hz the magnitudes agree within 0.13 dB.
+  /// 2 Hz the magnitudes agree within 0.21 dB.
   static double matched_rate_rad_s(double omega_rad_s, const Due& due) noexcept {
     const auto parts = static_cast<double>(due.parts);
     const double period_s = due.lead_s / parts;

@@ -18,22 +18,22 @@ namespace yuragi::scenes {
 /// The wind at each place of a scene: a grid over the scene whose nodes each feel the wind as SceneWind does (cut to
 /// kStrongestSceneWind_m_s, smoothed by 0.1 s), gusts of the place included; places between nodes read it bilinearly.
 ///
-/// Reading the wind at a node costs most, and 15 times a second is enough (ReadingSchedule): at each tick a part of the
+/// Reading the wind at a node costs most, and 12 times a second is enough (ReadingSchedule): at each tick a part of the
 /// lines of nodes is read, as the wind will be there when it is their turn again. That is known already, since the mean
 /// wind carries gusts and tapes there from where they are now; what it does not carry (a slope of the mean, a wind
-/// without tapes) comes later by the same 1/15 s. Until then a node's target goes there in a straight line, and the
+/// without tapes) comes later by the same 1/12 s. Until then a node's target goes there in a straight line, and the
 /// smoothing is quicker by what that line smooths. A wind without a tick's number is read everywhere at once.
 ///
-/// The bound of a tick holds for this, too: a target goes from one end of its range to the other in 1/15 s at the
+/// The bound of a tick holds for this, too: a target goes from one end of its range to the other in 1/12 s at the
 /// soonest, so that the value's rate is at most twice the strongest wind times the mean of the filter's impulse
-/// response over the 1/15 s of its peak, 7.34 a second; of SceneWind it is the peak itself, 7.36.
+/// response over the 1/12 s of its peak, 7.31 a second; of SceneWind it is the peak itself, 7.36.
 ///
 /// So a place's wind is never stronger than kStrongestSceneWind_m_s, and changes in a tick by at most
 /// SceneWind::largest_step_m_s, whatever comes in. Nodes are half a metre apart in scenes of up to 31 m; in larger ones
 /// the longer side has 63. Waves that they cannot hold are left out (GustNodes). Allocates when it is made, never
-/// afterwards. Thread-safe: sampling, yes. Realtime-safe: all but construction. Cost: 24 us a step for a meadow of 7 m
-/// (256 nodes; 1.3 ns a node and layer) and 0.34 ms for one of 60 m, three fifths of it if nothing evolves; and 4 ns a
-/// place.
+/// afterwards. Thread-safe: sampling, yes. Realtime-safe: all but construction. Cost: 1.3 ns a node that is read and
+/// layer, which makes 24 us for all nodes of a meadow of 7 m (256) and 0.34 ms for one of 60 m, three fifths of it if
+/// nothing evolves; a fifth of these each tick at 60 Hz; and 4 ns a place.
 class WindGrid {
  public:
   /// Places: metres east and south of the middle of all scenes, as many of x as of z.

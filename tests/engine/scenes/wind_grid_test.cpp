@@ -247,7 +247,8 @@ TEST(WindGrid, GustsThatAreReadPartByPartComeNeitherLaterNorWeakerNorInSteps) {
     EXPECT_NE(at_once.series.back(), in_parts.series.back());
     EXPECT_LT(std::sqrt(squares / scatter), 0.03) << side_m;
     EXPECT_NEAR(scatter_in_parts / scatter, 1.0, 0.01) << side_m;
-    EXPECT_NEAR(-difference_by_slope / slope_squares, 0.0, 0.010) << "s of delay, " << side_m;
+    // The quicker filter behind the straight lines is some 10 ms less late.
+    EXPECT_NEAR(-difference_by_slope / slope_squares, -0.010, 0.004) << "s of delay, " << side_m;
     EXPECT_LT(in_parts.largest_change_m_s(), 1.1 * at_once.largest_change_m_s()) << side_m;
   }
 }
