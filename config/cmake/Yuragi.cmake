@@ -40,16 +40,22 @@ if(YURAGI_FUZZ)
   target_compile_options(yuragi_flags INTERFACE -fsanitize=fuzzer-no-link) # what is fuzzed tells where it has been
 endif()
 
+# The rooms where a running program spends its time: poses and wind, readings, recordings and their import, the stream, pictures.
+# They are compiled with the preset's optimization. All others (options, settings, JSON, tables, the web page, the set-up of
+# devices, simulators) run once or wait for others: they are compiled with -O1, which is faster.
+set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/shaping
+                     daemon/stream daemon/tools/csv daemon/tools/report viewer)
+list(JOIN YURAGI_HOT_ROOMS "|" YURAGI_HOT_ROOMS)
+
 # yuragi_room(engine/wind SOURCES a.cpp b.cpp LINK yuragi_engine_base ...)
-# A library of one folder. LINK lists what ARCHITECTURE.md's table allows that room. Commands and tools, which run
-# once an order, and simulators, which wait for others, are optimised less: they compile sooner.
+# A library of one folder. LINK lists what ARCHITECTURE.md's table allows that room.
 function(yuragi_room folder)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   string(REPLACE "/" "_" name "yuragi_${folder}")
   if(ARG_SOURCES)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC yuragi_flags ${ARG_LINK})
-    if(folder MATCHES "^daemon/(commands|tools)|^simulators(/modbus|/text|/usb)?$")
+    if(NOT folder MATCHES "^(${YURAGI_HOT_ROOMS})(/|$)")
       target_compile_options(${name} PRIVATE -O1)
     endif()
   else()
