@@ -100,6 +100,7 @@ test_preset() {
   rm -f "$results"
   check "configuring $preset" cmake --preset "$preset" --log-level=WARNING || return
   check "building $preset" cmake --build --preset "$preset" || return
+  /usr/bin/python3 tests/support/build_times.py "build/$preset" || true
   # Three times as many at once as there are cores: those that talk to devices, simulated ones, mostly wait.
   ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" "$@" || status=$?
   # Not where a sanitizer looks: what it finds once is there.
