@@ -2,7 +2,7 @@
 # Yuragi with no hardware: installs what is needed, builds, and runs the main job on a simulated wind.
 #
 #   config/demo.sh            opens the viewer where there is a display; elsewhere shows 30 s of live status in the
-#                             terminal and writes a picture to demo.png in the present folder
+#                             terminal (in a file: the status at the end) and writes a picture to demo.png in the present folder
 #   config/demo.sh SECONDS    the same for another time
 #
 # It touches nothing outside this folder but Debian packages. Stop it with Ctrl-C.
@@ -113,7 +113,12 @@ else
   echo "demo: no display; $duration_s s of status, and a picture in $picture"
   "$bin/yuragi-viewer" --connect "$stream" --at 4 --screenshot "$picture" >"$work/viewer.log" 2>&1 &
   viewer=$!
-  "$bin/yuragi" sensors watch --connect "$stream" --duration "$duration_s"
+  if [ -t 1 ]; then
+    "$bin/yuragi" sensors watch --connect "$stream" --duration "$duration_s"
+  else # a file does not need a table each half second: the last one
+    sleep "$duration_s"
+    "$bin/yuragi" sensors watch --connect "$stream" --once
+  fi
   wait "$viewer" || { cat "$work/viewer.log" >&2; exit 1; }
   echo "demo: picture written to $picture"
 fi
