@@ -71,6 +71,7 @@ test_preset() {
   rm -f "$results"
   check "configuring $preset" cmake --preset "$preset" --log-level=WARNING || return
   check "building $preset" cmake --build --preset "$preset" || return
+  /usr/bin/python3 tests/support/build_times.py "build/$preset" || true
   # Three times as many at once as there are cores: tests that talk to simulated devices mostly wait. A long output is cut at its
   # beginning: what failed stands at the end.
   ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" --test-output-truncation head \

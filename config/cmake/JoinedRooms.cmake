@@ -1,0 +1,20 @@
+# Which rooms a release compiles as one file: those of one program that include the same libraries. Rooms of a group are all in
+# YURAGI_HOT_ROOMS (Yuragi.cmake), or none of them is. The engine's stay apart: they are small, and all programs share them.
+yuragi_join(simulators yuragi_simulators yuragi_simulators_davis yuragi_simulators_lufft yuragi_simulators_microphone
+  yuragi_simulators_modbus yuragi_simulators_network yuragi_simulators_text yuragi_simulators_usb yuragi-sim)
+yuragi_join(decode yuragi_drivers_decode yuragi_drivers_decode_davis yuragi_drivers_decode_hid yuragi_drivers_decode_lufft
+  yuragi_drivers_decode_marine yuragi_drivers_decode_microphone yuragi_drivers_decode_modbus yuragi_drivers_decode_network
+  yuragi_drivers_decode_text yuragi_drivers_decode_usb)
+yuragi_join(drivers yuragi_drivers yuragi_drivers_bus yuragi_drivers_davis yuragi_drivers_hid yuragi_drivers_lufft
+  yuragi_drivers_microphone yuragi_drivers_modbus yuragi_drivers_mqtt yuragi_drivers_network yuragi_drivers_osc
+  yuragi_drivers_recording yuragi_drivers_sensor yuragi_drivers_synthetic yuragi_drivers_text yuragi_drivers_usb)
+yuragi_join(hot_daemon yuragi_daemon_animation yuragi_daemon_pictures yuragi_daemon_sensing yuragi_daemon_stream)
+yuragi_join(daemon yuragi_daemon_alerts yuragi_daemon_history yuragi_daemon_recording yuragi_daemon_service
+  yuragi_daemon_settings yuragi_daemon_shaping yuragi_daemon_state yuragi_daemon_web)
+yuragi_join(tools yuragi_daemon_tools_acceptance yuragi_daemon_tools_calibration yuragi_daemon_tools_decode
+  yuragi_daemon_tools_doctor yuragi_daemon_tools_offline yuragi_daemon_tools_plot yuragi_daemon_tools_report
+  yuragi_daemon_tools_sensors yuragi_daemon_tools_support)
+yuragi_join(commands yuragi_daemon_commands yuragi)
+if(YURAGI_VIEWER)
+  yuragi_join(viewer yuragi_viewer yuragi_viewer_wall yuragi-viewer)
+endif()
