@@ -66,7 +66,7 @@ collect() {
 
 # test_preset PRESET [CTEST ARGUMENT...]: configures, builds and tests a preset of CMakePresets.json.
 test_preset() {
-  local preset=$1 results=$PWD/build/$1/results.xml status=0 passed_now failed_now others
+  local preset=$1 results=$PWD/build/$1/results.xml status=0 failed_now
   shift
   rm -f "$results"
   check "configuring $preset" cmake --preset "$preset" --log-level=WARNING || return
@@ -79,8 +79,7 @@ test_preset() {
   # Not where a sanitizer looks: what it finds once is there.
   if [ "$status" -ne 0 ] && [ "$preset" = test ] && [ -e "$results" ]; then
     /usr/bin/python3 tests/support/run_again.py "$preset" "$results" || true
-    # shellcheck disable=SC2034  # all but the second word
-    read -r passed_now failed_now others <<<"$(count_results "$results")"
+    read -r _ failed_now _ <<<"$(count_results "$results")"
     if [ "$failed_now" = 0 ]; then status=0; fi
   fi
   collect "ctest of $preset" "$results" "$status"
