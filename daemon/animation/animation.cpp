@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <utility>
 
 #include "engine/pose/pose_arrays.hpp"
@@ -42,11 +43,16 @@ void Animation::step(const wind::ground::DrivingWind& wind, double dt_s, std::ui
   for (std::size_t i = 0; i < list.size(); ++i) list[i].fade.advance(dt_s);
   list.read_opacities();
   for (std::size_t i = 0; i < list.size(); ++i) {
-    if (list.opacities()[i] == 0.0F) continue;
+    if (list.opacities()[i] == 0.0F) {
+      list[i].step_time.clear();
+      continue;
+    }
+    const auto begun = std::chrono::steady_clock::now();
     scenes::Scene& scene = *list[i].scene;
     scene.shift(list[i].wind_gain * ground, dt_s);
     pool_.run([&scene](Part part) { scene.sample_part(part); });
     pool_.run([&scene, dt_s](Part part) { scene.project_part(part, dt_s); });
+    list[i].step_time.add(std::chrono::steady_clock::now() - begun);
   }
 }
 

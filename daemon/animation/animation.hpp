@@ -24,8 +24,9 @@ struct SceneCue {
 };
 
 /// All scenes of an installation, each at its place and with its gain on the wind, stepped together, and the encoder of
-/// their frames. A hidden scene is not stepped. The scenes may be exchanged for others between two steps. It has no
-/// clock: the daemon's loop, the lock-step replay and the tests step it.
+/// their frames. A hidden scene is not stepped. The scenes may be exchanged for others between two steps. It follows no
+/// clock: the daemon's loop, the lock-step replay and the tests step it. How long each scene takes is measured
+/// (StagedScene::step_time), and changes nothing.
 ///
 /// Thread-safe: no. What is noexcept, and encode(), are realtime-safe; with [animation] threads above 1 a step waits
 /// for the pool's threads (WorkerPool). Poses do not depend on the number of threads.

@@ -97,7 +97,9 @@ void AnimationLoop::run_ticks(const std::stop_token& stop) {
     const TickSchedule::Tick now = schedule.begin_tick(begun);
     tick(now);
     counters_.lateness.add(now.lateness);
-    counters_.work.add(clock_.now().mono - begun);
+    const Nanoseconds taken = clock_.now().mono - begun;
+    counters_.work.add(taken);
+    counters_.tick_time.add(taken);
     counters_.skipped_ticks.fetch_add(now.skipped, std::memory_order_relaxed);
     counters_.ticks.fetch_add(1, std::memory_order_relaxed);
   }

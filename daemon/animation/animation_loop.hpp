@@ -8,6 +8,7 @@
 
 #include "daemon/animation/animation.hpp"
 #include "daemon/animation/duration_histogram.hpp"
+#include "daemon/animation/running_mean.hpp"
 #include "daemon/animation/tick_schedule.hpp"
 #include "drivers/sensor/clock.hpp"
 #include "engine/base/latest.hpp"
@@ -21,6 +22,7 @@ struct LoopCounters {
   std::atomic<std::uint64_t> skipped_ticks{0};
   DurationHistogram lateness;  ///< of the start of each tick
   DurationHistogram work;      ///< duration of each tick
+  RunningMean tick_time;       ///< the same of late
 };
 
 /// An encoded frame, and the number of the list of scenes that it is of.

@@ -17,11 +17,11 @@ constexpr std::size_t kFrameSlack_bytes = 256;
 std::shared_ptr<StagedScene> make_staged_scene(const settings::Config& config, std::size_t index,
                                                const std::shared_ptr<const wind::turbulence::GustNoise>& gusts) {
   const settings::SceneConfig& scene = config.scenes[index];
-  return std::make_shared<StagedScene>(StagedScene{
-      .scene =
-          scene.kind->make(scene.values, {.seed = config.seed + index, .placement = scene.placement, .gusts = gusts}),
-      .fade = Fade(false),
-      .wind_gain = scene.wind_gain});
+  auto staged = std::make_shared<StagedScene>();
+  staged->scene =
+      scene.kind->make(scene.values, {.seed = config.seed + index, .placement = scene.placement, .gusts = gusts});
+  staged->wind_gain = scene.wind_gain;
+  return staged;
 }
 
 SceneList::SceneList(std::shared_ptr<const SceneRoster> roster, std::span<const Entry> leaving,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "daemon/animation/fade.hpp"
+#include "daemon/animation/running_mean.hpp"
 #include "daemon/settings/config.hpp"
 #include "engine/scenes/scene.hpp"
 #include "engine/wire/wire.hpp"
@@ -15,11 +16,12 @@
 namespace yuragi::daemon::animation {
 
 /// A scene, its opacity, and its gain on the wind. The lists that hold a scene share it; only the thread that steps the
-/// animation reads or changes more of it than the skeleton.
+/// animation reads or changes more of it than the skeleton, but `step_time`, which others may read.
 struct StagedScene {
   std::unique_ptr<scenes::Scene> scene;
-  Fade fade;
+  Fade fade{false};
   double wind_gain = 1.0;
+  RunningMean step_time;  ///< of its part of a tick; 0 while it is hidden
 };
 
 /// The scenes of a configuration, and what they were made from. Never changes, so that several threads may share it.

@@ -20,8 +20,6 @@ class StatusCollector {
     if (const auto* hello = std::get_if<wire::Hello>(&message)) {
       status_.software = hello->software;
       status_.tick_rate_hz = hello->tick_rate_hz;
-    } else if (const auto* frame = std::get_if<wire::Frame>(&message)) {
-      status_.running_s = frame->info.time_s;
     } else if (auto* sensors = std::get_if<wire::Sensors>(&message)) {
       status_.sensors = std::move(*sensors);
       has_sensors_ = true;
@@ -33,10 +31,7 @@ class StatusCollector {
     }
   }
 
-  /// A daemon without scenes sends no frames.
-  bool has_all() const {
-    return has_sensors_ && replies_ >= 2 && (status_.running_s.has_value() || status_.scenes.empty());
-  }
+  bool has_all() const { return has_sensors_ && replies_ >= 2; }
   bool has_answered() const { return has_sensors_; }
 
   tools::sensors::DaemonStatus& status() { return status_; }
@@ -53,7 +48,7 @@ Result<tools::sensors::DaemonStatus, Failure> ask_daemon(const std::string& addr
   auto stream = stream::StreamClient::connect(address, kAskConnectTimeout);
   if (!stream) return Failure{stream.error().message + ". Is `yuragi run` running?", FailureKind::kUnavailable};
   // Where the daemon has closed the connection, its Hello, which is still to be read, says why.
-  if (stream->subscribe({.poses = true, .sensors = true, .client = client})) {
+  if (stream->subscribe({.poses = false, .sensors = true, .client = client})) {
     stream->send(wire::Control{});
     stream->send(wire::Control{.scene = "", .player = wire::PlayerCommand{}});
   }

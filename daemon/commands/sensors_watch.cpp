@@ -228,7 +228,8 @@ void add_sensors_watch(CLI::App& sensors) {
       "...),\n"
       "shaping, recorder (null: nothing is recorded), clients, late_ticks, io_lateness and tick_lateness (p50_s, "
       "p99_s,\n"
-      "max_s). With --raw: sensor, utc_ns, mono_ns, is_received, hex, length_bytes, lost. What is not known is null.\n"
+      "max_s), animation (running_s, period_s, tick_s, carried_times, scenes; null: there are none). With --raw: "
+      "sensor, utc_ns, mono_ns, is_received, hex, length_bytes, lost. What is not known is null.\n"
       "  yuragi sensors watch --raw roof                            every message to and from its device\n"
       "  yuragi sensors watch --raw roof --hex | tee roof.hex       to be read by `yuragi decode FORMAT --hex`");
   auto options = std::make_shared<WatchOptions>();

@@ -429,6 +429,7 @@ class Service::Io {
     status.idle_clients = counts.idle;
     status.io_lateness = lateness_of(io_lateness_);
     if (loop_) status.tick_lateness = lateness_of(loop_->counters().lateness);
+    if (loop_) status.animation = animation_status();
     if (recorder_) status.recorder = to_wire(recorder_->status());
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;
@@ -439,6 +440,20 @@ class Service::Io {
     }
     stream_.publish_sensors(here, elsewhere);
     if (web_) web_->publish_sensors(here, elsewhere);
+    return status;
+  }
+
+  wire::AnimationStatus animation_status() const {
+    const animation::LoopCounters& counters = loop_->counters();
+    const std::uint64_t ticks =
+        counters.ticks.load(std::memory_order_relaxed) + counters.skipped_ticks.load(std::memory_order_relaxed);
+    wire::AnimationStatus status{.running_s = static_cast<double>(ticks) / rate_hz_,
+                                 .period_s = 1.0 / rate_hz_,
+                                 .tick_s = counters.tick_time.mean_s(),
+                                 .scenes = {}};
+    const animation::SceneRoster& roster = *scenes_->present();
+    for (std::size_t i = 0; i < roster.scenes.size(); ++i)
+      status.scenes.push_back({roster.configs[i].name, roster.scenes[i]->step_time.mean_s()});
     return status;
   }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/state/animation_load.hpp"
 #include "daemon/state/json_value.hpp"
 
 namespace yuragi::daemon::state {
@@ -95,6 +96,18 @@ ordered_json json_of_recorder(const std::optional<wire::RecorderStatus>& recorde
           {"error", recorder->error}};
 }
 
+ordered_json json_of_animation(const std::optional<wire::AnimationStatus>& animation) {
+  if (!animation) return nullptr;
+  ordered_json scenes = ordered_json::array();
+  for (const wire::SceneCost& scene : animation->scenes)
+    scenes.push_back({{"name", scene.scene}, {"tick_s", scene.tick_s}, {"share", share_of(scene, *animation)}});
+  return {{"running_s", animation->running_s},
+          {"period_s", animation->period_s},
+          {"tick_s", animation->tick_s},
+          {"carried_times", json_or_null(carried_times(*animation))},
+          {"scenes", scenes}};
+}
+
 }  // namespace
 
 ordered_json sensors_json(const wire::Sensors& sensors) {
@@ -111,7 +124,8 @@ ordered_json sensors_json(const wire::Sensors& sensors) {
             {"idle", sensors.idle_clients}}},
           {"late_ticks", sensors.late_ticks},
           {"io_lateness", json_of_lateness(sensors.io_lateness)},
-          {"tick_lateness", json_of_lateness(sensors.tick_lateness)}};
+          {"tick_lateness", json_of_lateness(sensors.tick_lateness)},
+          {"animation", json_of_animation(sensors.animation)}};
 }
 
 ordered_json raw_trace_json(const wire::RawTrace& trace) {

@@ -15,6 +15,9 @@ std::string reason_text(Overdue why, const ClientLimits& limits) {
     case Overdue::kIdle:
       return fmt::format("it subscribed to nothing and requested nothing for {:g} min",
                          seconds(limits.idle_after) / 60.0);
+    case Overdue::kStayed:
+      return fmt::format("its place, besides those of the other clients, is for {:g} s",
+                         seconds(limits.stays_for.value_or(Nanoseconds{0})));
   }
   return "?";
 }
@@ -118,6 +121,7 @@ void ClientQueue::written(std::size_t bytes, MonoTime now) {
 std::optional<Overdue> ClientQueue::overdue(MonoTime now) const {
   if (in_flight_ && now - moved_ >= limits_.stuck_after) return Overdue::kStuck;
   if (dismissed_) return std::nullopt;
+  if (limits_.stays_for && now - connected_ >= *limits_.stays_for) return Overdue::kStayed;
   if (!subscribed_ && now - connected_ >= limits_.subscribe_within) return Overdue::kNeverSubscribed;
   const bool wants_nothing = !wanted_.poses && !wanted_.sensors && !wanted_.traces;
   if (subscribed_ && wants_nothing && now - asked_ >= limits_.idle_after) return Overdue::kIdle;

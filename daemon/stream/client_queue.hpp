@@ -17,6 +17,7 @@ struct ClientLimits {
   Nanoseconds stuck_after = std::chrono::seconds(5);
   /// Of a client that subscribed to nothing: the longest time between its requests.
   Nanoseconds idle_after = std::chrono::minutes(10);
+  std::optional<Nanoseconds> stays_for = std::nullopt;  ///< none: as long as it likes
 };
 
 /// The time limit that a client has exceeded.
@@ -24,6 +25,7 @@ enum class Overdue : std::uint8_t {
   kNeverSubscribed,  ///< connected, but did not subscribe
   kStuck,            ///< reads nothing of what is being written to it
   kIdle,             ///< subscribed to nothing, and requests nothing
+  kStayed,           ///< has a place for so long only
 };
 /// "it subscribed to nothing and requested nothing for 10 min": for the log and for the client.
 std::string reason_text(Overdue why, const ClientLimits& limits);

@@ -49,6 +49,7 @@ struct Feed {
   SharedBytes newest_sensors_here, newest_sensors_elsewhere;
   std::size_t send_buffer_bytes = kMinSendBufferBytes;
   std::unique_ptr<ClientLog> log;
+  ClientCounts counts;
 
   const SharedBytes& newest_sensors(bool is_local) const {
     return is_local ? newest_sensors_here : newest_sensors_elsewhere;
@@ -68,7 +69,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Connection(tcp::socket socket, Peer peer, std::shared_ptr<Feed> feed)
       : socket_(std::move(socket)),
         feed_(std::move(feed)),
-        queue_(feed_->settings.limits, feed_->hello, feed_->settings.now()),
+        limits_(limits_of(peer, feed_->settings.limits)),
+        queue_(limits_, feed_->hello, feed_->settings.now()),
         peer_(std::move(peer)),
         is_trusted_(peer_.is_local) {
     error_code ignored;
@@ -136,7 +138,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     offer_frame();  // the last one, where no other comes to be offered in its stead
     const auto overdue = is_open() ? queue_.overdue(now) : std::nullopt;
     if (!overdue) return overdue;
-    const std::string why = reason_text(*overdue, feed_->settings.limits);
+    const std::string why = reason_text(*overdue, limits_);
     if (*overdue != Overdue::kStuck) {
       dismiss(why);
       return overdue;
@@ -157,6 +159,11 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
  private:
+  static ClientLimits limits_of(const Peer& peer, ClientLimits limits) {
+    if (peer.only_asks_because) limits.stays_for = kQuestionsFor;
+    return limits;
+  }
+
   /// Tells the client why, and disconnects it once that has been sent.
   void dismiss(std::string why) {
     queue_.dismiss(share(feed_->goodbye(why)));
@@ -216,6 +223,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
       const auto& is_token = feed_->settings.is_token;
       is_trusted_ = is_token && is_token(wish->token.reveal());
       if (!is_trusted_) return dismiss("its token is not that of this installation");
+    }
+    if (peer_.only_asks_because && (wish->poses || wish->raw)) {
+      ++feed_->counts.refused;
+      return dismiss(*peer_.only_asks_because);
     }
     const auto& raw_refusal = feed_->settings.raw_refusal;
     if (wish->raw && raw_refusal) {
@@ -281,6 +292,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   tcp::socket socket_;
   std::shared_ptr<Feed> feed_;
+  ClientLimits limits_;
   ClientQueue queue_;
   std::shared_ptr<PoseView> poses_;  // null: it wants none
   std::optional<FramePace> pace_;    // none: every frame
@@ -319,7 +331,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   }
 
   const std::string& endpoint() const { return endpoint_; }
-  const ClientCounts& counts() const { return counts_; }
+  const ClientCounts& counts() const { return feed_->counts; }
 
   std::size_t client_count() const {
     return static_cast<std::size_t>(
@@ -406,9 +418,12 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
     connected.reserve(connections_.size());
     for (const auto& connection : connections_) connected.push_back(connection->peer());
     if (auto why = admission_refusal(feed_->settings.admission, connected, peer)) {
-      ++counts_.refused;
-      feed_->log->warn("client {} refused: {}", text_of(endpoint), *why);
-      return refuse(std::move(socket), std::move(*why));
+      if (!may_ask(connected, peer)) {
+        ++feed_->counts.refused;
+        feed_->log->warn("client {} refused: {}", text_of(endpoint), *why);
+        return refuse(std::move(socket), std::move(*why));
+      }
+      peer.only_asks_because = std::move(why);
     }
     connections_.push_back(std::make_shared<Connection>(std::move(socket), std::move(peer), feed_));
     connections_.back()->start();
@@ -426,7 +441,8 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
     const MonoTime now = feed_->settings.now();
     for (const auto& connection : connections_) {
       const auto overdue = connection->check(now);
-      if (overdue) ++(*overdue == Overdue::kStuck ? counts_.stuck : counts_.idle);
+      if (overdue == Overdue::kStuck) ++feed_->counts.stuck;
+      if (overdue == Overdue::kNeverSubscribed || overdue == Overdue::kIdle) ++feed_->counts.idle;
     }
     forget_closed();
     feed_->log->tell_left_out();
@@ -446,7 +462,6 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   std::shared_ptr<Feed> feed_ = std::make_shared<Feed>();
   std::vector<std::shared_ptr<Connection>> connections_;
   error_code accept_error_;
-  ClientCounts counts_;
   bool closed_ = false;
 };
 

@@ -106,6 +106,16 @@ void add_lateness(std::vector<MetricFamily>& all, const wire::Sensors& sensors) 
       counter("yuragi_ticks_skipped_total", "Ticks that were too late to be run").add(sensors.late_ticks).take());
 }
 
+void add_animation(std::vector<MetricFamily>& all, const wire::AnimationStatus& animation) {
+  all.push_back(
+      gauge("yuragi_tick_period_seconds", "Time between the animation's ticks").add(animation.period_s).take());
+  all.push_back(
+      gauge("yuragi_tick_seconds", "Time that a tick works, mean of the last seconds").add(animation.tick_s).take());
+  Family scenes = gauge("yuragi_scene_tick_seconds", "Part of it that a scene takes; 0: it is hidden");
+  for (const wire::SceneCost& scene : animation.scenes) scenes.add(scene.tick_s, {{"scene", scene.scene}});
+  all.push_back(scenes.take());
+}
+
 void add_clients(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
   all.push_back(gauge("yuragi_stream_clients", "Clients of the stream now").add(std::uint64_t{sensors.clients}).take());
   all.push_back(counter("yuragi_stream_clients_turned_away_total", "Clients that were refused or let go, by reason")
@@ -134,6 +144,7 @@ std::string metrics_text(const wire::Sensors& sensors, const std::string& softwa
   add_wind(all, sensors);
   add_sensors(all, sensors);
   add_lateness(all, sensors);
+  if (sensors.animation) add_animation(all, *sensors.animation);
   add_clients(all, sensors);
   if (sensors.recorder) add_recorder(all, *sensors.recorder);
   return prometheus::TextSerializer().prometheus::Serializer::Serialize(all);

@@ -169,6 +169,21 @@ bool read(const fb::Lateness* from, std::optional<Lateness>& to) {
          is_within(to->max_s, 0.0, kMaxDuration_s);
 }
 
+/// A server that has no scenes, or does not tell, sends none.
+bool read(const fb::Animation* from, std::optional<AnimationStatus>& to) {
+  if (from == nullptr) return true;
+  to = AnimationStatus{.running_s = from->running_s(), .period_s = from->period_s(), .tick_s = from->tick_s()};
+  const std::size_t count = from->scenes() == nullptr ? 0 : from->scenes()->size();
+  if (count > kMaxScenes) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const fb::SceneCost& cost = *from->scenes()->Get(static_cast<flatbuffers::uoffset_t>(i));
+    SceneCost& read = to->scenes.emplace_back(SceneCost{.scene = {}, .tick_s = cost.tick_s()});
+    if (!read_text(cost.scene(), read.scene) || !is_within(read.tick_s, 0.0, kMaxDuration_s)) return false;
+  }
+  return is_within(to->running_s, 0.0, kMaxDuration_s) && is_within(to->period_s, 0.0, kMaxDuration_s) &&
+         is_within(to->tick_s, 0.0, kMaxDuration_s);
+}
+
 /// A server that records nothing, or does not tell, sends none.
 bool read(const fb::Recorder* from, std::optional<RecorderStatus>& to) {
   if (from == nullptr) return true;
@@ -245,7 +260,8 @@ bool read(const fb::Sensors& from, Sensors& to) {
   read(from.look(), to.look);
   to.parameters_revision = from.parameters_revision();
   return read_cameras(from, to) && read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
-         read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder);
+         read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder) &&
+         read(from.animation(), to.animation);
 }
 
 bool read(const fb::PlayerCommand& from, PlayerCommand& to) {

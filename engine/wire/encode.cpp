@@ -280,6 +280,14 @@ std::optional<fb::Lateness> to_schema(const std::optional<Lateness>& lateness) {
   return fb::Lateness(lateness->p50_s, lateness->p99_s, lateness->max_s);
 }
 
+flatbuffers::Offset<fb::Animation> add_animation(Builder& builder, const AnimationStatus& animation) {
+  std::vector<flatbuffers::Offset<fb::SceneCost>> scenes;
+  for (const SceneCost& cost : animation.scenes)
+    scenes.push_back(fb::CreateSceneCost(builder, add_text(builder, cost.scene), cost.tick_s));
+  return fb::CreateAnimation(builder, animation.running_s, animation.period_s, animation.tick_s,
+                             builder.CreateVector(scenes));
+}
+
 template <class Table>
 Bytes finish(Builder& builder, fb::Body type, flatbuffers::Offset<Table> body) {
   fb::FinishSizePrefixedMessageBuffer(builder, fb::CreateMessage(builder, type, body.Union()));
@@ -360,6 +368,8 @@ Bytes encode(const Sensors& sensors) {
   std::vector<flatbuffers::Offset<fb::Camera>> cameras;
   for (const look::Camera& camera : sensors.cameras) cameras.push_back(add_camera(builder, camera));
   const auto camera_list = builder.CreateVector(cameras);
+  const auto animation =
+      sensors.animation ? add_animation(builder, *sensors.animation) : flatbuffers::Offset<fb::Animation>();
   fb::SensorsBuilder table(builder);
   table.add_sensors(vector);
   table.add_wind(&wind);
@@ -377,6 +387,7 @@ Bytes encode(const Sensors& sensors) {
   table.add_cameras(camera_list);
   table.add_camera(static_cast<std::uint32_t>(sensors.camera));
   table.add_parameters_revision(sensors.parameters_revision);
+  if (sensors.animation) table.add_animation(animation);
   return finish(builder, fb::Body_Sensors, table.Finish());
 }
 

@@ -177,6 +177,21 @@ struct RecorderStatus {
   std::string error = {};                                  ///< why it cannot write at present; empty: it can
 };
 
+/// How long one scene takes of each tick of the animation: a mean of the last seconds. One that is hidden takes
+/// nothing.
+struct SceneCost {
+  std::string scene;  ///< its name
+  double tick_s = 0.0;
+};
+
+/// The animation as it runs.
+struct AnimationStatus {
+  double running_s = 0.0;  ///< since it began
+  double period_s = 0.0;   ///< of its ticks
+  double tick_s = 0.0;     ///< how long it works in one, with the frame's encoding: a mean of the last seconds
+  std::vector<SceneCost> scenes = {};
+};
+
 struct Sensors {
   std::vector<SensorStatus> sensors;
   wind::WindState wind;  ///< the real one; that of the frames is shaped
@@ -193,6 +208,7 @@ struct Sensors {
   std::vector<look::Camera> cameras = {};                 ///< the same; at most look::kMostCameras
   std::size_t camera = 0;                                 ///< which is on by the time of day; 0 where there are none
   std::uint64_t parameters_revision = 0;                  ///< another number where a ParameterReport would be another
+  std::optional<AnimationStatus> animation = std::nullopt;  ///< nothing: not known, or it has no scenes
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };

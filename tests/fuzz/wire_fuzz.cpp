@@ -92,6 +92,7 @@ void demand_consistency(const wire::Message& message) {
     demand_place(sensors->wind);
     demand_lateness(sensors->io_lateness);
     demand_lateness(sensors->tick_lateness);
+    if (sensors->animation && sensors->animation->scenes.size() > wire::kMaxScenes) std::abort();
   }
   if (const auto* frame = std::get_if<wire::Frame>(&message)) {
     if (frame->opacities.size() != frame->poses.size()) std::abort();

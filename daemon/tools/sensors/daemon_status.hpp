@@ -15,7 +15,6 @@ struct DaemonStatus {
   std::string address;   ///< where it answered
   std::string software;  ///< "yuragi 0.2.0"
   double tick_rate_hz = 0.0;
-  std::optional<double> running_s{};  ///< since its animation began; none: it shows no scene
   wire::Sensors sensors{};
   std::vector<wire::SceneState> scenes{};
   std::vector<wire::PlayerState> players{};

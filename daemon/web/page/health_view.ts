@@ -1,13 +1,27 @@
 // How the daemon itself does.
 import { element, set_text } from "./element";
-import { Lateness, Recorder, Status } from "./status";
-import { bytes_text, milliseconds_text } from "./wording";
+import { Animation, Lateness, Recorder, Status } from "./status";
+import { bytes_text, fine_milliseconds_text, milliseconds_text } from "./wording";
 
 const UNKNOWN = "–";
 
 function lateness_text(lateness: Lateness | null): string {
   if (!lateness) return UNKNOWN;
   return `${milliseconds_text(lateness.p50_s)} typical, 1 % over ${milliseconds_text(lateness.p99_s)}`;
+}
+
+function animation_text(animation: Animation | null): string {
+  if (!animation) return UNKNOWN;
+  const times = animation.carried_times;
+  const carried = times === null ? "" : times < 1 ? ": much for this machine" : `: this machine carries ${times.toFixed(1)} times as much`;
+  return `${milliseconds_text(animation.tick_s)} of each ${milliseconds_text(animation.period_s)}${carried}`;
+}
+
+/** The costliest first. */
+function scene_costs_text(animation: Animation | null): string {
+  const shown = (animation?.scenes ?? []).filter((scene) => scene.tick_s > 0).sort((one, other) => other.tick_s - one.tick_s);
+  if (shown.length === 0) return UNKNOWN;
+  return shown.map((scene) => `${scene.name} ${fine_milliseconds_text(scene.tick_s)} (${Math.round(100 * scene.share)} %)`).join(", ");
 }
 
 function recorder_text(recorder: Recorder | null): string {
@@ -19,6 +33,8 @@ function recorder_text(recorder: Recorder | null): string {
 
 const FACTS: [string, (status: Status) => string][] = [
   ["Ticks", (status) => `${status.tick_rate_hz} Hz, ${status.late_ticks.toLocaleString("en")} skipped`],
+  ["Work of a tick", (status) => animation_text(status.animation)],
+  ["Of it, by scene", (status) => scene_costs_text(status.animation)],
   ["Ticks late by", (status) => lateness_text(status.tick_lateness)],
   ["Sensors and clients late by", (status) => lateness_text(status.io_lateness)],
   ["Recorder", (status) => recorder_text(status.recorder)],

@@ -24,6 +24,15 @@ export interface Lateness {
   max_s: number;
 }
 
+/** What the animation costs, as means of the last seconds. */
+export interface Animation {
+  running_s: number;
+  period_s: number;
+  tick_s: number;
+  carried_times: number | null;
+  scenes: { name: string; tick_s: number; share: number }[];
+}
+
 export interface Recorder {
   state: "writing" | "retrying" | "hanging" | null;
   written: number;
@@ -47,6 +56,7 @@ export interface Status {
   late_ticks: number;
   io_lateness: Lateness | null;
   tick_lateness: Lateness | null;
+  animation: Animation | null;
 }
 
 export interface Scene {

@@ -43,6 +43,11 @@ export function milliseconds_text(duration_s: number): string {
   return duration_ms.toFixed(duration_ms < 10 ? 1 : 0) + " ms";
 }
 
+/** "0.15 ms" */
+export function fine_milliseconds_text(duration_s: number): string {
+  return (duration_s * 1e3).toFixed(2) + " ms";
+}
+
 /** "12.3 GB" */
 export function bytes_text(bytes: number): string {
   if (bytes < 1e9) return (bytes / 1e6).toFixed(0) + " MB";

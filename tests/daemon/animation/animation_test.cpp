@@ -101,6 +101,19 @@ TEST(AnimationTest, AHiddenSceneStandsStillAndSendsNothing) {
   EXPECT_TRUE(wire::fits(frame, animation.describe()));
 }
 
+TEST(AnimationTest, MeasuresWhatEachSceneTakesOfATick) {
+  const settings::Config config = installation("", "shown = false");
+  Animation animation = animation_of(config);
+  const auto scenes = animation.roster()->scenes;
+  for (int tick = 0; tick < 10; ++tick) animation.step(kBreeze, kTick_s);
+  EXPECT_GT(scenes[0]->step_time.mean_s(), 0.0);
+  EXPECT_EQ(scenes[1]->step_time.mean_s(), 0.0) << "it is hidden";
+  animation.cue({.scene = 1, .shown = true, .hide_others = true, .over_s = 0.0});
+  for (int tick = 0; tick < 10; ++tick) animation.step(kBreeze, kTick_s);
+  EXPECT_EQ(scenes[0]->step_time.mean_s(), 0.0) << "it has been hidden";
+  EXPECT_GT(scenes[1]->step_time.mean_s(), 0.0);
+}
+
 TEST(AnimationTest, ACrossFadeTakesItsTimeAndNeverJumps) {
   const settings::Config config = installation("", "shown = false");
   Animation animation = animation_of(config);

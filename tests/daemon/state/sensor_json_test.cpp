@@ -32,6 +32,7 @@ TEST(SensorJson, HasNumbersAsNumbersAndNullWhereNothingIsKnown) {
   EXPECT_EQ(json["recorder"]["state"], "hanging");
   EXPECT_TRUE(json["recorder"]["free_bytes"].is_null());
   EXPECT_TRUE(json["io_lateness"].is_null());
+  EXPECT_TRUE(json["animation"].is_null());
   EXPECT_TRUE(sensors_json(wire::Sensors{})["recorder"].is_null());
   EXPECT_TRUE(sensors_json(wire::Sensors{})["wind"]["direction_deg"].is_null()) << "still air has none";
 }

@@ -44,6 +44,20 @@ TEST_F(ClientAdmissionTest, TheLastPlacesAreForThisMachine) {
   EXPECT_THAT(refusal(local_).value(), HasSubstr("32"));
 }
 
+TEST_F(ClientAdmissionTest, QuestionsOfThisMachineHavePlacesThatCountForNobodyElse) {
+  EXPECT_EQ(fill(local_), 32U);
+  const Peer asking{.address = "127.0.0.1", .is_local = true, .only_asks_because = refusal(local_)};
+  for (std::size_t i = 0; i < kPlacesForQuestions; ++i) {
+    EXPECT_TRUE(may_ask(connected_, local_)) << i;
+    connected_.push_back(asking);
+  }
+  EXPECT_FALSE(may_ask(connected_, local_));
+  EXPECT_FALSE(may_ask({}, machine(1)));
+  EXPECT_THAT(refusal(local_).value(), HasSubstr("32"));
+  connected_.erase(connected_.begin());
+  EXPECT_EQ(refusal(local_), std::nullopt);
+}
+
 TEST_F(ClientAdmissionTest, ThisMachineMayHaveAllOfThem) {
   EXPECT_EQ(fill(local_), 32U);
   EXPECT_TRUE(refusal(machine(1)).has_value());

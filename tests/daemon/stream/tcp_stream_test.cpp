@@ -615,16 +615,46 @@ TEST_F(TcpStreamTest, OneClientTooManyIsToldSoUntilAnotherLeaves) {
   ASSERT_TRUE(turn_until([&] { return stream_.client_count() == 32; }));
 
   TestClient extra(io_, stream_.local_endpoint());
+  extra.send(wire::encode(wire::Subscribe{.client = ""}));
   ASSERT_TRUE(turn_until([&] { return extra.closed; }));
-  ASSERT_EQ(extra.hellos.size(), 1u);
-  EXPECT_NE(extra.hellos[0].refused.value().find("32"), std::string::npos);
+  ASSERT_EQ(extra.hellos.size(), 2u);
+  EXPECT_THAT(extra.hellos[1].refused.value_or(""), testing::HasSubstr("32"));
   EXPECT_EQ(stream_.client_count(), 32u);
+  EXPECT_EQ(stream_.counts().refused, 1U);
 
   clients.pop_front();
   ASSERT_TRUE(turn_until([&] { return stream_.client_count() == 31; }));
   TestClient next(io_, stream_.local_endpoint());
   ASSERT_TRUE(turn_until([&] { return !next.hellos.empty(); }));
-  EXPECT_FALSE(next.hellos[0].refused.has_value());
+  next.send(wire::encode(wire::Subscribe{.client = ""}));
+  ASSERT_TRUE(turn_until([&] { return !next.scenes.empty(); }));
+}
+
+TEST_F(TcpStreamTest, AQuestionOfThisMachineHasAPlaceBesideAllOthers) {
+  std::deque<TestClient> clients;
+  for (int i = 0; i < 32; ++i) {
+    clients.emplace_back(io_, stream_.local_endpoint());
+    clients.back().send(wire::encode(wire::Subscribe{.client = ""}));
+  }
+  ASSERT_TRUE(turn_until([&] { return stream_.client_count() == 32; }));
+  publish_sensors();
+
+  std::deque<TestClient> asking;
+  for (std::size_t i = 0; i < kPlacesForQuestions; ++i) {
+    asking.emplace_back(io_, stream_.local_endpoint());
+    asking.back().send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = "status"}));
+    asking.back().send(wire::encode(wire::Control{}));
+    ASSERT_TRUE(turn_until([&] { return !asking.back().sensors.empty() && asking.back().replies.size() == 1; })) << i;
+  }
+  TestClient one_more(io_, stream_.local_endpoint());
+  ASSERT_TRUE(turn_until([&] { return one_more.closed; }));
+  EXPECT_THAT(one_more.hellos.at(0).refused.value_or(""), testing::HasSubstr("32"));
+
+  now_ += kQuestionsFor;
+  ASSERT_TRUE(turn_until([&] { return std::ranges::all_of(asking, &TestClient::closed); }));
+  EXPECT_THAT(asking[0].hellos.at(1).refused.value_or(""), testing::HasSubstr("60 s"));
+  EXPECT_EQ(stream_.client_count(), 32U);
+  EXPECT_EQ(stream_.counts().idle, 0U);
 }
 
 TEST_F(TcpStreamTest, OutOfFileDescriptorsItWaitsAndThenGoesOn) {
@@ -738,6 +768,7 @@ TEST_F(TcpStreamTest, FewerPlacesAreForThoseWhoComeFromThenOn) {
   ASSERT_TRUE(turn_until([&] { return stream_.client_count() == 1; }));
   stream_.set_admission({.max_clients = 1, .max_clients_per_address = 1});
   TestClient second(io_, stream_.local_endpoint());
+  second.send(wire::encode(wire::Subscribe{.client = ""}));
   ASSERT_TRUE(turn_until([&] { return second.closed; }));
   EXPECT_FALSE(first.closed);
   EXPECT_EQ(stream_.counts().refused, 1U);
@@ -802,6 +833,7 @@ TEST_F(TcpStreamTest, AnotherMachineHasItsShareOfThePlacesAndThisOneItsOwn) {
   EXPECT_EQ(stream_.client_count(), 28U);
   EXPECT_THAT(connect("127.0.0.6"), testing::HasSubstr("the daemon's own machine"));
   for (int i = 0; i < 4; ++i) EXPECT_EQ(connect("127.0.0.1"), "welcome");
+  for (std::size_t i = 0; i < kPlacesForQuestions; ++i) EXPECT_EQ(connect("127.0.0.1"), "welcome");
   EXPECT_THAT(connect("127.0.0.1"), testing::HasSubstr("32"));
   EXPECT_EQ(stream_.counts().refused, 5U);
   EXPECT_EQ(stream_.counts().idle, 0U);

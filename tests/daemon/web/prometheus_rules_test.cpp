@@ -26,11 +26,13 @@ TEST(PrometheusRules, AskForNothingThatThereIsNot) {
   status.recorder.emplace().free_bytes = 1;
   status.io_lateness.emplace();
   status.tick_lateness.emplace();
+  status.animation.emplace().scenes = {{"meadow", 0.001}};
   const std::set<std::string> all = names_in(metrics_text(status, "yuragi"));
 
   std::ostringstream rules;
   rules << std::ifstream(test::source_path("config/prometheus/yuragi.rules.yml")).rdbuf();
   const std::set<std::string> asked = names_in(std::regex_replace(rules.str(), std::regex("#[^\n]*"), ""));
+  EXPECT_TRUE(all.contains("yuragi_scene_tick_seconds"));
   EXPECT_GE(asked.size(), 7U);
   EXPECT_THAT(all, testing::IsSupersetOf(asked));
 }

@@ -249,7 +249,7 @@ TEST(Protocol1, WhatItsServerDoesNotTellIsNotKnownToday) {
   while (auto message = reader.next()) {
     if (const auto* some = std::get_if<Sensors>(&message->value())) sensors = *some;
   }
-  EXPECT_FALSE(sensors.io_lateness || sensors.tick_lateness || sensors.recorder);
+  EXPECT_FALSE(sensors.io_lateness || sensors.tick_lateness || sensors.recorder || sensors.animation);
   EXPECT_EQ(sensors.refused_clients + sensors.stuck_clients + sensors.idle_clients, 0U);
 }
 

@@ -399,8 +399,15 @@ TEST(WireRoundTrip, HowTheDaemonDoesComesBack) {
   EXPECT_EQ(sensors.recorder->lost, 11U);
   EXPECT_EQ(sensors.recorder->free_bytes, 0U);
   EXPECT_EQ(sensors.recorder->error, "wall.windlog: the disk is full");
+  ASSERT_TRUE(sensors.animation);
+  EXPECT_EQ(sensors.animation->running_s, 3600.5);
+  EXPECT_EQ(sensors.animation->period_s, 0.015625);
+  EXPECT_EQ(sensors.animation->tick_s, 0.00390625);
+  ASSERT_EQ(sensors.animation->scenes.size(), 2U);
+  EXPECT_EQ(sensors.animation->scenes[1].scene, "fire");
+  EXPECT_EQ(sensors.animation->scenes[1].tick_s, 0.0009765625);
   const Sensors none = decoded<Sensors>(encode(Sensors{}));
-  EXPECT_FALSE(none.io_lateness || none.tick_lateness || none.recorder) << "not known";
+  EXPECT_FALSE(none.io_lateness || none.tick_lateness || none.recorder || none.animation) << "not known";
   Sensors without_space;
   without_space.recorder.emplace();
   EXPECT_EQ(decoded<Sensors>(encode(without_space)).recorder->free_bytes, std::nullopt);
@@ -415,6 +422,22 @@ TEST(WireRoundTrip, ALatenessThatCannotBeIsRefused) {
       EXPECT_EQ(decode(samples::body(encode(sensors))).error(), WireError::kInconsistent);
     }
   }
+}
+
+TEST(WireRoundTrip, AnAnimationThatCannotBeIsRefused) {
+  const auto is_refused = [](const AnimationStatus& animation) {
+    const auto message = decode(samples::body(encode(Sensors{.sensors = {}, .wind = {}, .animation = animation})));
+    return !message && message.error() == WireError::kInconsistent;
+  };
+  for (const double wrong_s :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_TRUE(is_refused({.running_s = wrong_s}));
+    EXPECT_TRUE(is_refused({.period_s = wrong_s}));
+    EXPECT_TRUE(is_refused({.tick_s = wrong_s}));
+    EXPECT_TRUE(is_refused({.scenes = {{"grass", 0.001}, {"fire", wrong_s}}}));
+  }
+  EXPECT_FALSE(is_refused({.scenes = std::vector<SceneCost>(kMaxScenes)}));
+  EXPECT_TRUE(is_refused({.scenes = std::vector<SceneCost>(kMaxScenes + 1)}));
 }
 
 TEST(WireRoundTrip, EveryStateOfASensorComesBack) {

@@ -404,7 +404,11 @@ inline wire::Sensors sensors() {
                                                                                 .from_h = 21.0,
                                                                                 .fade_s = 30.0}},
           .camera = 1,
-          .parameters_revision = 21};
+          .parameters_revision = 21,
+          .animation = wire::AnimationStatus{.running_s = 3600.5,
+                                             .period_s = 0.015625,
+                                             .tick_s = 0.00390625,
+                                             .scenes = {{"grass", 0.001953125}, {"fire", 0.0009765625}}}};
 }
 
 inline wire::RawTrace raw_trace() {

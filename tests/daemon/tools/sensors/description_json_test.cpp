@@ -13,13 +13,20 @@ namespace yuragi::daemon::tools::sensors {
 namespace {
 
 TEST(DaemonStatusText, BeginsWithTheVerdictAndWhatNeedsAttention) {
-  DaemonStatus status{.address = "127.0.0.1:7410", .software = "yuragi 1.0", .running_s = 200.0};
-  status.scenes = {{.name = "meadow", .kind = "grass", .shown = false}};
+  DaemonStatus status{.address = "127.0.0.1:7410", .software = "yuragi 1.0"};
+  status.scenes = {{.name = "meadow", .kind = "grass", .shown = false}, {.name = "lawn", .kind = "ground"}};
+  status.sensors.animation = wire::AnimationStatus{
+      .running_s = 200.0, .period_s = 0.016, .tick_s = 0.002, .scenes = {{"meadow", 0.0}, {"lawn", 0.0015}}};
   EXPECT_THAT(status_text(status),
               testing::StartsWith("yuragi 1.0 at 127.0.0.1:7410, running for 3 min 20 s: all is well\n"));
   EXPECT_THAT(status_text(status), testing::HasSubstr("scene meadow (grass): hidden\n"));
+  EXPECT_THAT(status_text(status), testing::HasSubstr("animation: 2.00 ms of work in each 16.00 ms"));
+  EXPECT_THAT(status_text(status),
+              testing::HasSubstr("scene lawn (ground): shown, 1.50 ms a tick, 75 % of the animation's work\n"));
   EXPECT_EQ(status_json(status)["verdict"], "well");
   EXPECT_EQ(status_json(status)["running_s"], 200.0);
+  EXPECT_EQ(status_json(status)["animation"]["carried_times"], 4.0);
+  EXPECT_EQ(status_json(status)["animation"]["scenes"][1]["share"], 0.75);
 
   status.sensors.recorder = wire::RecorderStatus{.lost = 3};
   EXPECT_THAT(status_text(status),
