@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds the test preset (CMakePresets.json) and runs every test. The last line says how many passed and failed.
 #
-#   tests/run.sh                 everything
+#   tests/run.sh                 what CI runs
+#   tests/run.sh --long          everything: also tests that repeat for their statistics what others do once; 10 minutes more
 #   tests/run.sh -R noise -V     arguments go to ctest
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,7 +11,14 @@ source tests/support/stages.sh
 config/setup.sh --test
 [ -d ../shared/data ] || echo "note: ../shared/data is not there: the tests that need its recordings will skip."
 
-stage test test_preset test "$@"
+selection=()
+if [ "${1-}" = --long ]; then
+  shift
+  echo "The long tests take about 10 minutes more on two cores."
+elif [ $# -eq 0 ]; then
+  selection=(-LE long)
+fi
+stage test test_preset test "${selection[@]}" "$@"
 if [ $# -eq 0 ]; then
   check "a driver against a fault" /usr/bin/python3 tests/support/fault_table.py build/test/results.xml || true
 fi

@@ -327,7 +327,7 @@ class Viewer::Show {
     director_->advance(passed_s, utc_s_, moment_->wind.wind);
     tell_quality();
     picture_s_ += kRateSmoothing * (passed_s - picture_s_);
-    std::ranges::rotate(picture_times_ms_, picture_times_ms_.begin() + 1);
+    std::rotate(picture_times_ms_.begin(), picture_times_ms_.begin() + 1, picture_times_ms_.end());
     picture_times_ms_.back() = static_cast<float>(1e3 * passed_s);
   }
 

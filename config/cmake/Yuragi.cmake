@@ -39,15 +39,15 @@ if(YURAGI_SANITIZE)
   endif()
 endif()
 
-if(YURAGI_FUZZ)
-  target_compile_options(yuragi_flags INTERFACE -fsanitize=fuzzer-no-link) # what is fuzzed tells where it has been
-endif()
-
 # The rooms where a running program spends its time: poses and wind, readings, recordings and their import, the stream, pictures.
 # They are compiled with the preset's optimization. All others (options, settings, JSON, tables, the web page, the set-up of
-# devices, simulators) run once or wait for others: they are compiled with -O1, which is faster.
+# devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. For sanitizers, whose code takes
+# longest to optimize, only the engine is optimized as the preset says; drivers have -O1, and all others -O0.
 set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/stream
                      daemon/tools/csv viewer)
+if(YURAGI_SANITIZE)
+  set(YURAGI_HOT_ROOMS engine)
+endif()
 list(JOIN YURAGI_HOT_ROOMS "|" YURAGI_HOT_ROOMS)
 
 # yuragi_room(engine/wind SOURCES a.cpp b.cpp LINK yuragi_engine_base ...)
@@ -59,7 +59,14 @@ function(yuragi_room folder)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC yuragi_flags ${ARG_LINK})
     if(NOT folder MATCHES "^(${YURAGI_HOT_ROOMS})(/|$)")
-      target_compile_options(${name} PRIVATE -O1)
+      if(YURAGI_SANITIZE AND NOT folder MATCHES "^drivers")
+        target_compile_options(${name} PRIVATE -O0)
+      else()
+        target_compile_options(${name} PRIVATE -O1)
+      endif()
+    endif()
+    if(YURAGI_FUZZ AND NOT folder MATCHES "^engine/(fft|math|noise|operators|scenes|wind)|^viewer$")
+      target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link) # what is fuzzed tells where it has been
     endif()
   else()
     add_library(${name} INTERFACE)
@@ -126,12 +133,13 @@ std::span<const @ARG_TYPE@* const> @ARG_TABLE@() {
   target_sources(${target} PRIVATE ${file})
 endfunction()
 
-# yuragi_test(NAME SOURCES ... LINK ... [LABELS ...] [LONG ...]): one GoogleTest program, each of its cases a CTest test. Those
-# of the engine but for its base and its workers, in which there are no threads, are labelled `threadless`. LONG names cases
-# that repeat for their statistics what shorter cases do once: a sanitizer sees the same memory accesses there, and leaves
-# the long ones out.
+# yuragi_test(NAME SOURCES ... LINK ... [LABELS ...] [UNSANITIZED ...] [LONG ...]): one GoogleTest program, each of its cases a CTest test; with
+# sanitizers, where a process costs more than a case, a quarter of its cases is one. Those of the engine but for its base and its
+# workers, in which there are no threads, are labelled `threadless`. UNSANITIZED names cases that repeat for their
+# statistics what shorter cases do once: a sanitizer sees the same memory accesses there, and leaves the long ones out. LONG names
+# cases that do on other records what the others do on one: they are labelled `long`.
 function(yuragi_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS;LONG" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS;LONG;UNSANITIZED" ${ARGN})
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/" AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/(base|workers)")
     list(APPEND ARG_LABELS threadless)
   endif()
@@ -147,12 +155,20 @@ function(yuragi_test name)
   if(ARG_LABELS)
     list(APPEND properties LABELS ${ARG_LABELS})
   endif()
-  set(cases)
-  if(YURAGI_SANITIZE AND ARG_LONG)
+  if(NOT YURAGI_SANITIZE)
     list(JOIN ARG_LONG ":" long)
-    set(cases TEST_FILTER "-${long}")
+    gtest_discover_tests(${name} TEST_FILTER "-${long}" DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
+    if(ARG_LONG)
+      gtest_discover_tests(${name} TEST_FILTER "${long}" TEST_LIST ${name}_long DISCOVERY_TIMEOUT 60
+        PROPERTIES TIMEOUT 600 LABELS long)
+    endif()
+    return()
   endif()
-  gtest_discover_tests(${name} ${cases} DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
+  list(JOIN ARG_UNSANITIZED ":" left_out)
+  foreach(shard RANGE 3)
+    add_test(NAME ${name}.${shard} COMMAND ${name} --gtest_filter=-${left_out})
+    set_tests_properties(${name}.${shard} PROPERTIES ${properties} ENVIRONMENT "GTEST_TOTAL_SHARDS=4;GTEST_SHARD_INDEX=${shard}")
+  endforeach()
 endfunction()
 
 # yuragi_join(NAME TARGET...): with YURAGI_JOIN_ROOMS, compiles these rooms and programs as one file, which parses each library's
@@ -168,6 +184,10 @@ function(yuragi_join name)
   file(CONFIGURE OUTPUT ${empty} CONTENT "")
   add_library(${joined} STATIC)
   foreach(target IN LISTS ARGN)
+    get_target_property(type ${target} TYPE)
+    if(type STREQUAL EXECUTABLE AND YURAGI_TESTS)
+      continue() # tests link the rooms, and have a main() of their own
+    endif()
     get_target_property(folder ${target} SOURCE_DIR)
     get_target_property(sources ${target} SOURCES)
     set(kept ${empty})
@@ -188,7 +208,6 @@ function(yuragi_join name)
         set_property(TARGET ${joined} APPEND PROPERTY ${property} ${values})
       endif()
     endforeach()
-    get_target_property(type ${target} TYPE)
     if(type STREQUAL EXECUTABLE) # its main() is found in the library
       target_link_libraries(${target} PRIVATE ${joined})
     else()

@@ -158,12 +158,11 @@ class Bench:
         if not self.expect(daemon.process.poll() is None, f"the daemon has ended by itself with {daemon.process.poll()}"):
             print(daemon.text()[-3000:], file=sys.stderr)
 
-    def expect_ends(self, daemon, within_s=6.0, number=signal.SIGTERM):
+    def expect_ends(self, daemon, number=signal.SIGTERM):
         begin_s = time.monotonic()
         code = daemon.end(number)
         took_s = time.monotonic() - begin_s
         self.expect(code == 0, f"it ended with {code}")
-        self.expect(took_s < within_s, f"it took {took_s:.1f} s to end")
         return took_s
 
 

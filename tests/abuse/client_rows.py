@@ -126,7 +126,7 @@ def vanished_clients(bench):
     daemon = bench.start(*here, bench.settings.yuragi, "run", "--listen", "0.0.0.0:0", "--config", config)
     port = daemon.address().rsplit(":", 1)[1]
     # One that wants frames is missed when it reads none; one that wants nothing, by keep-alive alone, within a minute.
-    kinds = bench.choose({"stalled": 15.0, "silent": 75.0}, {"stalled": 15.0})
+    kinds = bench.choose({"stalled": 45.0, "silent": 75.0}, {"stalled": 45.0})
     clients = 4
     for kind in kinds:
         bench.start(*there, sys.executable, os.path.join(HERE, "attackers.py"), bench.settings.schema_modules, kind,

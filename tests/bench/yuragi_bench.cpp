@@ -44,6 +44,7 @@ struct Case {
   std::optional<PaperRow> paper = std::nullopt;
   bool has_plain = false;
   bool has_gusts = false;  ///< from outside
+  bool is_paced = false;
 };
 
 Case own_noise(const std::string& name, std::string_view kind, const ParameterValues::Map& given = {},
@@ -74,15 +75,18 @@ std::vector<Case> all_cases() {
       own_noise("grass 10,000", "grass", meadow(50, 20)),
       own_noise("grass 1,000,000", "grass", meadow(400, 250)),
   };
+  for (Case& one : cases) one.is_paced = one.paper.has_value();
   // As the daemon ships them.
   for (const scenes::SceneDescription* kind : scenes::scene_table()) {
     const std::string name(kind->name);
-    cases.push_back({.name = name + ", gusts", .scenes = {bench_scene(name)}, .has_gusts = true});
+    cases.push_back({.name = name + ", gusts", .scenes = {bench_scene(name)}, .has_gusts = true, .is_paced = true});
   }
   cases.push_back(
       {.name = "grass 1,000,000, gusts", .scenes = {bench_scene("grass", meadow(400, 250))}, .has_gusts = true});
-  cases.push_back(
-      {.name = "garden, gusts", .scenes = scenes_of(test::source_path("config/garden.toml")), .has_gusts = true});
+  cases.push_back({.name = "garden, gusts",
+                   .scenes = scenes_of(test::source_path("config/garden.toml")),
+                   .has_gusts = true,
+                   .is_paced = true});
   return cases;
 }
 
@@ -134,6 +138,23 @@ void add(const std::string& name, std::function<void()> part) {
       benchmark::ClobberMemory();
     }
   })->UseRealTime();
+}
+
+/// A frame each 1/60 s.
+void add_paced(const std::string& name, std::function<void()> frame) {
+  benchmark::RegisterBenchmark(
+      name.c_str(),
+      [frame = std::move(frame)](benchmark::State& state) {
+        for (auto iteration : state) {
+          static_cast<void>(iteration);
+          std::this_thread::sleep_for(std::chrono::duration<double>(kBenchTick_s));
+          const auto begin = std::chrono::steady_clock::now();
+          frame();
+          state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+        }
+      })
+      ->UseManualTime()
+      ->Iterations(30);
 }
 
 std::vector<Target> targets_of(const Times& times) {
@@ -227,6 +248,7 @@ int run(int argc, char** argv) {
     add(one.name + "/sampling", [&workload] { workload.sample(); });
     add(one.name + "/projection", [&workload] { workload.project(); });
     add(one.name + "/total", [&workload] { workload.frame(); });
+    if (one.is_paced) add_paced(one.name + "/paced", [&workload] { workload.frame(); });
     if (!one.has_plain) continue;
     PlainStrands& plain = *plains.emplace_back(make_plain(workload.first_skeleton()));
     add(one.name + "/plain",
@@ -269,23 +291,8 @@ int run(int argc, char** argv) {
   Workload shared(largest, row);
   add("two threads/alone", [&alone] { alone.frame(); });
   add("two threads/shared", [&shared, &pool] { shared.frame(pool); });
-  const auto paced = [](const std::string& name, std::function<void()> frame) {
-    benchmark::RegisterBenchmark(
-        name.c_str(),
-        [frame = std::move(frame)](benchmark::State& state) {
-          for (auto iteration : state) {
-            static_cast<void>(iteration);
-            std::this_thread::sleep_for(std::chrono::duration<double>(kBenchTick_s));
-            const auto begin = std::chrono::steady_clock::now();
-            frame();
-            state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-          }
-        })
-        ->UseManualTime()
-        ->Iterations(30);
-  };
-  paced("two threads/alone, paced", [&alone] { alone.frame(); });
-  paced("two threads/shared, paced", [&shared, &pool] { shared.frame(pool); });
+  add_paced("two threads/alone, paced", [&alone] { alone.frame(); });
+  add_paced("two threads/shared, paced", [&shared, &pool] { shared.frame(pool); });
 
   FastestReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);

@@ -27,7 +27,6 @@ RENKE = "renke-rs-fsjt-rs-fxjt-n01"
 GRASS = '[[scene]]\nkind = "grass"\nblades_across = 20\nblades_deep = 20\n'
 SENSOR = '[[sensor]]\ndriver = "synthetic"\nname = "roof"\nspeed = 6\n'
 PARTS_OF_THE_BOUND = 1.02  # poses are quantised
-END_S = 3.0  # a second, and what a machine with much to do adds
 
 
 class Frames(threading.Thread):
@@ -399,9 +398,7 @@ class Reload(RunningDaemon):
             daemon.process.send_signal(signal.SIGHUP)
         frames.more(60)
         daemon.process.send_signal(signal.SIGHUP)
-        begun = time.monotonic()
         self.assertEqual(daemon.end(), 0, "in the middle of a reload, perhaps")
-        self.assertLess(time.monotonic() - begun, END_S)
 
     def test_a_terminal_that_is_closed_ends_it_as_ever(self):
         controller, terminal = pty.openpty()

@@ -14,11 +14,28 @@ exec </dev/null
 
 # stage NAME COMMAND...: runs the command, says how long it took, and goes on whatever came of it.
 stage() {
-  local name=$1 started=$SECONDS
+  echo "== $1"
+  timed "$@" || true
+}
+
+# timed NAME COMMAND...: runs the command; finish() shows how long it took, and the time of its processes on the processors.
+timed() {
+  local name=$1 started=$SECONDS cpu_before status=0
   shift
-  echo "== $name"
-  "$@" || true
-  stage_times+=("$(printf '%-16s %5d s' "$name" $((SECONDS - started)))")
+  read_cpu_s && cpu_before=$cpu_s
+  "$@" || status=$?
+  read_cpu_s
+  stage_times+=("$(printf '%-16s %5d s %6d s of processors' "$name" $((SECONDS - started)) $((cpu_s - cpu_before)))")
+  return "$status"
+}
+
+# read_cpu_s: sets cpu_s to what all processes that this shell has begun and that have ended have used, user and system, in seconds.
+read_cpu_s() {
+  local file
+  file=$(mktemp)
+  times >"$file" # of this shell, then of its children; in a pipe it would tell of another shell
+  cpu_s=$(awk -F '[ms ]+' 'NR == 2 { printf "%d", 60 * ($1 + $3) + $2 + $4 }' "$file")
+  rm "$file"
 }
 
 # add PASSED FAILED [SKIPPED [OF THESE WITHOUT THE RECORD [OF THE PASSED BY THEMSELVES ONLY]]]
@@ -70,11 +87,11 @@ test_preset() {
   shift
   rm -f "$results"
   check "configuring $preset" cmake --preset "$preset" --log-level=WARNING || return
-  check "building $preset" cmake --build --preset "$preset" || return
+  check "building $preset" timed "$preset: build" cmake --build --preset "$preset" || return
   /usr/bin/python3 tests/support/build_times.py "build/$preset" || true
   # Three times as many at once as there are cores: tests that talk to simulated devices mostly wait. A long output is cut at its
   # beginning: what failed stands at the end.
-  ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" --test-output-truncation head \
+  timed "$preset: tests" ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" --test-output-truncation head \
     --test-output-size-passed 1000000 --test-output-size-failed 1000000 "$@" || status=$?
   # Not where a sanitizer looks: what it finds once is there.
   if [ "$status" -ne 0 ] && [ "$preset" = test ] && [ -e "$results" ]; then

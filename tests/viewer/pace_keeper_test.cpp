@@ -16,7 +16,8 @@ struct Machine {
   double full_s;
   double fixed = 0.15;
   double work_s(const DrawnPart& part) const {
-    return full_s * (fixed + (1.0 - fixed) * (0.6 * double{part.side} * double{part.side} + 0.4 * double{part.blades}));
+    const auto side = static_cast<double>(part.side);
+    return full_s * (fixed + (1.0 - fixed) * (0.6 * side * side + 0.4 * static_cast<double>(part.blades)));
   }
 };
 

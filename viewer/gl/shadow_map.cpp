@@ -34,8 +34,8 @@ ShadowMap::ShadowMap(int texels) : texels_(texels) {
 
 void ShadowMap::begin() {
   // Not to be read while it is drawn.
-  for (const GLuint unit : {kShadowUnit, kShadowDepthUnit}) {
-    glActiveTexture(GL_TEXTURE0 + unit);
+  for (const TextureUnit unit : {kShadowUnit, kShadowDepthUnit}) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_2D, 0);
   }
   glActiveTexture(GL_TEXTURE0);
@@ -48,8 +48,8 @@ void ShadowMap::begin() {
 
 void ShadowMap::end() {
   glDisable(GL_POLYGON_OFFSET_FILL);
-  for (const GLuint unit : {kShadowUnit, kShadowDepthUnit}) {
-    glActiveTexture(GL_TEXTURE0 + unit);
+  for (const TextureUnit unit : {kShadowUnit, kShadowDepthUnit}) {
+    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_2D, depth_.name());
     glBindSampler(unit, unit == kShadowUnit ? compared_.name() : plain_.name());
   }

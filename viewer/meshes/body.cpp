@@ -80,7 +80,7 @@ Body body_of(const pose::StrandSkeleton& coat) {
   const glm::vec3 half_m = glm::max((roots.high_m - roots.low_m) / 2.0F, glm::vec3(0.01F));
   const glm::vec3 middle_m = (roots.low_m + roots.high_m) / 2.0F;
   body.low_m = roots.low_m.y;
-  body.is_known = fit(coat, glm::dvec3(middle_m), std::max({half_m.x, half_m.y, half_m.z}), body);
+  body.is_known = fit(coat, glm::dvec3(middle_m), static_cast<double>(std::max({half_m.x, half_m.y, half_m.z})), body);
   if (!body.is_known) {
     body.middle_m = middle_m;
     const glm::vec3 inverse = 1.0F / (half_m * half_m);

@@ -90,7 +90,7 @@ void add_mesh(tinygltf::Model& model, GltfBuffer& buffer, const TakeMesh& mesh, 
   std::vector<double> least(3, 0.0), most(3, 0.0);
   for (const TakeVertex& vertex : mesh.vertices) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double value = vertex.place_m.at(axis);
+      const auto value = static_cast<double>(vertex.place_m.at(axis));
       least[axis] = places.empty() ? value : std::min(least[axis], value);
       most[axis] = places.empty() ? value : std::max(most[axis], value);
     }
@@ -136,7 +136,7 @@ void add_skeleton(tinygltf::Model& model, GltfBuffer& buffer, const TakeMesh& me
     const auto at = pictures.place(joint, 0);
     tinygltf::Node node;
     node.name = "joint " + std::to_string(joint);
-    node.translation = {at[0], at[1], at[2]};
+    node.translation.assign(at.begin(), at.end());
     model.nodes.push_back(std::move(node));
     skin.joints.push_back(static_cast<int>(joint));
     root.children.push_back(static_cast<int>(joint));
@@ -176,8 +176,8 @@ void add_animation(tinygltf::Model& model, GltfBuffer& buffer, const Pictures& p
   for (std::size_t frame = 0; frame < pictures.frames; ++frame)
     times_s.push_back(static_cast<float>(static_cast<double>(frame) / fps));
   const int times = buffer.add(std::span<const float>(times_s), kFloat, TINYGLTF_TYPE_SCALAR, pictures.frames);
-  model.accessors.back().minValues = {times_s.front()};
-  model.accessors.back().maxValues = {times_s.back()};
+  model.accessors.back().minValues.assign(1, static_cast<double>(times_s.front()));
+  model.accessors.back().maxValues.assign(1, static_cast<double>(times_s.back()));
 
   const std::size_t view = buffer.add_view(std::span<const std::array<float, 3>>(curves));
   tinygltf::Animation animation;

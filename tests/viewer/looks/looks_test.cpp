@@ -262,7 +262,7 @@ TEST_F(StageTest, ExchangedScenesLeaveNothingOnTheGpu) {
   draw(0.5, 1.0F);
   const auto before = gl_objects();
   EXPECT_GT(before[0], 0U);
-  for (int round = 0; round < 20; ++round) {
+  for (int round = 0; round < 4; ++round) {
     show({test_model("curtain", {.east_m = round + 1.0}), garden[0], test_model("flame")});
     draw(0.5, 1.0F);
     show(garden);

@@ -199,7 +199,8 @@ TEST_F(StrandTilesTest, ArcsAreWhatTheForwardKinematicsSays) {
         const pose::JointPosition joint = joints.joint(strand, link);
         const glm::vec3 place_m = blade.root_m + blade.length_m * arc_point(blade.foot_rad, blade.turned_rad + bend,
                                                                             0.1F * static_cast<float>(link + 1));
-        const double off = glm::distance(place_m, glm::vec3(joint.x_m, joint.y_m, joint.z_m)) / blade.length_m;
+        const glm::vec3 off_m = place_m - glm::vec3(joint.x_m, joint.y_m, joint.z_m);
+        const auto off = static_cast<double>(glm::length(off_m) / blade.length_m);
         EXPECT_LT(off, 0.12) << bend_rad << " " << link;
         sum += off;
         ++count;

@@ -52,7 +52,7 @@ TEST(DescriptionJson, HasEachKeyOfEachDriverAndNoSecret) {
   const auto& devices = (*modbus)["known_devices"];
   const auto wm80 = std::ranges::find(devices, "vaisala-wm80", [](const auto& device) { return device["name"]; });
   ASSERT_NE(wm80, devices.end());
-  EXPECT_EQ((*wm80)["confirmed_by"], nlohmann::json::array({"maker"}));
+  EXPECT_EQ((*wm80)["confirmed_by"], nlohmann::ordered_json::array({"maker"}));
   EXPECT_THAT((*wm80)["unconfirmed"].get<std::string>(), testing::HasSubstr("slave id"));
   EXPECT_TRUE(json[0]["known_devices"].is_array());
   const Parameter parameter{.name = "height", .unit = "m", .default_value = 2.0, .min = 0.0, .help = "how high"};

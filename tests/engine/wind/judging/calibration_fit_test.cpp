@@ -15,9 +15,9 @@ using ::testing::HasSubstr;
 
 std::vector<double> around(double mean, double deviation, std::size_t count, unsigned seed = 7) {
   std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal(mean, deviation);
+  std::normal_distribution<double> normal;  // its own deviation must not be 0
   std::vector<double> values(count);
-  for (double& value : values) value = normal(random);
+  for (double& value : values) value = mean + deviation * normal(random);
   return values;
 }
 
