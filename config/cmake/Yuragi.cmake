@@ -42,7 +42,7 @@ endif()
 # The rooms where a running program spends its time: poses and wind, readings, recordings and their import, the stream, pictures.
 # They are compiled with the preset's optimization. All others (options, settings, JSON, tables, the web page, the set-up of
 # devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. For sanitizers, whose code takes
-# longest to optimize, only the engine is optimized as the preset says; drivers have -O1, and all others -O0.
+# longest to optimize, only the engine is optimized as the preset says; drivers and viewer have -O1, all others -O0.
 set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/stream
                      daemon/tools/csv viewer)
 if(YURAGI_SANITIZE)
@@ -59,7 +59,7 @@ function(yuragi_room folder)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC yuragi_flags ${ARG_LINK})
     if(NOT folder MATCHES "^(${YURAGI_HOT_ROOMS})(/|$)")
-      if(YURAGI_SANITIZE AND NOT folder MATCHES "^drivers")
+      if(YURAGI_SANITIZE AND NOT folder MATCHES "^(drivers|viewer)")
         target_compile_options(${name} PRIVATE -O0)
       else()
         target_compile_options(${name} PRIVATE -O1)

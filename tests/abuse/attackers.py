@@ -101,8 +101,13 @@ class Attack:
             self.send(client, self.valid[0])
         for client in clients:
             try:
-                _, hello = pose_client.body_of(next(pose_client.messages(Reader(client)))[0])
-                self.done["refused" if hello.Refused() is not None else "taken"] += 1
+                # The greeting, and for whom there is only a place for questions the refusal behind it.
+                answers = pose_client.messages(Reader(client))
+                bodies = [pose_client.body_of(next(answers)[0])]
+                if bodies[0][1].Refused() is None:
+                    bodies.append(pose_client.body_of(next(answers)[0]))
+                refused = any(kind == "Hello" and body.Refused() is not None for kind, body in bodies)
+                self.done["refused" if refused else "taken"] += 1
             except (OSError, EOFError):
                 self.done["closed"] += 1
         for client in clients:

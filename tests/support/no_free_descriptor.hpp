@@ -1,7 +1,6 @@
 #pragma once
 
 #include <stdexcept>
-#include <string_view>
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -12,14 +11,6 @@ namespace yuragi::test {
 /// As long as it lives this process can open no file and no socket: EMFILE.
 class NoFreeDescriptor {
  public:
-  /// Why a test cannot use it in this build; empty where it can.
-#ifdef __SANITIZE_ADDRESS__
-  static constexpr std::string_view kNotHere =
-      "the undefined-behaviour sanitizer's check of virtual calls needs a free descriptor itself";
-#else
-  static constexpr std::string_view kNotHere{};
-#endif
-
   NoFreeDescriptor() {
     const int lowest_free = open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (lowest_free < 0 || getrlimit(RLIMIT_NOFILE, &before_) != 0) throw std::runtime_error("no limit to set");
@@ -28,9 +19,7 @@ class NoFreeDescriptor {
     none.rlim_cur = static_cast<rlim_t>(lowest_free);
     if (setrlimit(RLIMIT_NOFILE, &none) != 0) throw std::runtime_error("the limit cannot be set");
   }
-  ~NoFreeDescriptor() {
-    setrlimit(RLIMIT_NOFILE, &before_);
-  }
+  ~NoFreeDescriptor() { setrlimit(RLIMIT_NOFILE, &before_); }
   NoFreeDescriptor(const NoFreeDescriptor&) = delete;
   NoFreeDescriptor& operator=(const NoFreeDescriptor&) = delete;
 

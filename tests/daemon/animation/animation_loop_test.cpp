@@ -30,11 +30,7 @@ void* yuragi::test::allocate(std::size_t size) {
 namespace yuragi::daemon::animation {
 namespace {
 
-#if defined(__SANITIZE_THREAD__) || defined(__SANITIZE_ADDRESS__)
-constexpr int kReloads = 100;  // each takes many times as long
-#else
-constexpr int kReloads = 2000;
-#endif
+constexpr int kReloads = YURAGI_RELOADS;
 
 class AnimationLoopTest : public ::testing::Test {
  protected:
