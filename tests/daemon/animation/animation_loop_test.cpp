@@ -4,6 +4,7 @@
 #include <new>
 #include <random>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <unistd.h>
@@ -144,19 +145,23 @@ TEST_F(AnimationLoopTest, AChangeOfTheScenesAllocatesNothingOnItsThreadAndItsFra
   ASSERT_TRUE(exchange.begin(change));
   EXPECT_EQ(change, nullptr);
   std::vector<std::size_t> scenes_of_lists;
-  std::unique_ptr<SceneChange> finished;
-  while (!finished) {
+  const auto take = [&] {
     const wire::Frame frame = next_frame();
     if (const auto message = exchange.new_scenes(generation_)) {
       scenes_ = std::get<wire::Scenes>(wire::decode(std::span(*message).subspan(wire::kSizePrefixBytes)).value());
       scenes_of_lists.push_back(scenes_.scenes.size());
     }
     EXPECT_TRUE(wire::fits(frame, scenes_));
+  };
+  std::unique_ptr<SceneChange> finished;
+  while (!finished) {
+    take();
     finished = exchange.take_finished();
   }
-  for (int count = 0; count < 10; ++count) next_frame();
+  for (int count = 0; count < 10; ++count) take();
   EXPECT_EQ(other_threads_allocations.load(), before);
-  EXPECT_EQ(scenes_of_lists, (std::vector<std::size_t>{4, 3}));
+  // On a slow machine no frame of the first list may have been taken.
+  EXPECT_THAT(scenes_of_lists, testing::AnyOf(testing::ElementsAre(4U, 3U), testing::ElementsAre(3U)));
   EXPECT_FALSE(exchange.is_changing());
 }
 
