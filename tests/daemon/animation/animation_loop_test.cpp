@@ -194,7 +194,7 @@ TEST_F(AnimationLoopTest, ScenesAreExchangedThousandsOfTimes) {
   std::uint64_t newest_generation = 0;
   std::uint64_t lists = 0;
   const auto take = [&] {
-    const wire::Frame frame = next_frame(loop);
+    wire::Frame frame = next_frame(loop);
     EXPECT_GE(generation_, newest_generation);
     newest_generation = generation_;
     if (const auto message = exchange.new_scenes(generation_)) {
