@@ -5,7 +5,8 @@ usage: tidy_sources.py FOLDER_OF_COMPILE_COMMANDS
 
 The change is what differs from the parent of the last commit, also if it is not committed yet. Its sources are listed, and
 for each of its headers one source that includes it (the one of the same name, if there is one). All sources are listed where
-the rules themselves changed, and where the parent is not there to compare with (a shallow clone).
+the rules themselves changed (.clang-tidy, the preset `tidy` and those that it inherits), and where the parent is not there to compare
+with (a shallow clone).
 """
 import json
 import os
@@ -14,7 +15,7 @@ import re
 import subprocess
 import sys
 
-RULES = re.compile(r"\.clang-tidy|CMakePresets\.json")
+RULES, PRESETS = ".clang-tidy", "CMakePresets.json"
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 
 
@@ -28,6 +29,25 @@ def changed_files(project):
     told = git("diff", "--name-only", "--diff-filter=d", "HEAD^").stdout
     told += git("ls-files", "--others", "--exclude-standard").stdout
     return told.splitlines()
+
+
+def tidy_presets(text):
+    """The preset `tidy` and those that it inherits, of the text of CMakePresets.json."""
+    presets = {preset["name"]: preset for preset in json.loads(text)["configurePresets"]}
+    chain, name = [], "tidy"
+    while name is not None:
+        chain.append(presets[name])
+        name = presets[name].get("inherits")
+    return chain
+
+
+def have_rules_changed(changed, project):
+    if RULES in changed:
+        return True
+    if PRESETS not in changed:
+        return False
+    before = subprocess.run(["git", "-C", project, "show", f"HEAD^:{PRESETS}"], capture_output=True, text=True, check=True).stdout
+    return tidy_presets(before) != tidy_presets(pathlib.Path(project, PRESETS).read_text(encoding="utf-8"))
 
 
 def compiled_sources(build, project):
@@ -61,7 +81,7 @@ def main():
     changed = changed_files(project)
     if changed is None:
         print("the parent of the last commit is not here (git fetch --deepen=1 brings it): all sources", file=sys.stderr)
-    elif any(RULES.fullmatch(file) for file in changed):
+    elif have_rules_changed(changed, project):
         print("the rules have changed: all sources", file=sys.stderr)
         changed = None
     for source in sources if changed is None else sources_of(changed, sources, project):
