@@ -2,7 +2,7 @@
 # Installs what is missing, builds the test preset (CMakePresets.json) and runs every test. The last line says how many passed and failed.
 #
 #   tests/run.sh                 what CI runs
-#   tests/run.sh --long          everything: also tests that repeat for their statistics what others do once; 10 minutes more
+#   tests/run.sh --long          everything: also tests that do on other records, seeds and species what others do on one; 10 minutes more
 #   tests/run.sh -R noise -V     arguments go to ctest
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -133,11 +133,11 @@ std::span<const @ARG_TYPE@* const> @ARG_TABLE@() {
   target_sources(${target} PRIVATE ${file})
 endfunction()
 
-# yuragi_test(NAME SOURCES ... LINK ... [LABELS ...] [UNSANITIZED ...] [LONG ...]): one GoogleTest program, each of its cases a CTest test; with
-# sanitizers, where a process costs more than a case, a quarter of its cases is one. Those of the engine but for its base and its
-# workers, in which there are no threads, are labelled `threadless`. UNSANITIZED names cases that repeat for their
-# statistics what shorter cases do once: a sanitizer sees the same memory accesses there, and leaves the long ones out. LONG names
-# cases that do on other records what the others do on one: they are labelled `long`.
+# yuragi_test(NAME SOURCES ... LINK ... [LABELS ...] [UNSANITIZED ...] [LONG ...]): one GoogleTest program, each of its cases a CTest
+# test; with sanitizers, where a process costs more than a case, a quarter of its cases is one. Those of the engine but for its base
+# and its workers, in which there are no threads, are labelled `threadless`. UNSANITIZED names cases that repeat for their statistics
+# what shorter cases do once: a sanitizer sees the same memory accesses there, and leaves the long ones out. LONG names cases that do
+# on other records what the others do on one: they are labelled `long`.
 function(yuragi_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS;LONG;UNSANITIZED" ${ARGN})
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/" AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/(base|workers)")
@@ -252,8 +252,6 @@ function(yuragi_unity_groups)
   include(${groups})
 endfunction()
 
-add_custom_target(fuzz_targets)
-
 # yuragi_fuzz(NAME SOURCES ... LINK ...): one libFuzzer program; CTest runs it for a few seconds.
 function(yuragi_fuzz name)
   if(NOT YURAGI_FUZZ)
@@ -264,7 +262,6 @@ function(yuragi_fuzz name)
   target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK})
   target_compile_options(${name} PRIVATE -fsanitize=fuzzer)
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
-  add_dependencies(fuzz_targets ${name})
   add_test(NAME ${name} COMMAND ${name} -max_total_time=10 -timeout=10 -rss_limit_mb=2048)
   set_tests_properties(${name} PROPERTIES PROCESSORS 2) # a core of its own: it works for so long, however much that is
 endfunction()

@@ -428,8 +428,10 @@ class Service::Io {
     status.stuck_clients = counts.stuck;
     status.idle_clients = counts.idle;
     status.io_lateness = lateness_of(io_lateness_);
-    if (loop_) status.tick_lateness = lateness_of(loop_->counters().lateness);
-    if (loop_) status.animation = animation_status();
+    if (loop_) {
+      status.tick_lateness = lateness_of(loop_->counters().lateness);
+      status.animation = animation_status();
+    }
     if (recorder_) status.recorder = to_wire(recorder_->status());
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;

@@ -29,8 +29,7 @@ struct Target {
   std::string what;
   double value = 0.0;
   double limit = 0.0;
-  bool is_at_least = false;         ///< else: at most
-  bool is_of_this_machine = false;  ///< a time; else a ratio of two times of one run, which any machine is to meet
+  bool is_at_least = false;  ///< else: at most
   bool is_met() const { return is_at_least ? value >= limit : value <= limit; }
 };
 

@@ -22,7 +22,8 @@ stage() {
 timed() {
   local name=$1 started=$SECONDS cpu_before status=0
   shift
-  read_cpu_s && cpu_before=$cpu_s
+  read_cpu_s
+  cpu_before=$cpu_s
   "$@" || status=$?
   read_cpu_s
   stage_times+=("$(printf '%-16s %5d s %6d s of processors' "$name" $((SECONDS - started)) $((cpu_s - cpu_before)))")

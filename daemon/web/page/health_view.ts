@@ -1,7 +1,7 @@
 // How the daemon itself does.
 import { element, set_text } from "./element";
 import { Animation, Lateness, Recorder, Status } from "./status";
-import { bytes_text, fine_milliseconds_text, milliseconds_text } from "./wording";
+import { bytes_text, milliseconds_text } from "./wording";
 
 const UNKNOWN = "–";
 
@@ -21,7 +21,7 @@ function animation_text(animation: Animation | null): string {
 function scene_costs_text(animation: Animation | null): string {
   const shown = (animation?.scenes ?? []).filter((scene) => scene.tick_s > 0).sort((one, other) => other.tick_s - one.tick_s);
   if (shown.length === 0) return UNKNOWN;
-  return shown.map((scene) => `${scene.name} ${fine_milliseconds_text(scene.tick_s)} (${Math.round(100 * scene.share)} %)`).join(", ");
+  return shown.map((scene) => `${scene.name} ${milliseconds_text(scene.tick_s, 2)} (${Math.round(100 * scene.share)} %)`).join(", ");
 }
 
 function recorder_text(recorder: Recorder | null): string {

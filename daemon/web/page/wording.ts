@@ -37,15 +37,9 @@ export function clock_text(time: Date): string {
   return time.toLocaleTimeString("en-GB", { hour12: false });
 }
 
-/** "1.5 ms" */
-export function milliseconds_text(duration_s: number): string {
-  const duration_ms = duration_s * 1e3;
-  return duration_ms.toFixed(duration_ms < 10 ? 1 : 0) + " ms";
-}
-
-/** "0.15 ms" */
-export function fine_milliseconds_text(duration_s: number): string {
-  return (duration_s * 1e3).toFixed(2) + " ms";
+/** "1.5 ms"; with more digits behind the point: "1.50 ms" */
+export function milliseconds_text(duration_s: number, digits = duration_s < 0.01 ? 1 : 0): string {
+  return (duration_s * 1e3).toFixed(digits) + " ms";
 }
 
 /** "12.3 GB" */
