@@ -204,22 +204,24 @@ void HttpServer::interrupt() noexcept {
 }
 
 void HttpServer::accept() {
-  acceptor_.async_accept([this](const boost::system::error_code& error, tcp::socket socket) {
+  auto socket = std::make_unique<tcp::socket>(context_);
+  auto& accepted = *socket;
+  // The sender is asked for here: of a socket whose client has gone in the meantime it is no longer known.
+  acceptor_.async_accept(accepted, sender_, [this, socket = std::move(socket)](const boost::system::error_code& error) {
     if (error == boost::asio::error::operation_aborted) return;
     // What the client has undone in the meantime is its own affair.
     if (error && error != boost::asio::error::connection_aborted) {
       failure_ = Failure{"cannot accept connections (" + error.message() + "): opened again"};
       return;
     }
-    if (!error) take(std::move(socket));
+    if (!error) take(std::move(*socket));
     accept();
   });
 }
 
 void HttpServer::take(tcp::socket socket) {
-  boost::system::error_code error;
-  const auto sender = socket.remote_endpoint(error).address();
-  if (error || service_ == nullptr || !service_->admits(sender)) return;
+  const auto sender = sender_.address();
+  if (service_ == nullptr || !service_->admits(sender)) return;
   std::erase_if(connections_, [](const auto& connection) { return connection.expired(); });
   if (connections_.size() >= limits_.connections) {
     if (const auto oldest = connections_.front().lock()) {

@@ -98,6 +98,7 @@ class HttpServer {
   std::atomic<bool> is_interrupted_ = false;
   boost::asio::io_context context_;
   boost::asio::ip::tcp::acceptor acceptor_{context_};
+  boost::asio::ip::tcp::endpoint sender_;  ///< of the connection that is accepted next
   std::uint16_t port_ = 0;
   std::vector<std::weak_ptr<Connection>> connections_;  ///< the oldest first
   HttpService* service_ = nullptr;                      ///< during serve()

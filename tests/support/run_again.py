@@ -5,7 +5,8 @@
 
 RESULTS is CTest's JUnit file. A test that passes now was disturbed by the machine: it becomes a passed one there, marked with the
 attribute `again`, and the test runner's closing line counts those. One that fails again stays what it was. Where more than a few
-failed it is not the machine, and none is run again.
+failed it is not the machine, and none is run again; nor is one in which a sanitizer or a fuzzer found something: what is found once
+is there.
 """
 import os
 import re
@@ -15,6 +16,7 @@ import tempfile
 import xml.etree.ElementTree
 
 MOST = 3
+FOUND = re.compile(r"Sanitizer: |runtime error: |libFuzzer: ")
 
 
 def has_failed(case):
@@ -45,7 +47,9 @@ def main():
         return
     print(f"== {len(failed)} failed among all: again, each by itself")
     for case in failed:
-        if passes_alone(preset, case.get("name")):
+        if FOUND.search(case.findtext("system-out", "")):
+            print(f"{case.get('name')}: found by a sanitizer, not run again")
+        elif passes_alone(preset, case.get("name")):
             case.set("status", "run")
             case.set("again", "true")
             for reason in (*case.findall("failure"), *case.findall("skipped")):

@@ -417,6 +417,21 @@ TEST(HttpServer, ListensAgainAfterItWasClosed) {
   EXPECT_THAT(service.failures, IsEmpty());
 }
 
+TEST(HttpServer, TellsOfAClientThatBreaksOffBeforeItWasAccepted) {
+  HttpServer server({.host = "127.0.0.1", .port = 0});
+  ASSERT_TRUE(server.open().has_value());
+  KeptFailures service;
+  {
+    const Descriptor client = connect_to(server.port());
+    send_all(client, "POST / HTTP/1.1\r\nContent-Length: 100\r\n\r\nwind");
+    const linger reset = {.l_onoff = 1, .l_linger = 0};
+    setsockopt(client.get(), SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
+  }
+  for (int turn = 0; turn < 100 && service.failures.empty(); ++turn)
+    ASSERT_TRUE(server.serve(100ms, service).has_value());
+  EXPECT_THAT(service.failures, ElementsAre(HttpFailure::kCutOff));
+}
+
 TEST(HttpServer, IsInterrupted) {
   HttpServer server({.host = "127.0.0.1", .port = 0});
   ASSERT_TRUE(server.open().has_value());
