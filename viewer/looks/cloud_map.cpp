@@ -6,18 +6,20 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 
 #include "viewer/gl/shaders.hpp"
 
 namespace yuragi::viewer::looks {
 namespace {
 
-// The shader has the same numbers.
-constexpr int kColumns = 2048;
-constexpr int kRows = 256;
+constexpr int kRows = 256;  // the shader has the same number
 
 constexpr int kColumnsAPicture = 4;
 constexpr int kColumnsInAHurry = 64;  // while the sky changes
+
+constexpr float kFilter_rad = 0.02F;   // columns aside that a filter reaches into
+constexpr float kDriftedAside = 6.0F;  // at most so far do clouds move aside in the map, of what they have drifted
 
 constexpr float kLowestSun = -0.12F;  // the sine of its height; farther below the clouds have the moon's light
 
@@ -60,7 +62,20 @@ void CloudMap::draw_columns(const Map& map, int first, int count) {
   glDisable(GL_SCISSOR_TEST);
 }
 
-void CloudMap::advance(const light::Light& light, const gl::GlTexture& noise) {
+void CloudMap::draw_missing(std::size_t strip) {
+  if (!missing_[strip]) return;
+  missing_.reset(strip);
+  draw_columns(maps_.at(to_), static_cast<int>(strip) * kStripColumns, kStripColumns);
+}
+
+void CloudMap::draw_missing(const meshes::Arc& bearings) {
+  constexpr float kStrip_rad = glm::two_pi<float>() / static_cast<float>(kStrips);
+  const auto first = static_cast<std::size_t>(bearings.from_rad / kStrip_rad);
+  const auto last = static_cast<std::size_t>((bearings.from_rad + bearings.size_rad) / kStrip_rad);
+  for (std::size_t strip = first; strip <= last; ++strip) draw_missing(strip % kStrips);
+}
+
+void CloudMap::advance(const light::Light& light, const gl::GlTexture& noise, const meshes::View& view) {
   const auto is_nearly = [](const Sky& a, const Sky& b, float tolerance) {
     return glm::distance(a.drift, b.drift) < 5.0F * tolerance && glm::distance(a.to_sun, b.to_sun) < 2.0F * tolerance &&
            std::abs(a.clouds_begin - b.clouds_begin) < tolerance;
@@ -76,14 +91,20 @@ void CloudMap::advance(const light::Light& light, const gl::GlTexture& noise) {
   if (is_first_ || !is_nearly(before, now_, 0.04F)) {
     is_first_ = false;
     maps_.at(to_).sky = now_;
-    draw_columns(maps_.at(to_), 0, kColumns);
+    missing_.set();
+    swept_ = 0;
     from_ = to_;
     next_ = to_ == 0 ? 1 : 0;
     drawn_ = 0;
+  }
+  const int wanted = is_nearly(maps_.at(to_).sky, now_, 0.015F) ? kColumnsAPicture : kColumnsInAHurry;
+  if (missing_.any()) {
+    const float drifted_rad = kDriftedAside * glm::distance(maps_.at(to_).sky.drift, now_.drift);
+    draw_missing(meshes::widened(meshes::bearings_of(view, meshes::kMirrorMargin), kFilter_rad + drifted_rad));
+    for (int i = 0; i < wanted && missing_.any(); i += kStripColumns) draw_missing(swept_++);  // for views to come
     return;
   }
   if (drawn_ == 0) maps_.at(next_).sky = now_;
-  const int wanted = is_nearly(maps_.at(to_).sky, now_, 0.015F) ? kColumnsAPicture : kColumnsInAHurry;
   const int count = std::min(wanted, kColumns - drawn_);
   draw_columns(maps_.at(next_), drawn_, count);
   drawn_ += count;

@@ -31,38 +31,23 @@ constexpr float kBareHill = 3.0F;
 
 constexpr float kSunInShadow = 0.16F;  // as in sward.part.glsl
 
-/// The bearings between which a circle around the world's middle is in view: where they begin, and how far they go;
-/// radians.
-struct Arc {
-  float from_rad = 0.0F;
-  float size_rad = glm::two_pi<float>();
-};
-
-/// Nothing where the picture ends below the horizon.
-std::optional<Arc> arc_in_view(const meshes::View& view, float radius_m) {
+/// The bearings between which a circle around the world's middle is in view. Nothing where the picture ends below the
+/// horizon.
+std::optional<meshes::Arc> arc_in_view(const meshes::View& view, float radius_m) {
   const glm::vec3 forward(view.forward);
-  const float heading = std::atan2(forward.x, -forward.z);
-  float left = 0.0F;
-  float right = 0.0F;
   float highest = -1.0F;
   for (const float aside : {-1.0F, 1.0F}) {
     for (const float above : {-1.0F, 1.0F}) {
       const glm::vec3 ray =
           forward + aside * view.right.w * glm::vec3(view.right) + above * view.up.w * glm::vec3(view.up);
-      const float turn = std::remainder(std::atan2(ray.x, -ray.z) - heading, glm::two_pi<float>());
-      left = std::min(left, turn);
-      right = std::max(right, turn);
       highest = std::max(highest, ray.y / glm::length(ray));
     }
   }
   const float out_m = glm::length(glm::vec2(view.eye_m.x, view.eye_m.z));
   if (highest < -view.eye_m.y / std::max(radius_m - out_m, 1.0F)) return std::nullopt;
   // From beside the middle it is seen in other directions.
-  const float margin = out_m < radius_m ? std::asin(out_m / radius_m) : glm::pi<float>();
-  if (std::abs(forward.y) > 0.8F || right - left + 2.0F * margin > 6.0F) return Arc{};
-  const float from = heading + left - margin - 0.01F;
-  return Arc{.from_rad = from < 0.0F ? from + glm::two_pi<float>() : from,
-             .size_rad = right - left + 2.0F * margin + 0.02F};
+  const float aside_rad = out_m < radius_m ? std::asin(out_m / radius_m) : glm::pi<float>();
+  return meshes::widened(meshes::bearings_of(view), aside_rad + 0.01F);
 }
 
 }  // namespace
@@ -108,7 +93,7 @@ void Landscape::set_ground_image(const std::shared_ptr<const look::Image>& image
 
 void Landscape::prepare(const light::Light& light, const meshes::View& view, int width_px, int height_px) {
   light_ = light;
-  clouds_.advance(light, noise_);
+  clouds_.advance(light, noise_, view);
   if (small_sky_) small_sky_->make(view, clouds_, noise_, width_px, height_px);
 }
 
@@ -119,7 +104,7 @@ void Landscape::draw_far_country(const meshes::View& view) {
   glBindTexture(GL_TEXTURE_2D, relief_.name());
   for (std::size_t range = 0; range < ranges_.size(); ++range) {
     const meshes::FarRange& form = meshes::kFarRanges.at(range);
-    const std::optional<Arc> arc = arc_in_view(view, form.distance_m - form.distance_varies_m);
+    const std::optional<meshes::Arc> arc = arc_in_view(view, form.distance_m - form.distance_varies_m);
     if (!arc) continue;
     const float apart_px =
         (quality_ == look::Quality::kLow ? kLowCorner_px : kCorner_px) * (form.trees_m > 0.0F ? 1.0F : kBareHill);

@@ -39,6 +39,35 @@ View view_of(const OrbitCamera& camera, int width_px, int height_px) {
   return view;
 }
 
+Arc bearings_of(const View& view, float margin) {
+  constexpr float kMostSteep = 0.2F;  // of a corner's direction: its part along the middle's bearing
+  const glm::vec3 forward(view.forward);
+  const float level = std::hypot(forward.x, forward.z);
+  if (level < kMostSteep * glm::length(forward)) return {};
+  const float heading_rad = std::atan2(forward.x, -forward.z);
+  float left_rad = 0.0F;
+  float right_rad = 0.0F;
+  for (const float aside : {-margin, margin}) {
+    for (const float above : {-margin, margin}) {
+      const glm::vec3 ray =
+          forward + aside * view.right.w * glm::vec3(view.right) + above * view.up.w * glm::vec3(view.up);
+      if (ray.x * forward.x + ray.z * forward.z < kMostSteep * level * glm::length(ray)) return {};
+      const float turn_rad = std::remainder(std::atan2(ray.x, -ray.z) - heading_rad, glm::two_pi<float>());
+      left_rad = std::min(left_rad, turn_rad);
+      right_rad = std::max(right_rad, turn_rad);
+    }
+  }
+  return widened({.from_rad = heading_rad + left_rad, .size_rad = right_rad - left_rad}, 0.0F);
+}
+
+Arc widened(const Arc& arc, float by_rad) {
+  const float turn_rad = glm::two_pi<float>();
+  const float from_rad = arc.from_rad - by_rad;
+  const float size_rad = arc.size_rad + 2.0F * by_rad;
+  if (size_rad >= turn_rad) return {};
+  return {.from_rad = from_rad - turn_rad * std::floor(from_rad / turn_rad), .size_rad = size_rad};
+}
+
 std::array<glm::vec4, 5> side_planes(const View& view) {
   const auto row = [&](int i) {
     return glm::vec4(view.to_clip[0][i], view.to_clip[1][i], view.to_clip[2][i], view.to_clip[3][i]);

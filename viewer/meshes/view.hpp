@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include <glm/gtc/constants.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -28,6 +29,19 @@ struct View {
 
 /// For a picture of so many pixels.
 View view_of(const OrbitCamera& camera, int width_px, int height_px);
+
+/// Bearings from one on clockwise, seen from above; 0 is along -z.
+struct Arc {
+  float from_rad = 0.0F;                  ///< 0 to a turn
+  float size_rad = glm::two_pi<float>();  ///< at most a turn
+};
+
+/// The bearings of all directions in a picture that is so many times as wide and as high; all around where straight up
+/// or straight down may be among them.
+Arc bearings_of(const View& view, float margin = 1.0F);
+
+/// The arc with so much more on both sides, radians.
+Arc widened(const Arc& arc, float by_rad);
 
 /// The planes of the picture's sides and of its near side: dot(plane, (x, y, z, 1)) is a point's distance inside,
 /// metres. Of the rows of the projection (Gribb and Hartmann 2001, "Fast extraction of viewing frustum planes from the

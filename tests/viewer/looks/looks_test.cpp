@@ -774,6 +774,34 @@ TEST_F(StageTest, ASmallerSkyIsTheSameSky) {
   }
 }
 
+TEST_F(StageTest, TheFirstPictureHasAllCloudsThatItShows) {
+  target_ = std::make_unique<gl::RenderTarget>(96, 72, 1);
+  const auto look_at = [&](double heading_deg, double pitch_deg) {
+    meshes::CameraPlace place = stage_->home(4.0 / 3.0);
+    place.target_m = {0.0, 8.0, 0.0};
+    place.heading_deg = heading_deg;
+    place.pitch_deg = pitch_deg;
+    camera_.go_to(place);
+    return draw(0.0, 1.0F);
+  };
+  const auto open_stage = [&] {
+    stage_ = std::make_unique<Stage>();
+    show({test_model("ripple")});  // which mirrors the sky
+    stage_->set_light(light::light_of(look::edited({}, std::vector<std::string>{"clouds=0.5"}).value(), 0.0));
+  };
+  const std::vector<std::array<double, 2>> views = {{0.0, 3.0}, {110.0, 3.0}, {230.0, -20.0}, {300.0, -45.0}};
+  open_stage();
+  for (int picture = 0; picture < 140; ++picture) look_at(0.0, 3.0);  // by then all are there, whatever is in view
+  std::vector<Pixels> complete;
+  for (const auto& [heading_deg, pitch_deg] : views) complete.push_back(look_at(heading_deg, pitch_deg));
+  for (std::size_t view = 0; view < views.size(); ++view) {
+    open_stage();
+    EXPECT_EQ(changed(look_at(views[view][0], views[view][1]), complete[view]), 0U) << view;
+    const std::size_t turned = (view + 1) % views.size();
+    EXPECT_EQ(changed(look_at(views[turned][0], views[turned][1]), complete[turned]), 0U) << "turned from " << view;
+  }
+}
+
 TEST_F(StageTest, IsAtHomeInNothing) {
   show({});
   EXPECT_TRUE(std::isfinite(stage_->home(1.5).distance_m));

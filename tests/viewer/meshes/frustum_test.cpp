@@ -1,6 +1,9 @@
 #include "viewer/meshes/frustum.hpp"
 
+#include <cmath>
+
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 #include <glm/vec4.hpp>
 #include <gtest/gtest.h>
 
@@ -57,6 +60,32 @@ TEST(ViewThroughAScreen, HasRaysThatGoWhereThePlacesAreProjected) {
     }
   }
   EXPECT_NEAR(view.eye_m.w, 0.7F / 700.0F, 1e-7F);
+}
+
+TEST(BearingsOf, AreThoseOfAllPixelsAndAllAroundTowardTheZenith) {
+  for (const double pitch_deg : {-40.0, 0.0, 25.0, 85.0}) {
+    for (const double heading_deg : {0.0, 40.0, 179.0, 350.0}) {
+      OrbitCamera camera;
+      camera.frame({.target_m = {0.0, 9.0, 0.0}, .heading_deg = heading_deg, .pitch_deg = pitch_deg});
+      const View view = view_of(camera, 1600, 900);
+      const Arc arc = bearings_of(view);
+      const float turn_rad = glm::two_pi<float>();
+      EXPECT_EQ(arc.size_rad >= turn_rad, pitch_deg > 80.0) << pitch_deg;
+      EXPECT_TRUE(arc.from_rad >= 0.0F && arc.from_rad < turn_rad) << arc.from_rad;
+      if (pitch_deg == 0.0) {
+        EXPECT_NEAR(arc.size_rad, 2.0F * std::atan(view.right.w), 1e-5F);
+      }
+      for (const float x : {-1.0F, -0.6F, 0.0F, 0.3F, 1.0F}) {
+        for (const float y : {-1.0F, -0.2F, 0.5F, 1.0F}) {
+          const glm::vec3 ray = glm::vec3(view.forward) + glm::vec3(view.right) * (view.right.w * x) +
+                                glm::vec3(view.up) * (view.up.w * y);
+          const float from_rad = std::atan2(ray.x, -ray.z) - arc.from_rad;
+          const float inside_rad = from_rad - turn_rad * std::floor((from_rad + 1e-4F) / turn_rad);
+          EXPECT_LE(inside_rad, arc.size_rad + 1e-4F) << heading_deg << " " << x << " " << y;
+        }
+      }
+    }
+  }
 }
 
 TEST(ViewThroughAScreen, IsTheSameAsWithoutOneWhereTheFrustumIsTheCameras) {
