@@ -42,13 +42,16 @@ endif()
 # The rooms where a running program spends its time: poses and wind, readings, recordings and their import, the stream, pictures.
 # They are compiled with the preset's optimization. All others (options, settings, JSON, tables, the web page, the set-up of
 # devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. For sanitizers, whose code takes
-# longest to optimize, only the engine is optimized as the preset says; drivers and viewer have -O1, all others -O0.
+# longest to optimize, only the engine is optimized as the preset says; the other hot rooms and all drivers have -O1, the rest -O0.
 set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/stream
                      daemon/tools/csv viewer)
+set(YURAGI_WARM_ROOMS "[^/]+")
 if(YURAGI_SANITIZE)
+  set(YURAGI_WARM_ROOMS ${YURAGI_HOT_ROOMS} drivers)
   set(YURAGI_HOT_ROOMS engine)
 endif()
 list(JOIN YURAGI_HOT_ROOMS "|" YURAGI_HOT_ROOMS)
+list(JOIN YURAGI_WARM_ROOMS "|" YURAGI_WARM_ROOMS)
 
 # yuragi_room(engine/wind SOURCES a.cpp b.cpp LINK yuragi_engine_base ...)
 # A library of one folder. LINK lists what ARCHITECTURE.md's table allows that room.
@@ -59,10 +62,10 @@ function(yuragi_room folder)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC yuragi_flags ${ARG_LINK})
     if(NOT folder MATCHES "^(${YURAGI_HOT_ROOMS})(/|$)")
-      if(YURAGI_SANITIZE AND NOT folder MATCHES "^(drivers|viewer)")
-        target_compile_options(${name} PRIVATE -O0)
-      else()
+      if(folder MATCHES "^(${YURAGI_WARM_ROOMS})(/|$)")
         target_compile_options(${name} PRIVATE -O1)
+      else()
+        target_compile_options(${name} PRIVATE -O0)
       endif()
     endif()
     if(YURAGI_FUZZ AND NOT folder MATCHES "^engine/(fft|math|noise|operators|scenes|wind)|^viewer$")
@@ -133,18 +136,64 @@ std::span<const @ARG_TYPE@* const> @ARG_TABLE@() {
   target_sources(${target} PRIVATE ${file})
 endfunction()
 
-# yuragi_test(NAME SOURCES ... LINK ... [LABELS ...] [UNSANITIZED ...] [LONG ...]): one GoogleTest program, each of its cases a CTest
-# test; with sanitizers, where a process costs more than a case, a quarter of its cases is one. Those of the engine but for its base
-# and its workers, in which there are no threads, are labelled `threadless`. UNSANITIZED names cases that repeat for their statistics
-# what shorter cases do once: a sanitizer sees the same memory accesses there, and leaves the long ones out. LONG names cases that do
-# on other records what the others do on one: they are labelled `long`.
+# yuragi_test(NAME SOURCES ... LINK ... [NEEDS ...] [LABELS ...] [UNSANITIZED ...] [LONG ...] [ALONE]): one GoogleTest program, each of
+# its cases a CTest test; with sanitizers, where a process costs more than a case, a part of its cases is one. Those of the engine but
+# for its base and its workers, in which there are no threads, are labelled `threadless`. NEEDS names other programs that it runs.
+# UNSANITIZED names cases that repeat for their statistics what shorter cases do once: a sanitizer sees the same memory accesses there,
+# and leaves the long ones out. LONG names cases that do on other records what the others do on one: they are labelled `long`.
+#
+# In a unity build the programs of a folder of tests/ that have the same labels are built as one (yuragi_join_tests), and the program
+# itself only when it is named. ALONE: not this one, which replaces operator new or is compiled in another way.
 function(yuragi_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS;LONG;UNSANITIZED" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE" "" "SOURCES;LINK;NEEDS;LABELS;LONG;UNSANITIZED" ${ARGN})
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/" AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/(base|workers)")
     list(APPEND ARG_LABELS threadless)
   endif()
+  yuragi_test_program(${name})
+  if(CMAKE_UNITY_BUILD AND NOT ARG_ALONE)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+    string(REGEX REPLACE "^.*/tests/([a-z]+).*$" "\\1_tests" group ${CMAKE_CURRENT_SOURCE_DIR})
+    foreach(label IN LISTS ARG_LABELS)
+      string(APPEND group _${label})
+    endforeach()
+    list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
+    get_directory_property(ARG_OPTIONS COMPILE_OPTIONS)
+    set_property(GLOBAL APPEND PROPERTY YURAGI_TESTS ${group})
+    foreach(part SOURCES LINK NEEDS LABELS LONG UNSANITIZED OPTIONS)
+      set_property(GLOBAL APPEND PROPERTY ${group}_${part} ${ARG_${part}})
+    endforeach()
+  else()
+    yuragi_add_to_ctest(${name} 4)
+  endif()
+endfunction()
+
+# yuragi_join_tests(): to be called behind the last yuragi_test().
+function(yuragi_join_tests)
+  get_property(groups GLOBAL PROPERTY YURAGI_TESTS)
+  list(REMOVE_DUPLICATES groups)
+  foreach(group IN LISTS groups)
+    foreach(part SOURCES LINK NEEDS LABELS LONG UNSANITIZED OPTIONS)
+      get_property(ARG_${part} GLOBAL PROPERTY ${group}_${part})
+    endforeach()
+    list(REMOVE_DUPLICATES ARG_LABELS)
+    list(REMOVE_DUPLICATES ARG_OPTIONS)
+    yuragi_test_program(${group})
+    set_property(TARGET ${group} PROPERTY COMPILE_OPTIONS ${ARG_OPTIONS}) # of its folder
+    yuragi_add_to_ctest(${group} 12)
+  endforeach()
+endfunction()
+
+# The program of the ARG_... of a caller.
+macro(yuragi_test_program name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK} yuragi_test_places GTest::gtest_main GTest::gmock)
+  if(ARG_NEEDS)
+    add_dependencies(${name} ${ARG_NEEDS})
+  endif()
+endmacro()
+
+# Its cases become CTest tests, or, with sanitizers, so many parts.
+function(yuragi_add_to_ctest name parts)
   # What a sanitizer leaves out is not built for it.
   if((YURAGI_SANITIZE AND "native" IN_LIST ARG_LABELS) OR
      (YURAGI_SANITIZE MATCHES thread AND "threadless" IN_LIST ARG_LABELS))
@@ -165,9 +214,10 @@ function(yuragi_test name)
     return()
   endif()
   list(JOIN ARG_UNSANITIZED ":" left_out)
-  foreach(shard RANGE 3)
-    add_test(NAME ${name}.${shard} COMMAND ${name} --gtest_filter=-${left_out})
-    set_tests_properties(${name}.${shard} PROPERTIES ${properties} ENVIRONMENT "GTEST_TOTAL_SHARDS=4;GTEST_SHARD_INDEX=${shard}")
+  math(EXPR last "${parts} - 1")
+  foreach(part RANGE ${last})
+    add_test(NAME ${name}.${part} COMMAND ${name} --gtest_filter=-${left_out})
+    set_tests_properties(${name}.${part} PROPERTIES ${properties} ENVIRONMENT "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part}")
   endforeach()
 endfunction()
 

@@ -5,7 +5,6 @@ usage: abuse.py --programs FOLDER --helpers FOLDER --schema FOLDER [--long] [--s
 """
 import argparse
 import concurrent.futures
-import signal
 import sys
 import time
 
@@ -36,7 +35,6 @@ def main():
     if unknown := set(options.names) - set(names):
         parser.error(f"no row {', '.join(sorted(unknown))}; there are: {', '.join(names)}")
     bench.raise_descriptor_limit()
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored
     bench.pose_client.load_schema(options.schema)
 
     def tried(line):

@@ -9,6 +9,9 @@ import threading
 
 HANG_S = 60.0  # so long waits only who waits for something that hangs
 
+# A shell's background jobs inherit that it is ignored, and so would the programs that these tests end by it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 
 # Ports that the system does not give to whoever asks for any (32768 and above), which other tests do all the time.
 FIRST_PORT, PORTS, BETWEEN_PROCESSES = 12_000, 20_000, 37

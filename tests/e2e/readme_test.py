@@ -40,6 +40,7 @@ RUNS_ON = (
     (r"^yuragi sensors watch", r"\S"),
 )
 CTRL_C = (0, -signal.SIGINT, 128 + signal.SIGINT)  # exit codes of what it ends: in good order, by the signal, a shell's for that
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored
 ENDS_WITHIN_S = 60
 SAYS_WITHIN_S = 20
 
@@ -162,11 +163,11 @@ def end(process):
     if process.poll() is None:
         os.killpg(process.pid, signal.SIGINT)
     try:
-        return process.wait(10)
+        return process.wait(ENDS_WITHIN_S)
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-        return "no end within 10 s"
+        return f"no end within {ENDS_WITHIN_S} s"
 
 
 def text_of(output):

@@ -22,7 +22,7 @@ FIELDS = {
 
 def main():
     port, count = int(sys.argv[1]), int(sys.argv[2])
-    with socket.create_connection(("127.0.0.1", port), timeout=10) as server:
+    with socket.create_connection(("127.0.0.1", port), timeout=60) as server:
         lines = server.makefile("r", encoding="ascii", newline="\r\n")
         for _ in range(count):
             sentence = pynmea2.parse(lines.readline(), check=True)

@@ -18,8 +18,9 @@
 
 namespace yuragi::test {
 
-/// A simulated station in the wind, on a bus whose time a test moves: every 10 ms the station goes on and the host asks
-/// it for a report. What the kernel does with reports is done here as in Linux' hidraw.
+/// A simulated station in the wind, on a bus whose time a test moves: the station goes on and the host asks it for a
+/// report, every 10 ms while somebody reads, otherwise every 50 ms. What the kernel does with reports is done here as in
+/// Linux' hidraw.
 class HidBus {
  public:
   HidBus(std::unique_ptr<simulators::usb::UsbDevice> device, drivers::bus::HidId id)
@@ -40,9 +41,9 @@ class HidBus {
 
   /// Lets time pass; up to `until` if no report comes first and `stops_at_report`.
   void run_to(MonoTime until, bool stops_at_report = false) {
-    constexpr Nanoseconds kStep = std::chrono::milliseconds(10);
+    const Nanoseconds step = std::chrono::milliseconds(stops_at_report ? 10 : 50);
     while (clock.now().mono < until) {
-      clock.advance(std::min(kStep, until - clock.now().mono));
+      clock.advance(std::min(step, until - clock.now().mono));
       go_on();
       if (stops_at_report && (!reports_.empty() || !is_plugged_in_)) return;
     }

@@ -22,8 +22,8 @@ std::vector<std::uint16_t> registers_of(const Result<modbus::ModbusRegisters, mo
 }
 
 /// What is wrong with a message; a test that expects a refusal fails if nothing is.
-testing::AssertionResult is_refused(const Result<modbus::ModbusRegisters, modbus::ModbusRefusal>& decoded,
-                                    Refusal why) {
+testing::AssertionResult is_refused_reply(const Result<modbus::ModbusRegisters, modbus::ModbusRefusal>& decoded,
+                                          Refusal why) {
   if (!decoded && decoded.error().why == why) return testing::AssertionSuccess();
   return testing::AssertionFailure() << (decoded ? "accepted" : name_of(decoded.error().why)) << ", not "
                                      << name_of(why);
@@ -56,21 +56,21 @@ TEST(ModbusTcpAnswer, GivesItsRegisters) {
 TEST(ModbusTcpAnswer, ThatEndsAnywhereBeforeItsEndIsTooShort) {
   const Bytes answer = {0x12, 0x34, 0, 0, 0, 5, 1, 3, 2, 0, 86};
   for (std::size_t size = 0; size < answer.size(); ++size) {
-    EXPECT_TRUE(is_refused(modbus::decode_tcp(kSpeedOfSlave1, std::span(answer).first(size)), Refusal::kTooShort))
+    EXPECT_TRUE(is_refused_reply(modbus::decode_tcp(kSpeedOfSlave1, std::span(answer).first(size)), Refusal::kTooShort))
         << size;
   }
 }
 
 TEST(ModbusTcpAnswer, WithAnEarlierTransactionOrAnotherUnitIsNotMine) {
-  EXPECT_TRUE(
-      is_refused(modbus::decode_tcp(kSpeedOfSlave1, Bytes{0x12, 0x33, 0, 0, 0, 5, 1, 3, 2, 0, 86}), Refusal::kNotMine));
-  EXPECT_TRUE(
-      is_refused(modbus::decode_tcp(kSpeedOfSlave1, Bytes{0x12, 0x34, 0, 0, 0, 5, 2, 3, 2, 0, 86}), Refusal::kNotMine));
+  EXPECT_TRUE(is_refused_reply(modbus::decode_tcp(kSpeedOfSlave1, Bytes{0x12, 0x33, 0, 0, 0, 5, 1, 3, 2, 0, 86}),
+                               Refusal::kNotMine));
+  EXPECT_TRUE(is_refused_reply(modbus::decode_tcp(kSpeedOfSlave1, Bytes{0x12, 0x34, 0, 0, 0, 5, 2, 3, 2, 0, 86}),
+                               Refusal::kNotMine));
 }
 
 TEST(ModbusTcpAnswer, ThatIsAnExceptionSaysWhich) {
   const auto decoded = modbus::decode_tcp(kSpeedOfSlave1, Bytes{0x12, 0x34, 0, 0, 0, 3, 1, 0x83, 2});
-  ASSERT_TRUE(is_refused(decoded, Refusal::kException));
+  ASSERT_TRUE(is_refused_reply(decoded, Refusal::kException));
   EXPECT_EQ(modbus::modbus_exception_name(decoded.error().exception), "illegal data address");
 }
 
@@ -88,7 +88,7 @@ TEST(ModbusTcpAnswer, WithAnotherProtocolLengthFunctionOrByteCountIsMalformed) {
       {0x12, 0x34, 0, 0, 0, 4, 1, 0x83, 2, 0},          // an exception with something behind
   };
   for (const Bytes& message : messages) {
-    EXPECT_TRUE(is_refused(modbus::decode_tcp(kSpeedOfSlave1, message), Refusal::kMalformed))
+    EXPECT_TRUE(is_refused_reply(modbus::decode_tcp(kSpeedOfSlave1, message), Refusal::kMalformed))
         << testing::PrintToString(message);
   }
 }
@@ -119,32 +119,34 @@ TEST(ModbusRtuAnswer, WithAnyBitFlippedIsRefused) {
     damaged[bit / 8] = static_cast<std::uint8_t>(damaged[bit / 8] ^ (1U << (bit % 8)));
     const auto decoded = modbus::decode_rtu(kSpeedOfSlave1, damaged);
     // A longer byte count makes it look cut off; everything else is a wrong sum.
-    EXPECT_TRUE(is_refused(decoded, Refusal::kBadChecksum) || is_refused(decoded, Refusal::kTooShort)) << bit;
+    EXPECT_TRUE(is_refused_reply(decoded, Refusal::kBadChecksum) || is_refused_reply(decoded, Refusal::kTooShort))
+        << bit;
   }
 }
 
 TEST(ModbusRtuAnswer, ThatEndsTooEarlyIsTooShort) {
   const Bytes answer = {0x01, 0x03, 0x02, 0x00, 0x56, 0x38, 0x7A};
   for (std::size_t size = 0; size < answer.size(); ++size) {
-    EXPECT_TRUE(is_refused(modbus::decode_rtu(kSpeedOfSlave1, std::span(answer).first(size)), Refusal::kTooShort))
+    EXPECT_TRUE(is_refused_reply(modbus::decode_rtu(kSpeedOfSlave1, std::span(answer).first(size)), Refusal::kTooShort))
         << size;
   }
 }
 
 TEST(ModbusRtuAnswer, OfAnotherSlaveIsNotMine) {
-  EXPECT_TRUE(is_refused(modbus::decode_rtu(kSpeedOfSlave1, Bytes{0x02, 0x03, 0x02, 0x00, 0x25, 0x3D, 0x9F}),
-                         Refusal::kNotMine));
+  EXPECT_TRUE(is_refused_reply(modbus::decode_rtu(kSpeedOfSlave1, Bytes{0x02, 0x03, 0x02, 0x00, 0x25, 0x3D, 0x9F}),
+                               Refusal::kNotMine));
 }
 
 TEST(ModbusRtuAnswer, ThatIsAnExceptionSaysWhich) {
   const auto decoded = modbus::decode_rtu(kSpeedOfSlave1, Bytes{0x01, 0x83, 0x02, 0xC0, 0xF1});
-  ASSERT_TRUE(is_refused(decoded, Refusal::kException));
+  ASSERT_TRUE(is_refused_reply(decoded, Refusal::kException));
   EXPECT_EQ(decoded.error().exception, 2);
 }
 
 TEST(ModbusRtuAnswer, WithARightSumAndAnotherFunctionOrLengthIsMalformed) {
-  EXPECT_TRUE(is_refused(modbus::decode_rtu(kSpeedOfSlave1, with_crc({1, 4, 2, 0, 86})), Refusal::kMalformed));
-  EXPECT_TRUE(is_refused(modbus::decode_rtu(kSpeedOfSlave1, with_crc({1, 3, 4, 0, 86, 0, 86})), Refusal::kMalformed));
+  EXPECT_TRUE(is_refused_reply(modbus::decode_rtu(kSpeedOfSlave1, with_crc({1, 4, 2, 0, 86})), Refusal::kMalformed));
+  EXPECT_TRUE(
+      is_refused_reply(modbus::decode_rtu(kSpeedOfSlave1, with_crc({1, 3, 4, 0, 86, 0, 86})), Refusal::kMalformed));
 }
 
 TEST(ModbusVectors, OfTheSharedCollectionDecodeAsTheySay) {
@@ -165,9 +167,9 @@ TEST(ModbusVectors, OfTheSharedCollectionDecodeAsTheySay) {
 
     const auto decoded = modbus::decode_rtu(request, vector.response);
     if (vector.device == "any") {
-      EXPECT_TRUE(is_refused(decoded, Refusal::kException));
+      EXPECT_TRUE(is_refused_reply(decoded, Refusal::kException));
     } else if (vector.device == "late answer of another slave") {
-      EXPECT_TRUE(is_refused(decoded, Refusal::kNotMine));
+      EXPECT_TRUE(is_refused_reply(decoded, Refusal::kNotMine));
     } else {
       // The registers are the data bytes: what stands between the byte count and the CRC.
       ASSERT_TRUE(decoded.has_value());

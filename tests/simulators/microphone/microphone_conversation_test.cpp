@@ -53,7 +53,8 @@ TEST(MicrophoneAndSimulator, FourFacesTellSpeedAndDirection) {
   const auto& readings = rig.sink.readings;
   const double span_s = seconds(readings.back().time.mono - readings[4].time.mono);
   EXPECT_NEAR(span_s / static_cast<double>(readings.size() - 5), 0.256, 0.02);
-  EXPECT_LT(seconds(std::chrono::steady_clock::now() - readings.back().time.mono), 2.0);
+  const double age_s = seconds(std::chrono::steady_clock::now() - readings.back().time.mono);
+  EXPECT_TRUE(age_s > 0.0 && age_s < 60.0) << age_s << " s; only a machine that hangs takes so long";
   for (std::size_t i = 5; i < readings.size(); ++i) {
     EXPECT_NEAR(seconds(readings[i].time.mono - readings[i - 1].time.mono), 0.256, 0.12)
         << "the time stamps are smoothed";

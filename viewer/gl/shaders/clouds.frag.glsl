@@ -23,11 +23,15 @@ float heap(vec2 at, float blur) {
 // The density at a height above the bases: heaps, narrower the higher up, with lumps on them.
 float density(vec2 at, float up, float blur) {
   float body = heap(at, blur) - 0.42 * pow(up / kThickness, 1.4);
-  if (body < -0.12) return 0.0;
-  float lumps = textureLod(noise_tile, at * 0.42 + vec2(0.31, -0.23) * up, blur + 0.7).r;
-  float fine = textureLod(noise_tile, at.yx * 1.30 + vec2(-0.9, 0.7) * up, blur + 2.4).r;
-  body += 0.20 * (lumps - 0.62) + 0.07 * (fine - 0.5);
-  return clamp(9.0 * body, 0.0, 1.0) * smoothstep(0.0, 0.035, up);
+  float dense = 0.0;
+  // Once or not at all: a branch in which no pixel goes on is computed by llvmpipe nevertheless, a loop is not.
+  for (float heaped = body; heaped >= -0.12; heaped = -1.0) {
+    float lumps = textureLod(noise_tile, at * 0.42 + vec2(0.31, -0.23) * up, blur + 0.7).r;
+    float fine = textureLod(noise_tile, at.yx * 1.30 + vec2(-0.9, 0.7) * up, blur + 2.4).r;
+    float full = body + 0.20 * (lumps - 0.62) + 0.07 * (fine - 0.5);
+    dense = clamp(9.0 * full, 0.0, 1.0) * smoothstep(0.0, 0.035, up);
+  }
+  return dense;
 }
 
 // What is left of the sun's light at a place in a cloud; some of it comes by many ways.
@@ -64,7 +68,6 @@ void main() {
     float up = kThickness * (float(i) + 0.5) / float(kSteps);
     vec2 at = way * (first + step_long * (float(i) + 0.5)) - cover.xy;
     float here = density(at, up, blur);
-    // Once or not at all: a branch in which no pixel goes on is computed by llvmpipe nevertheless, a loop is not.
     for (float cloud = here; cloud > 0.0; cloud = 0.0) {
       float part = left * (1.0 - exp(-kDensity * min(step_long, 0.25) * here));
       sun += part * sun_through(at, up, blur);
