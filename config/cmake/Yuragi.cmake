@@ -200,6 +200,7 @@ function(yuragi_add_to_ctest name parts)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
     return()
   endif()
+  add_dependencies(yuragi_tests ${name})
   set(properties TIMEOUT 600) # only a hang takes so long, on however busy a machine
   if(ARG_LABELS)
     list(APPEND properties LABELS ${ARG_LABELS})

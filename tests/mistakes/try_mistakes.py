@@ -27,11 +27,11 @@ MISTAKES = (
         "test", "wind_test", "^Blended"),
     Mistake("an index that is not checked", (
         ("daemon/animation/animation.cpp", "if (cue.scene >= roster.scenes.size()) return;", ""),),
-        "test", "animation_test", "^AnimationTest"),
+        "test", "daemon_tests", "^AnimationTest"),
     Mistake("an off-by-one in a decoder", (
         ("drivers/decode/hid/wmr100.cpp", "const std::size_t body = frame.size() - kWmr100Sum;",
          "const std::size_t body = frame.size() - kWmr100Sum - 1;"),),
-        "test", "drivers_decode_bytes_test", "Wmr100"),
+        "test", "drivers_tests_threadless", "Wmr100"),
     Mistake("a constant in a shader", (
         ("viewer/gl/shaders/clouds.frag.glsl", "const float kDensity = 26.0;", "const float kDensity = 2.6;"),),
         "test", "pictures_test", "GoldenPictureTest"),
@@ -59,7 +59,7 @@ MISTAKES = (
          "inline std::uint16_t little_endian_16(ByteSpan bytes, std::size_t at) noexcept {\n"
          "  return *reinterpret_cast<const std::uint16_t*>(bytes.data() + at);"),
         ("drivers/decode/byte_order.hpp", "constexpr std::uint32_t little_endian_32", "inline std::uint32_t little_endian_32")),
-        "asan", "drivers_decode_bytes_test", "^drivers_decode_bytes_test"),
+        "asan", "drivers_tests_threadless", "^drivers_tests_threadless"),
     Mistake("an order of initialisation", (
         ("engine/base/printable_text.cpp", "namespace yuragi {\n", "namespace yuragi {\nstd::string first_of_two(3, 'a');\n"),
         ("viewer/wind_place_text.cpp", "namespace yuragi::viewer {\n",
@@ -68,7 +68,7 @@ MISTAKES = (
     Mistake("a race", (
         ("engine/base/latest.hpp", "middle_.exchange(static_cast<std::uint8_t>(write_ | kFresh), std::memory_order_acq_rel)",
          "middle_.exchange(static_cast<std::uint8_t>(write_ | kFresh), std::memory_order_relaxed)"),),
-        "tsan", "base_test", "^base_test"),
+        "tsan", "engine_tests", "^engine_tests"),
 )
 
 
