@@ -1,4 +1,4 @@
-# Which rooms a release compiles as one file: those of one program that include the same libraries. Rooms of a group are all in
+# Which rooms all presets but dev compile as one file: those of one program that include the same libraries. Rooms of a group are all in
 # YURAGI_HOT_ROOMS (Yuragi.cmake), or none of them is. The engine's stay apart: they are small, and all programs share them.
 yuragi_join(simulators yuragi_simulators yuragi_simulators_davis yuragi_simulators_lufft yuragi_simulators_microphone
   yuragi_simulators_modbus yuragi_simulators_network yuragi_simulators_text yuragi_simulators_usb yuragi-sim)

@@ -19,8 +19,8 @@
 namespace yuragi::test {
 
 /// A simulated station in the wind, on a bus whose time a test moves: the station goes on and the host asks it for a
-/// report, every 10 ms while somebody reads, otherwise every 50 ms. What the kernel does with reports is done here as in
-/// Linux' hidraw.
+/// report, every 10 ms while somebody reads, otherwise every 50 ms. What the kernel does with reports is done here as
+/// in Linux' hidraw.
 class HidBus {
  public:
   HidBus(std::unique_ptr<simulators::usb::UsbDevice> device, drivers::bus::HidId id)
