@@ -94,6 +94,7 @@ void print_json(std::ostream& out, const std::vector<TableRow>& rows, const Time
     all["targets"].push_back({{"what", target.what},
                               {"value", target.value},
                               {target.is_at_least ? "at_least" : "at_most", target.limit},
+                              {"ratio", target.is_ratio},
                               {"met", target.is_met()}});
   }
   all["about"] = {

@@ -30,6 +30,7 @@ struct Target {
   double value = 0.0;
   double limit = 0.0;
   bool is_at_least = false;  ///< else: at most
+  bool is_ratio = true;      ///< of two times of one thread in this run, met by any machine; else it needs a fast one
   bool is_met() const { return is_at_least ? value >= limit : value <= limit; }
 };
 
