@@ -56,7 +56,8 @@ void read_stream(decode::ByteSpan bytes) {
   }
   if (const auto result = decode::hid::finish_wmr100(stream)) require_physical(*result);
   require(stream.size == 0);
-  require(decode::hid::wmr100_report_bytes(bytes).size() <= 7);
+  const decode::ByteSpan data = decode::hid::wmr100_report_bytes(bytes);
+  require(data.size() <= 7 && (data.empty() || data.data() + data.size() <= bytes.data() + bytes.size()));
 }
 
 void read_frames(std::vector<std::uint8_t> bytes, bool is_mended) {
