@@ -41,8 +41,9 @@ endif()
 
 # The rooms where a running program spends its time: poses and wind, readings, recordings and their import, the stream, pictures.
 # They are compiled with the preset's optimization. All others (options, settings, JSON, tables, the web page, the set-up of
-# devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. For sanitizers, whose code takes
-# longest to optimize, only the engine is optimized as the preset says; the other hot rooms and all drivers have -O1, the rest -O0.
+# devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. With sanitizers,
+# whose code takes longest to optimize, only the engine has the preset's optimization; the other hot rooms and all drivers have -O1,
+# the rest -O0.
 set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/stream
                      daemon/tools/csv viewer)
 set(YURAGI_WARM_ROOMS "[^/]+")
@@ -140,7 +141,7 @@ endfunction()
 # its cases a CTest test; with sanitizers, where a process costs more than a case, a part of its cases is one. Those of the engine but
 # for its base and its workers, in which there are no threads, are labelled `threadless`. NEEDS names other programs that it runs.
 # UNSANITIZED names cases that repeat for their statistics what shorter cases do once: a sanitizer sees the same memory accesses there,
-# and leaves the long ones out. LONG names cases that do on other records what the others do on one: they are labelled `long`.
+# and leaves the long ones out; and cases that cannot run with one. LONG names cases that do on other records what the others do on one: they are labelled `long`.
 #
 # In a unity build the programs of a folder of tests/ that have the same labels are built as one (yuragi_join_tests), and the program
 # itself only when it is named. ALONE: not this one, which replaces operator new or is compiled in another way.
@@ -167,7 +168,7 @@ function(yuragi_test name)
   endif()
 endfunction()
 
-# yuragi_join_tests(): to be called behind the last yuragi_test().
+# yuragi_join_tests(): adds the joined programs. Call it after the last yuragi_test().
 function(yuragi_join_tests)
   get_property(groups GLOBAL PROPERTY YURAGI_TESTS)
   list(REMOVE_DUPLICATES groups)
@@ -183,7 +184,7 @@ function(yuragi_join_tests)
   endforeach()
 endfunction()
 
-# The program of the ARG_... of a caller.
+# Adds the program that the caller's ARG_ variables describe.
 macro(yuragi_test_program name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK} yuragi_test_places GTest::gtest_main GTest::gmock)
@@ -192,7 +193,7 @@ macro(yuragi_test_program name)
   endif()
 endmacro()
 
-# Its cases become CTest tests, or, with sanitizers, so many parts.
+# Registers the program with CTest: one test a case, or with sanitizers `parts` tests. Reads the caller's ARG_ variables.
 function(yuragi_add_to_ctest name parts)
   # What a sanitizer leaves out is not built for it.
   if((YURAGI_SANITIZE AND "native" IN_LIST ARG_LABELS) OR

@@ -204,17 +204,15 @@ void HttpServer::interrupt() noexcept {
 }
 
 void HttpServer::accept() {
-  auto socket = std::make_unique<tcp::socket>(context_);
-  auto& accepted = *socket;
-  // The sender is asked for here: of a socket whose client has gone in the meantime it is no longer known.
-  acceptor_.async_accept(accepted, sender_, [this, socket = std::move(socket)](const boost::system::error_code& error) {
+  // Accepting tells the sender: a socket whose client has gone no longer knows it.
+  acceptor_.async_accept(sender_, [this](const boost::system::error_code& error, tcp::socket socket) {
     if (error == boost::asio::error::operation_aborted) return;
     // What the client has undone in the meantime is its own affair.
     if (error && error != boost::asio::error::connection_aborted) {
       failure_ = Failure{"cannot accept connections (" + error.message() + "): opened again"};
       return;
     }
-    if (!error) take(std::move(*socket));
+    if (!error) take(std::move(socket));
     accept();
   });
 }

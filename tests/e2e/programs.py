@@ -9,7 +9,7 @@ import threading
 
 HANG_S = 60.0  # so long waits only who waits for something that hangs
 
-# A shell's background jobs inherit that it is ignored, and so would the programs that these tests end by it.
+# A shell's background jobs ignore it, and what they start inherits that; but tests end programs with it.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 

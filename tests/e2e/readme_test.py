@@ -23,6 +23,8 @@ import sys
 import tempfile
 import time
 
+from programs import HANG_S
+
 NOT_RUN = (
     (r"^(config/demo|config/package|tests/run)\.sh", "installs packages and builds"),
     (r"/etc/yuragi", "needs the package to be installed"),
@@ -40,8 +42,7 @@ RUNS_ON = (
     (r"^yuragi sensors watch", r"\S"),
 )
 CTRL_C = (0, -signal.SIGINT, 128 + signal.SIGINT)  # exit codes of what it ends: in good order, by the signal, a shell's for that
-signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs inherit that it is ignored
-ENDS_WITHIN_S = 60
+ENDS_WITHIN_S = HANG_S
 SAYS_WITHIN_S = 20
 
 

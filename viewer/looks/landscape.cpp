@@ -34,15 +34,8 @@ constexpr float kSunInShadow = 0.16F;  // as in sward.part.glsl
 /// The bearings between which a circle around the world's middle is in view. Nothing where the picture ends below the
 /// horizon.
 std::optional<meshes::Arc> arc_in_view(const meshes::View& view, float radius_m) {
-  const glm::vec3 forward(view.forward);
   float highest = -1.0F;
-  for (const float aside : {-1.0F, 1.0F}) {
-    for (const float above : {-1.0F, 1.0F}) {
-      const glm::vec3 ray =
-          forward + aside * view.right.w * glm::vec3(view.right) + above * view.up.w * glm::vec3(view.up);
-      highest = std::max(highest, ray.y / glm::length(ray));
-    }
-  }
+  for (const glm::vec3& ray : meshes::corner_rays(view)) highest = std::max(highest, ray.y / glm::length(ray));
   const float out_m = glm::length(glm::vec2(view.eye_m.x, view.eye_m.z));
   if (highest < -view.eye_m.y / std::max(radius_m - out_m, 1.0F)) return std::nullopt;
   // From beside the middle it is seen in other directions.

@@ -39,6 +39,13 @@ View view_of(const OrbitCamera& camera, int width_px, int height_px) {
   return view;
 }
 
+std::array<glm::vec3, 4> corner_rays(const View& view, float margin) {
+  const glm::vec3 aside = margin * view.right.w * glm::vec3(view.right);
+  const glm::vec3 above = margin * view.up.w * glm::vec3(view.up);
+  const glm::vec3 forward(view.forward);
+  return {forward - aside - above, forward - aside + above, forward + aside - above, forward + aside + above};
+}
+
 Arc bearings_of(const View& view, float margin) {
   constexpr float kMostSteep = 0.2F;  // of a corner's direction: its part along the middle's bearing
   const glm::vec3 forward(view.forward);
@@ -47,15 +54,11 @@ Arc bearings_of(const View& view, float margin) {
   const float heading_rad = std::atan2(forward.x, -forward.z);
   float left_rad = 0.0F;
   float right_rad = 0.0F;
-  for (const float aside : {-margin, margin}) {
-    for (const float above : {-margin, margin}) {
-      const glm::vec3 ray =
-          forward + aside * view.right.w * glm::vec3(view.right) + above * view.up.w * glm::vec3(view.up);
-      if (ray.x * forward.x + ray.z * forward.z < kMostSteep * level * glm::length(ray)) return {};
-      const float turn_rad = std::remainder(std::atan2(ray.x, -ray.z) - heading_rad, glm::two_pi<float>());
-      left_rad = std::min(left_rad, turn_rad);
-      right_rad = std::max(right_rad, turn_rad);
-    }
+  for (const glm::vec3& ray : corner_rays(view, margin)) {
+    if (ray.x * forward.x + ray.z * forward.z < kMostSteep * level * glm::length(ray)) return {};
+    const float turn_rad = std::remainder(std::atan2(ray.x, -ray.z) - heading_rad, glm::two_pi<float>());
+    left_rad = std::min(left_rad, turn_rad);
+    right_rad = std::max(right_rad, turn_rad);
   }
   return widened({.from_rad = heading_rad + left_rad, .size_rad = right_rad - left_rad}, 0.0F);
 }

@@ -30,13 +30,16 @@ struct View {
 /// For a picture of so many pixels.
 View view_of(const OrbitCamera& camera, int width_px, int height_px);
 
+/// From the eye through the corners of a picture that is `margin` times as wide and as high.
+std::array<glm::vec3, 4> corner_rays(const View& view, float margin = 1.0F);
+
 /// Bearings from one on clockwise, seen from above; 0 is along -z.
 struct Arc {
   float from_rad = 0.0F;                  ///< 0 to a turn
   float size_rad = glm::two_pi<float>();  ///< at most a turn
 };
 
-/// The bearings of all directions in a picture that is so many times as wide and as high; all around where straight up
+/// The bearings of all directions in a picture that is `margin` times as wide and as high; all around where straight up
 /// or straight down may be among them.
 Arc bearings_of(const View& view, float margin = 1.0F);
 

@@ -184,8 +184,8 @@ TEST(Recorder, CompletesAFileThatHasNoReadingInTheMiddleOfARun) {
       said.push_back(i);
       EXPECT_TRUE(recorder.push(0, temperature_at(std::int64_t{10'000} * i, i)));
       const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-      // Not again and again: whoever opens a file as it gets its new name opens the next one's -shm, and SQLite
-      // truncates it under the recorder (to be mended there).
+      // Read it only now and then: a reader of this process that opens the file while it is renamed can make SQLite
+      // truncate the -shm file that the recorder uses. That is a fault of the recorder.
       while (temperatures_now_in(file) != said && std::chrono::steady_clock::now() < until)
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
       EXPECT_EQ(temperatures_in(file), said);
