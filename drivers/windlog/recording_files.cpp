@@ -1,6 +1,7 @@
 #include "drivers/windlog/recording_files.hpp"
 
 #include <algorithm>
+#include <mutex>
 #include <string>
 #include <string_view>
 
@@ -31,7 +32,7 @@ std::filesystem::path part_of_side_file(const std::filesystem::path& recording, 
   const std::string name = file.string();
   for (const std::string_view suffix : kSideSuffixes) {
     if (!name.ends_with(suffix)) continue;
-    const std::filesystem::path part = name.substr(0, name.size() - suffix.size());
+    std::filesystem::path part = name.substr(0, name.size() - suffix.size());
     if (begin_of_part(recording, part)) return part;
   }
   return {};
@@ -39,7 +40,13 @@ std::filesystem::path part_of_side_file(const std::filesystem::path& recording, 
 
 }  // namespace
 
+std::shared_mutex& recording_names() {
+  static std::shared_mutex names;
+  return names;
+}
+
 std::error_code rename_recording(const std::filesystem::path& from, const std::filesystem::path& to) {
+  const std::lock_guard names(recording_names());
   rename_what_is_beside(from, to);
   std::error_code error;
   std::filesystem::rename(from, to, error);
@@ -54,12 +61,14 @@ bool is_free_name(const std::filesystem::path& file) {
 }
 
 bool remove_recording(const std::filesystem::path& file) {
+  const std::lock_guard names(recording_names());
   std::error_code error;
   for (const std::string_view suffix : kSideSuffixes) std::filesystem::remove(beside(file, suffix), error);
   return std::filesystem::remove(file, error);
 }
 
 void finish_rename_to_part(const std::filesystem::path& recording) {
+  const std::lock_guard names(recording_names());
   std::error_code error;
   // A recording that has something beside it was not in the midst of a rename.
   if (!std::filesystem::is_regular_file(recording, error) || is_there(beside(recording, kWalSuffix))) return;

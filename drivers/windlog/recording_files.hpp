@@ -1,12 +1,19 @@
 #pragma once
 
 #include <filesystem>
+#include <shared_mutex>
 #include <system_error>
 
 namespace yuragi::drivers::windlog {
 
 // A recording is one file, and what SQLite keeps beside it while somebody has it open, or where its writer was killed:
 // FILE-wal then holds its newest readings, and SQLite finds it by the recording's name alone.
+
+/// Held shared by a thread of this process that opens a recording, until SQLite has what lies beside it open as well,
+/// and alone while one is renamed or removed. SQLite's locks, which are POSIX's, do not hold between threads of one
+/// process: who opened a recording's file before it was renamed, and what lies beside the next file after it, would
+/// truncate memory that the writer of the next file uses, and end the process.
+std::shared_mutex& recording_names();
 
 /// Renames a recording with what is beside it, first what is beside it. Where that fails everything keeps its name.
 std::error_code rename_recording(const std::filesystem::path& from, const std::filesystem::path& to);

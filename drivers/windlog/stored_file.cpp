@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <shared_mutex>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "drivers/windlog/file_format.hpp"
+#include "drivers/windlog/recording_files.hpp"
 #include "drivers/windlog/series_tables.hpp"
 #include "drivers/windlog/shared_table.hpp"
 
@@ -67,6 +69,7 @@ Result<std::int64_t, Failure> version_of(sqlite::Database& database) {
 
 Result<StoredFile, Failure> open_as(const std::filesystem::path& file, sqlite::Access access,
                                     const std::stop_token& stop) {
+  std::shared_lock names(recording_names());
   auto opened = sqlite::Database::open(file, access);
   if (!opened) return opened.error();
   auto database = std::make_unique<sqlite::Database>(std::move(*opened));
@@ -74,6 +77,7 @@ Result<StoredFile, Failure> open_as(const std::filesystem::path& file, sqlite::A
   database->end_on(stop);
   const auto version = version_of(*database);
   if (!version) return version.error();
+  names.unlock();
   auto readings = *version == 1 ? open_shared_table(*database) : open_series_tables(*database);
   if (!readings) return readings.error();
   return StoredFile{.database = std::move(database), .readings = std::move(*readings)};
@@ -92,6 +96,7 @@ Result<void, Failure> check_is_file(const std::filesystem::path& file) {
 }
 
 bool is_blank_file(const std::filesystem::path& file) {
+  const std::shared_lock names(recording_names());
   auto opened = sqlite::Database::open(file, sqlite::Access::kReadOnly);
   if (!opened) return false;
   const auto format = format_of(*opened);
@@ -108,8 +113,12 @@ Result<StoredFile, Failure> open_stored_file(const std::filesystem::path& file, 
   if (is_absent_or_empty(wal_of(file))) {
     if (auto frozen = open_as(file, sqlite::Access::kReadFrozen, stop)) return frozen;
   }
-  if (const std::string kind = foreign_kind(file); !kind.empty()) {
-    return Failure{file.string() + ": " + kind, FailureKind::kBadData};
+  // Not where it may be a recording that this process writes: closing any file releases the locks that SQLite has on
+  // it.
+  if (opened.error().kind == FailureKind::kBadData) {
+    if (const std::string kind = foreign_kind(file); !kind.empty()) {
+      return Failure{file.string() + ": " + kind, FailureKind::kBadData};
+    }
   }
   return Failure{opened.error().message, FailureKind::kBadData};
 }

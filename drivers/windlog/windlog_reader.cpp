@@ -8,19 +8,39 @@
 #include "drivers/windlog/stored_file.hpp"
 
 namespace yuragi::drivers::windlog {
+namespace {
+
+/// The completed parts of a recording, oldest first, and the file that may still grow, if it is there.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& recording) {
+  std::vector<std::filesystem::path> files;
+  for (const RecordingPart& part : completed_parts(recording)) files.push_back(part.file);
+  std::error_code is_not_there;
+  if (std::filesystem::exists(recording, is_not_there)) files.push_back(recording);
+  return files;
+}
+
+}  // namespace
 
 Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& file, const std::stop_token& stop) {
+  constexpr int kMostLooks = 3;
+  for (int tries = 1;; ++tries) {
+    const auto files = files_of(file);
+    auto reader = open(file, files, stop);
+    // Where its writer completed a file meanwhile, one was missed, or taken for another.
+    if (tries == kMostLooks || files_of(file) == files) return reader;
+  }
+}
+
+Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& file,
+                                                   const std::vector<std::filesystem::path>& files,
+                                                   const std::stop_token& stop) {
   WindlogReader reader(file);
-  std::vector<std::filesystem::path> files;
-  for (const RecordingPart& part : completed_parts(file)) files.push_back(part.file);
-  if (files.empty()) {
+  if (files.empty() || files == std::vector{file}) {
     auto opened = open_stored_file(file, stop);
     if (!opened) return opened.error();
     reader.database_ = std::move(opened->database);
     reader.stored_ = std::move(opened->readings);
   } else {
-    std::error_code is_not_there;
-    if (std::filesystem::exists(file, is_not_there)) files.push_back(file);
     auto series = PartsInTurn::open(files, stop);
     if (!series) return series.error();
     reader.stored_ = std::move(*series);

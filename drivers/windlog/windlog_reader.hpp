@@ -88,6 +88,9 @@ class WindlogReader {
 
  private:
   explicit WindlogReader(std::filesystem::path file) : file_(std::move(file)) {}
+  static Result<WindlogReader, Failure> open(const std::filesystem::path& file,
+                                             const std::vector<std::filesystem::path>& files,
+                                             const std::stop_token& stop);
 
   std::filesystem::path file_;
   std::unique_ptr<sqlite::Database> database_;  ///< none for a series of files; what follows refers to it

@@ -5,8 +5,11 @@
 #include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <future>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -23,9 +26,7 @@
 namespace yuragi::daemon::recording {
 namespace {
 
-using test::numbered_readings;
-using test::read_all;
-using test::reading_at;
+constexpr std::int64_t kHour_ms = 3'600'000;
 
 RecordingInfo info_of(std::vector<RecordedSensor> sensors) {
   return {.started = test::at_ms(0, test::kSampleUtc_ms),
@@ -184,10 +185,8 @@ TEST(Recorder, CompletesAFileThatHasNoReadingInTheMiddleOfARun) {
       said.push_back(i);
       EXPECT_TRUE(recorder.push(0, temperature_at(std::int64_t{10'000} * i, i)));
       const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-      // Read it only now and then: a reader of this process that opens the file while it is renamed can make SQLite
-      // truncate the -shm file that the recorder uses. That is a fault of the recorder.
       while (temperatures_now_in(file) != said && std::chrono::steady_clock::now() < until)
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
       EXPECT_EQ(temperatures_in(file), said);
     }
   }
@@ -602,7 +601,7 @@ TEST(Recorder, BeginsAFileADayAndDeletesTheOldest) {
                       [&](std::string_view report) { reports.emplace_back(report); }, {},
                       {.is_daily = true, .keep_days = 3});
     for (int hour = 0; hour < 2; ++hour) {
-      recorder.push(0, test::reading_at((24 * day + hour) * 3'600'000, day));
+      recorder.push(0, test::reading_at((24 * day + hour) * kHour_ms, day));
       wait_for(recorder,
                [&](const RecorderStatus& status) { return status.written == 1U + static_cast<unsigned>(hour); });
     }
@@ -635,7 +634,7 @@ TEST(Recorder, BeginsANewFileInTheMiddleOfARun) {
 void record_parts(const std::filesystem::path& file, int first, int count) {
   Recorder recorder(file, info_of({{"mast", "", ""}}), {}, {}, {.most_file_bytes = 1});
   for (int i = first; i < first + count; ++i) {
-    recorder.push(0, test::reading_at(1000 * i, i));
+    recorder.push(0, test::reading_at(std::int64_t{1000} * i, i));
     wait_for(recorder,
              [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i - first + 1); });
   }
@@ -659,11 +658,70 @@ TEST(Recorder, CompletesAFileThatAnotherProgramReadsWithAllItsReadings) {
   ASSERT_EQ(sqlite3_exec(reader, "BEGIN; SELECT count(*) FROM session", nullptr, nullptr, nullptr), SQLITE_OK);
   recorder.push(0, test::reading_at(2000, 2.0));
   wait_for(recorder, [](const RecorderStatus& status) { return status.written == 2; });
-  recorder.push(0, test::reading_at(24 * 3'600'000, 3.0));
+  recorder.push(0, test::reading_at(24 * kHour_ms, 3.0));
   wait_for(recorder, [](const RecorderStatus& status) { return status.written == 3; });
   EXPECT_TRUE(std::filesystem::exists(folder / "a-20180720T140000Z.windlog"));
   EXPECT_EQ(speeds_in(file), (std::vector{1.0, 2.0, 3.0}));
   sqlite3_close(reader);
+}
+
+/// Calls something as this thread's SQLite reads for the first time of a database that it has opened, before it opens
+/// what lies beside it.
+class AtTheFirstRead {
+ public:
+  explicit AtTheFirstRead(std::function<void()> call) {
+    call_ = std::move(call);
+    sqlite3_initialize();
+    sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
+    for (const char* name : kCalls) originals_.push_back(vfs->xGetSystemCall(vfs, name));
+    for (const char* name : kCalls) {
+      vfs->xSetSystemCall(vfs, name, reinterpret_cast<sqlite3_syscall_ptr>(&call_and_read));
+    }
+  }
+  ~AtTheFirstRead() {
+    sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
+    for (std::size_t i = 0; i < kCalls.size(); ++i) vfs->xSetSystemCall(vfs, kCalls[i], originals_[i]);
+    call_ = nullptr;
+  }
+  AtTheFirstRead(const AtTheFirstRead&) = delete;
+  AtTheFirstRead& operator=(const AtTheFirstRead&) = delete;
+
+ private:
+  static constexpr std::array<const char*, 2> kCalls = {"pread", "pread64"};
+
+  static ssize_t call_and_read(int file, void* bytes, std::size_t size, off_t offset) {
+    if (call_) std::exchange(call_, nullptr)();
+    return pread(file, bytes, size, offset);
+  }
+
+  static inline thread_local std::function<void()> call_;
+  std::vector<sqlite3_syscall_ptr> originals_;
+};
+
+TEST(Recorder, CompletesAFileOnlyWhereNobodyOfItsProcessIsAboutToOpenIt) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  const auto part = folder / "a-20180720T140000Z.windlog";
+  Recorder recorder(file, info_of({{"mast", "", ""}}), {}, {.commit_every = std::chrono::milliseconds(1)},
+                    {.is_daily = true});
+  recorder.push(0, test::reading_at(1000, 1.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
+  {
+    // As the history does it, at midnight: it has opened the file, and would find what is beside the next day's.
+    const AtTheFirstRead hook([&] {
+      recorder.push(0, test::reading_at(24 * kHour_ms, 2.0));
+      constexpr auto kEnoughToRename = std::chrono::milliseconds(500);
+      recorder.wait_until([](const RecorderStatus& status) { return status.written == 2; }, kEnoughToRename);
+    });
+    const auto speeds = speeds_in(file);
+    ASSERT_FALSE(speeds.empty());
+    EXPECT_EQ(speeds.front(), 1.0);
+  }
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 2; });
+  EXPECT_TRUE(std::filesystem::exists(part));
+  recorder.push(0, test::reading_at(25 * kHour_ms, 3.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 3; });
+  EXPECT_EQ(speeds_in(file), (std::vector{1.0, 2.0, 3.0}));
 }
 
 /// A recording that a killed process left, with its newest reading beside it.
