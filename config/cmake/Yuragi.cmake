@@ -188,10 +188,16 @@ endfunction()
 macro(yuragi_test_program name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK} yuragi_test_places GTest::gtest_main GTest::gmock)
-  if(ARG_NEEDS)
-    add_dependencies(${name} ${ARG_NEEDS})
-  endif()
+  yuragi_needs(${name} ${ARG_NEEDS})
 endmacro()
+
+# yuragi_needs(TARGET PROGRAM...): TARGET runs these programs. They are there when it is linked; with add_dependencies its sources would
+# not be compiled before, and the largest of them alone at the end.
+function(yuragi_needs target)
+  foreach(program IN LISTS ARGN)
+    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS $<TARGET_FILE:${program}>)
+  endforeach()
+endfunction()
 
 # Registers the program with CTest: one test a case, or with sanitizers `parts` tests. Reads the caller's ARG_ variables.
 function(yuragi_add_to_ctest name parts)
