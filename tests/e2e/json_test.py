@@ -140,7 +140,8 @@ class Json(unittest.TestCase):
                       '[[sensor]]\nname = "made-up"\ndriver = "synthetic"\n')
         cls.places = {"ALONE": alone, "PAGE": os.path.join(cls.folder, "page.html"), "ADDRESS": cls.address, "CONFIG": cls.config,
                       "MODBUS": slave.wait_for(r"(127\.0\.0\.1:\d+)").group(1)}
-        cls.commands = {words_of(command): command for command in leaves(Help(YURAGI))}
+        cls.program = Help(YURAGI)
+        cls.commands = {words_of(command): command for command in leaves(cls.program)}
 
     def test_every_command_has_it_or_prints_no_table(self):
         for name, command in self.commands.items():
@@ -155,7 +156,7 @@ class Json(unittest.TestCase):
         self.assertEqual(known - set(self.commands), set(), "of commands that are no more")
 
     def with_parents(self, name):
-        every = {words_of(one) if " " in one.name else "": one for one in Help(YURAGI).walk()}
+        every = {words_of(one) if " " in one.name else "": one for one in self.program.walk()}
         words = name.split(" ")
         return [every[" ".join(words[:count])] for count in range(1, len(words) + 1)]
 

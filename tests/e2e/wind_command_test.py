@@ -75,7 +75,7 @@ class WindCommand(unittest.TestCase):
         self.assertGreater(max(float(row["speed_m_s"]) for row in rows), 25.0)
 
     def test_follows_the_sensor_and_passes_through_north(self):
-        rows, _ = self.wind()
+        rows, _ = self.wind("--rate", 20)
         live = [row for row in rows if row["time_s"] > 60.0]
         self.assertTrue(all(row["state"] == "live" for row in live))
         mean = sum(row["speed_m_s"] for row in live) / len(live)
@@ -100,11 +100,12 @@ class WindCommand(unittest.TestCase):
             self.assertTrue(0.0 <= direction < 360.0 and (direction < 60.0 or direction > 300.0), direction)
 
     def test_says_the_same_again_and_something_else_with_another_seed(self):
-        self.assertEqual(self.wind("--seed", 5), self.wind("--seed", 5))
-        self.assertNotEqual(self.wind("--seed", 5)[0], self.wind("--seed", 6)[0])
+        wind = self.wind("--rate", 10, "--seed", 5)
+        self.assertEqual(self.wind("--rate", 10, "--seed", 5), wind)
+        self.assertNotEqual(self.wind("--rate", 10, "--seed", 6)[0], wind[0])
 
     def test_plays_a_slower_sensor(self):
-        _, told = self.wind("--sensor-interval", 14)
+        _, told = self.wind("--rate", 10, "--sensor-interval", 14)
         self.assertIn("from 22 readings", told)  # 300 s make 21.4 blocks; the last is heard at its end
 
     def test_plays_a_sensor_as_quick_as_the_recording(self):
@@ -124,7 +125,7 @@ class WindCommand(unittest.TestCase):
         self.assertGreater(trust[240.0], 0.9)
         steps = [math.hypot(b["u_m_s"] - a["u_m_s"], b["v_m_s"] - a["v_m_s"]) for a, b in zip(rows, rows[1:])]
         self.assertLess(max(steps), 0.5)
-        self.assertEqual(yuragi("wind", "--gap", "100,200", self.log, "-o", "-").returncode, 0, "a file is no gap")
+        self.assertEqual(yuragi("wind", "--rate", 1, "--gap", "100,200", self.log, "-o", "-").returncode, 0, "a file is no gap")
 
     def test_shapes_the_wind_for_the_scenes_where_it_is_asked_to(self):
         real, _ = self.wind("--rate", 10)
@@ -171,10 +172,10 @@ class WindCommand(unittest.TestCase):
 
     def test_writes_a_file_and_keeps_one_that_is_there(self):
         file = self.log.with_name("out.csv")
-        self.assertEqual(yuragi("wind", self.log, "-o", file).returncode, 0)
+        self.assertEqual(yuragi("wind", self.log, "--rate", 1, "-o", file).returncode, 0)
         self.assertTrue(file.read_text(encoding="ascii").startswith("time_s,u_m_s,v_m_s,speed_m_s,direction_deg,trust,state\n"))
-        self.assertEqual(yuragi("wind", self.log, "-o", file).returncode, 73)
-        self.assertEqual(yuragi("wind", self.log, "-o", file, "--force").returncode, 0)
+        self.assertEqual(yuragi("wind", self.log, "--rate", 1, "-o", file).returncode, 73)
+        self.assertEqual(yuragi("wind", self.log, "--rate", 1, "-o", file, "--force").returncode, 0)
 
     def test_says_what_is_wrong(self):
         for arguments, code, text in (

@@ -14,7 +14,7 @@ import tempfile
 
 import numpy as np
 
-RATE_HZ = 60
+RATE_HZ = 20
 SEEDS = 6
 SEGMENT_S = 1080
 # dB; variance from, to; mean speed. The octaves of six seeds scatter by a little: half a dB more than of 32.

@@ -179,8 +179,8 @@ TEST_F(AnimationLoopTest, WhileOneChangeIsCarriedOutThereIsNoOther) {
   // Neither of them is lost with a loop that never ran (address sanitizer).
 }
 
-/// Thousands of reloads, and a cue now and then, against the running thread.
-TEST_F(AnimationLoopTest, ScenesAreExchangedThousandsOfTimes) {
+/// Hundreds of reloads, and a cue now and then, against the running thread.
+TEST_F(AnimationLoopTest, ScenesAreExchangedHundredsOfTimes) {
   std::mt19937 random(7);
   settings::Config config = random_config(random, 5);
   Animation animation(config, sensing::make_gust_noise(config));
