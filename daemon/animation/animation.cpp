@@ -40,6 +40,12 @@ void Animation::step(const wind::ground::DrivingWind& wind, double dt_s, std::ui
   tick_ += ticks;
   ground.tick = tick_;
   SceneList& list = *scenes_;
+  const bool is_shared = pool_.size() > 1 && sharing_.is_shared();
+  const auto share = [this, is_shared](const auto& work) {
+    if (is_shared) return pool_.run(work);
+    work(Part{});
+  };
+  Nanoseconds all_scenes{0};
   for (std::size_t i = 0; i < list.size(); ++i) list[i].fade.advance(dt_s);
   list.read_opacities();
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -50,10 +56,13 @@ void Animation::step(const wind::ground::DrivingWind& wind, double dt_s, std::ui
     const auto begun = std::chrono::steady_clock::now();
     scenes::Scene& scene = *list[i].scene;
     scene.shift(list[i].wind_gain * ground, dt_s);
-    pool_.run([&scene](Part part) { scene.sample_part(part); });
-    pool_.run([&scene, dt_s](Part part) { scene.project_part(part, dt_s); });
-    list[i].step_time.add(std::chrono::steady_clock::now() - begun);
+    share([&scene](Part part) { scene.sample_part(part); });
+    share([&scene, dt_s](Part part) { scene.project_part(part, dt_s); });
+    const Nanoseconds duration = std::chrono::steady_clock::now() - begun;
+    list[i].step_time.add(duration);
+    all_scenes += duration;
   }
+  sharing_.took(all_scenes);
 }
 
 void Animation::cue(const SceneCue& cue) noexcept {

@@ -11,6 +11,7 @@
 #include "engine/pose/reach.hpp"
 #include "engine/wind/wind_state.hpp"
 #include "engine/wire/wire.hpp"
+#include "engine/workers/sharing_choice.hpp"
 #include "engine/workers/worker_pool.hpp"
 
 namespace yuragi::daemon::animation {
@@ -26,10 +27,11 @@ struct SceneCue {
 /// All scenes of an installation, each at its place and with its gain on the wind, stepped together, and the encoder of
 /// their frames. A hidden scene is not stepped. The scenes may be exchanged for others between two steps. It follows no
 /// clock: the daemon's loop, the lock-step replay and the tests step it. How long each scene takes is measured
-/// (StagedScene::step_time), and changes nothing.
+/// (StagedScene::step_time), and decides only whether threads share the next steps.
 ///
-/// Thread-safe: no. What is noexcept, and encode(), are realtime-safe; with [animation] threads above 1 a step waits
-/// for the pool's threads (WorkerPool). Poses do not depend on the number of threads.
+/// Thread-safe: no. What is noexcept, and encode(), are realtime-safe; with [animation] threads above 1 a step
+/// waits for the pool's threads (WorkerPool), where that takes less time (SharingChoice). Poses do not depend on the
+/// number of threads.
 class Animation {
  public:
   /// `gusts`: of the wind that step() will be given.
@@ -76,6 +78,7 @@ class Animation {
   std::unique_ptr<SceneList> scenes_;
   std::unique_ptr<SceneChange> change_;  // that is being carried out, or over and not yet taken
   workers::WorkerPool pool_;
+  workers::SharingChoice sharing_;
   wind::ground::WindTapes tapes_;
   std::uint64_t tick_ = 0;  // the number of the last one
 };

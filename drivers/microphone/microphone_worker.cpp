@@ -99,7 +99,7 @@ bool run_microphone_worker(const MicWorkerOptions& options, bus::AudioInput& inp
   MonoTime last_sound = clock.now().mono;
   while (!is_over) {
     bool is_read = true;
-    while (input.take(piece)) {
+    while (is_read && input.take(piece)) {
       last_sound = clock.now().mono;
       listener->take(piece, [&](const decode::microphone::MicBlock& block) {
         is_read = is_read && write_all(output, decode::microphone::encode_mic_frame(block, listener->hello()));

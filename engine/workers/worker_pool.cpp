@@ -5,7 +5,7 @@
 namespace yuragi::workers {
 namespace {
 
-/// Looks at a value before a thread sleeps: some tens of microseconds.
+/// Looks at a value before a thread sleeps: some hundreds of microseconds, by how long the processor pauses.
 constexpr int kSpins = 20'000;
 
 /// WorkerPool::next_part_: the bits of the part, and one more work.

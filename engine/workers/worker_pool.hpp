@@ -14,10 +14,10 @@ namespace yuragi::workers {
 ///
 /// A piece of work has as many parts as there are threads; whichever thread is free takes the next part. So the caller
 /// does what no other thread has begun, and where another program holds the other cores it does all: it waits only for
-/// parts that are being worked on. Between two pieces of work a thread polls kSpins times, some tens of microseconds,
-/// and then sleeps: in a loop of work without pauses no thread sleeps, and at 60 Hz none burns a core (waking the
-/// threads then costs some 50 us per tick). Thread-safe: no, one caller. Realtime-safe: run() neither allocates nor
-/// locks; it waits for the slowest part that another thread has begun.
+/// parts that are being worked on. Between two pieces of work a thread polls kSpins times, some hundreds of
+/// microseconds, and then sleeps: in a loop of work without pauses no thread sleeps, and at 60 Hz none burns a core
+/// (waking the threads then costs some 50 us per tick). Thread-safe: no, one caller. Realtime-safe: run() neither
+/// allocates nor locks; it waits for the slowest part that another thread has begun.
 class WorkerPool {
  public:
   static constexpr std::size_t kMaxThreads = 255;

@@ -42,7 +42,7 @@ TEST(WorkerPool, AScenesPoseIsTheSameBitForBitHoweverManyThreadsShareIt) {
       WorkerPool pool(threads);
       const auto scene = kind->make(values, {.seed = 1});
       std::uint64_t hash = pose::kPoseHashSeed;
-      for (std::uint64_t tick = 0; tick < 40; ++tick) {
+      for (std::uint64_t tick = 0; tick < 15; ++tick) {
         scene->shift(scripted_wind(tick), 1.0 / 60.0);
         pool.run([&scene](Part part) { scene->sample_part(part); });
         pool.run([&scene](Part part) { scene->project_part(part, 1.0 / 60.0); });
