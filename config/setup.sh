@@ -25,7 +25,7 @@ build_packages=(
 )
 test_packages=(
   libgtest-dev libbenchmark-dev
-  clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev
+  clang-14 lld-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev
   python3-numpy python3-flatbuffers
   mbpoll python3-pymodbus python3-serial python3-serial-asyncio # independent Modbus peers
   mosquitto liblo-tools socat                             # independent MQTT and OSC peers; serial lines

@@ -48,7 +48,9 @@ def run(*command, **options):
 
 
 def make_package(folder):
-    run("cpack", "-G", "DEB", "-B", folder, cwd=BUILD, env={**os.environ, "SOURCE_DATE_EPOCH": str(EPOCH_S)})
+    # Compressed as it is soonest done: the bytes within are what is looked at.
+    run("cpack", "-G", "DEB", "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip", "-B", folder, cwd=BUILD,
+        env={**os.environ, "SOURCE_DATE_EPOCH": str(EPOCH_S)})
     return next(folder.glob("*.deb"))
 
 

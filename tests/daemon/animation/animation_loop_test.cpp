@@ -122,7 +122,7 @@ settings::Config random_config(std::mt19937& random, std::size_t most) {
     text +=
         "shown = " + std::string(one_of(3) == 0 ? "false" : "true") + "\ngain = " + std::to_string(one_of(3)) + "\n";
     text += one_of(4) == 0
-                ? "kind = \"curtain\"\n"
+                ? "kind = \"curtain\"\ncolumns = 12\nrows = 9\n"
                 : "kind = \"grass\"\nblades_deep = 2\nblades_across = " + std::to_string(2 + one_of(2)) + "\n";
   }
   return settings::parse_config(text, "test.toml");

@@ -27,8 +27,8 @@ constexpr int kFadeTicks = 120;
 /// One of each kind that moves differently, small.
 constexpr std::array<const char*, 4> kSmallScenes = {
     "kind = \"grass\"\nname = \"meadow\"\nblades_across = 8\nblades_deep = 6\n",
-    "kind = \"curtain\"\nname = \"curtain\"\nx = 3\n",
-    "kind = \"flag\"\nname = \"flag\"\nz = 4\n",
+    "kind = \"curtain\"\nname = \"curtain\"\nx = 3\ncolumns = 40\nrows = 30\n",
+    "kind = \"flag\"\nname = \"flag\"\nz = 4\ncolumns = 40\nrows = 30\n",
     "kind = \"flame\"\nname = \"fire\"\nz = -4\n",
 };
 
@@ -183,7 +183,7 @@ TEST_F(SceneChangeTest, AMovedListKeepsItsScenesUnderTheirNewNumbersAndNames) {
   const std::vector<const pose::Pose*> before(animation.poses().begin(), animation.poses().end());
   std::vector<std::string> rest = small_scenes();
   rest.erase(rest.begin());
-  rest[0] = "kind = \"curtain\"\nname = \"drape\"\nx = 3\n";
+  rest[0] = "kind = \"curtain\"\nname = \"drape\"\nx = 3\ncolumns = 40\nrows = 30\n";
   settings::Config next = config_of(rest);
   next.seed += 1;
   change_to(animation, next);

@@ -41,17 +41,29 @@ class OnScreenTest : public testing::Test {
     context_ = std::make_unique<gl::HeadlessContext>(gl::HeadlessOptions{.is_software = true, .has_messages = true});
     gl::report_gl_errors();
   }
-  static void TearDownTestSuite() { context_.reset(); }
+  static void TearDownTestSuite() {
+    let_go();
+    context_.reset();
+  }
 
   void SetUp() override {
-    stage_ = std::make_unique<Stage>();
-    target_ = std::make_unique<gl::RenderTarget>(kWidth_px, kHeight_px, 1);
+    if (!stage_) {
+      stage_ = std::make_unique<Stage>();
+      target_ = std::make_unique<gl::RenderTarget>(kWidth_px, kHeight_px, 1);
+    }
     errors_before_ = gl::gl_error_count();
   }
   void TearDown() override {
+    if (!keeps_stage()) let_go();
+    EXPECT_EQ(gl::gl_error_count(), errors_before_);
+  }
+
+  /// For the next test of the suite: it only exchanges the scenes and draws, and what is new in a stage takes longest.
+  virtual bool keeps_stage() const { return false; }
+
+  static void let_go() {
     target_.reset();
     stage_.reset();
-    EXPECT_EQ(gl::gl_error_count(), errors_before_);
   }
 
   void show(const std::vector<wire::SceneModel>& models) {
@@ -71,16 +83,19 @@ class OnScreenTest : public testing::Test {
   Pixels draw(double strength, float opacity) { return draw(strength, std::vector<float>(models_.size(), opacity)); }
 
   std::vector<wire::SceneModel> models_;
-  std::unique_ptr<Stage> stage_;
   meshes::OrbitCamera camera_;
-  std::unique_ptr<gl::RenderTarget> target_;
+  static inline std::unique_ptr<Stage> stage_;
+  static inline std::unique_ptr<gl::RenderTarget> target_;
 
  private:
   static inline std::unique_ptr<gl::HeadlessContext> context_;
   int errors_before_ = 0;
 };
 
-class LooksTest : public OnScreenTest, public testing::WithParamInterface<const char*> {};
+class LooksTest : public OnScreenTest, public testing::WithParamInterface<const char*> {
+ protected:
+  bool keeps_stage() const override { return true; }
+};
 
 TEST_P(LooksTest, ShowsSomethingInTheMiddleAndNothingInTheSkysCorners) {
   show({test_model(GetParam())});
