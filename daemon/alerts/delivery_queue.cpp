@@ -51,8 +51,9 @@ void DeliveryQueue::work(const std::stop_token& stop) {
       changed_.wait(lock, stop, [this] { return has_changed_; });
       continue;
     }
-    if (next->due > Clock::now()) {
-      changed_.wait_until(lock, stop, next->due, [this] { return has_changed_; });
+    // A copy: it is read without the lock while it is waited for, and push() moves those that wait.
+    if (const auto due = next->due; due > Clock::now()) {
+      changed_.wait_until(lock, stop, due, [this] { return has_changed_; });
       continue;
     }
     Waiting one = std::move(*next);

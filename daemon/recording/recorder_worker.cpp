@@ -393,7 +393,7 @@ Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
 
 /// Fails where the name has come to belong to another file or to none. SQLite does not report that.
 Result<void, Failure> RecorderWorker::check_name() const {
-  const auto named = identity_of(file_);
+  const auto named = drivers::windlog::identity_of(file_);
   if (named && *named != identity_) return Failure{file_.string() + ": was replaced by another file"};
   if (!named &&
       (named.error() == std::errc::no_such_file_or_directory || named.error() == std::errc::not_a_directory)) {
@@ -410,7 +410,7 @@ Result<void, Failure> RecorderWorker::open_session(Instant started) {
   create_private_file(file_);
   auto opened = drivers::windlog::WindlogWriter::open(file_);
   if (!opened) return opened.error();
-  const auto identity = identity_of(file_);
+  const auto identity = drivers::windlog::identity_of(file_);
   if (!identity) return Failure{file_.string() + ": " + identity.error().message()};
   identity_ = *identity;
   writer_.emplace(std::move(*opened));

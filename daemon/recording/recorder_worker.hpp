@@ -14,9 +14,9 @@
 #include <string_view>
 #include <vector>
 
-#include "daemon/recording/file_identity.hpp"
 #include "daemon/recording/recorder_status.hpp"
 #include "daemon/settings/recording_config.hpp"
+#include "drivers/windlog/file_identity.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/spsc_ring.hpp"
@@ -150,8 +150,8 @@ class RecorderWorker {
   std::vector<Entry> pending_;
   std::vector<QuantitiesEntry> pending_quantities_;
   std::optional<drivers::windlog::WindlogWriter> writer_;
-  FileIdentity identity_;         ///< of the file that writer_ writes
-  std::optional<UtcTime> began_;  ///< that file's first session, once it has readings or quantities
+  drivers::windlog::FileIdentity identity_;  ///< of the file that writer_ writes
+  std::optional<UtcTime> began_;             ///< that file's first session, once it has readings or quantities
   std::vector<std::int64_t> sensor_ids_;
   bool is_session_due_ = false;  ///< the next reading begins one
   int commits_ = 0;              ///< since the file was opened

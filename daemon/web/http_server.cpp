@@ -1,7 +1,9 @@
 #include "daemon/web/http_server.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <optional>
+#include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -100,7 +102,20 @@ class Connection : public std::enable_shared_from_this<Connection> {
         .is_forwarded = message.count("Forwarded") + message.count("X-Forwarded-For") + message.count("X-Real-IP") > 0,
         .is_https = text_of(message["X-Forwarded-Proto"]) == "https",
         .client = client_};
-    handler_(request, [self = shared_from_this()](HttpResponse response) { self->write(std::move(response)); });
+    ask(request);
+  }
+
+  /// A handler that throws costs its answer alone.
+  void ask(const HttpRequest& request) {
+    const auto waits = std::make_shared<bool>(true);
+    const HttpReply reply = [self = shared_from_this(), waits](HttpResponse response) {
+      if (std::exchange(*waits, false)) self->write(std::move(response));
+    };
+    try {
+      handler_(request, reply);
+    } catch (const std::exception&) {
+      reply(plain(500, "this request could not be answered, which is a fault of the program"));
+    }
   }
 
   void write(HttpResponse response) {

@@ -54,7 +54,8 @@ struct HttpLimits {
 };
 
 /// A server of HTTP/1.1 (R. Fielding and others, RFC 9110 and 9112, 2022) with connections that stay open. What is not
-/// HTTP, too long or too slow is refused or closed here; the handler gets whole requests alone.
+/// HTTP, too long or too slow is refused or closed here; the handler gets whole requests alone. Where it throws a
+/// std::exception the client is answered with 500.
 ///
 /// All work is done on the thread that runs `io`, which must outlive this object. Thread-safe: no.
 class HttpServer {

@@ -1,6 +1,7 @@
 #include "daemon/web/web_server.hpp"
 
 #include <atomic>
+#include <exception>
 #include <thread>
 #include <utility>
 
@@ -83,7 +84,7 @@ class WebServer::Thread {
             *io_, settings_.listen, HttpLimits{.clients = settings_.clients},
             [this](const HttpRequest& request, HttpReply reply) { answer(request, std::move(reply)); })),
         endpoint_(server_->local_endpoint()),
-        thread_([this] { io_->run(); }) {}
+        thread_([this] { run(); }) {}
   ~Thread() {
     try {
       close();
@@ -116,6 +117,18 @@ class WebServer::Thread {
   }
 
  private:
+  /// What throws costs the client that it was done for, or one message, and never the thread.
+  void run() {
+    for (bool is_over = false; !is_over;) {
+      try {
+        io_->run();
+        is_over = true;
+      } catch (const std::exception&) {
+        // It goes on with the next thing that is ready.
+      }
+    }
+  }
+
   void answer(const HttpRequest& request, HttpReply reply) {
     if (!is_known_host(request.host, settings_.hosts)) {
       return reply(problem(421, "Not this machine's name",

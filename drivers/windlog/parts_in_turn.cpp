@@ -45,6 +45,21 @@ std::string span_by_names(const std::vector<std::filesystem::path>& files, std::
   return span;
 }
 
+std::optional<FileIdentity> identity_now(const std::filesystem::path& file) {
+  const auto found = identity_of(file);
+  if (!found) return std::nullopt;
+  return *found;
+}
+
+/// The name of a part that its writer may have completed since it was opened.
+std::filesystem::path present_name(const PartsInTurn::Part& part) {
+  if (!part.identity || identity_now(part.file) == part.identity) return part.file;
+  const auto completed = completed_parts(part.file);
+  const auto found = std::ranges::find_if(
+      completed, [&part](const RecordingPart& each) { return identity_now(each.file) == part.identity; });
+  return found == completed.end() ? part.file : found->file;
+}
+
 /// One part after the other, of which one is open.
 class BlocksInTurn final : public ReadingBlocks {
  public:
@@ -131,6 +146,16 @@ Result<std::unique_ptr<PartsInTurn>, Failure> PartsInTurn::open(const std::vecto
   return series;
 }
 
+Result<StoredFile, Failure> PartsInTurn::open_part(const Part& part) const {
+  constexpr int kMostRenames = 3;
+  for (int renames = 0; renames < kMostRenames; ++renames) {
+    const std::filesystem::path name = present_name(part);
+    auto opened = open_stored_file(name, stop_);
+    if (!part.identity || identity_now(name) == part.identity) return opened;
+  }
+  return Failure{part.file.string() + ": was removed while it was read", FailureKind::kNoInput};
+}
+
 void PartsInTurn::leave_out(const std::filesystem::path& file, const std::string& span, const Failure& failure) const {
   if (!damaged_files_.insert(file).second) return;
   damage_.push_back(failure.message + "; its readings" + span + " are left out");
@@ -151,7 +176,8 @@ Result<void, Failure> PartsInTurn::add(const std::filesystem::path& file) {
   const auto begun = own.sessions.empty() ? own.begun_without_readings : std::optional(own.sessions.front().first.utc);
   if (!begun) return {};
 
-  Part part{.file = file, .first_sensor = sensors.size(), .sensor_count = own.sensors.size()};
+  Part part{
+      .file = file, .identity = identity_now(file), .first_sensor = sensors.size(), .sensor_count = own.sensors.size()};
   if (!sessions.empty()) {
     const Nanoseconds gap = *begun - sessions.back().last.utc;
     part.log_begin = sessions.back().log_end() + std::max(gap, Nanoseconds{0});

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/windlog/file_identity.hpp"
 #include "drivers/windlog/stored_file.hpp"
 #include "drivers/windlog/stored_readings.hpp"
 
@@ -35,6 +36,7 @@ class PartsInTurn final : public StoredReadings {
   /// A file, and where its sensors and its log time begin in the whole.
   struct Part {
     std::filesystem::path file;
+    std::optional<FileIdentity> identity;  ///< the writer may rename it meanwhile, and give its name to the next
     Nanoseconds log_begin{0};
     Nanoseconds log_end{0};
     std::size_t first_sensor = 0;
@@ -50,7 +52,8 @@ class PartsInTurn final : public StoredReadings {
   const std::vector<Part>& parts() const { return parts_; }
   /// The flags of a part's own sensors.
   static std::vector<bool> flags_of(const Part& part, const std::vector<bool>& of_sensors);
-  Result<StoredFile, Failure> open_part(const Part& part) const { return open_stored_file(part.file, stop_); }
+  /// Opens it by the name that it has now.
+  Result<StoredFile, Failure> open_part(const Part& part) const;
 
  private:
   Result<void, Failure> add(const std::filesystem::path& file);

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <future>
 #include <optional>
+#include <string>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -87,6 +89,20 @@ TEST(DeliveryQueue, OthersDoNotWaitForOneThatIsTriedAgain) {
   queue.push(news_of("a"));
   queue.push(news_of("b"));
   EXPECT_THAT(log.wait_for(1), ElementsAre("b began"));
+}
+
+/// Each that comes moves those that wait, while the thread waits until one of them is due (thread sanitizer).
+TEST(DeliveryQueue, ManyComeWhileItWaitsToTryAgain) {
+  Log log;
+  DeliveryQueue queue([](const AlertNews&, const std::stop_token&) -> Result<void, Failure> { return Failure{"no"}; },
+                      [&](std::string_view, std::string_view what) { log.add(std::string(what)); },
+                      {.first = 1h, .longest = 1h, .give_up = 24h});
+  for (std::size_t i = 0; i < 40; ++i) {
+    queue.push(news_of(std::to_string(i)));
+    log.wait_for(i + 1);
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(log.wait_for(40).size(), 40U);
 }
 
 TEST(DeliveryQueue, TriesOnceWhereThatIsAsked) {

@@ -510,7 +510,7 @@ TEST(Recorder, WritesToItsOpenFileWhileTheNameCannotBeLookedUp) {
                       [&](std::string_view report) { reports.emplace_back(report); });
     std::filesystem::remove(link);
     std::filesystem::create_directory_symlink(link, link);
-    EXPECT_EQ(identity_of(link / "a.windlog").error(), std::errc::too_many_symbolic_link_levels);
+    EXPECT_EQ(drivers::windlog::identity_of(link / "a.windlog").error(), std::errc::too_many_symbolic_link_levels);
     recorder.push(0, test::reading_at(1, 1.0));
     wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
   }

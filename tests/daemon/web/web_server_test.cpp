@@ -5,12 +5,14 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/read.hpp>
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
@@ -130,6 +132,51 @@ TEST_F(WebServerTest, TheNewestNewsWin) {
   server_.publish_sensors(status_of("mast"), nullptr);
   EXPECT_THAT(Client(server_.local_endpoint()).get("/api/v1/status"), HasSubstr("\"mast\""));
 }
+/// Each part of a request with bytes that are no text: an answer, and the next request has one, too.
+TEST_F(WebServerTest, BytesThatAreNoTextCostNothingButTheirAnswer) {
+  const std::string name = "127.0.0.1";
+  for (const std::string bytes : {"\xff", "\x80\xc3", "\xc0\xaf", "\xed\xa0\x80"}) {
+    const auto request = [&](const std::string& first_line, const std::string& host, const std::string& fields,
+                             const std::string& body = "") {
+      return first_line + " HTTP/1.1\r\nHost: " + host + "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n" +
+             fields + "\r\n" + body;
+    };
+    for (const std::string& sent :
+         {request("GET /", bytes, ""), request("GET /" + bytes, name, ""), request("GET /api/v1/" + bytes, name, ""),
+          request("GET /api/v1/history?hours=" + bytes, name, ""), request("GE" + bytes + " /", name, ""),
+          request("GET /api/v1/status", name, "Cookie: yuragi=" + bytes + "\r\n"),
+          request("GET /api/v1/log", name, "Authorization: Bearer " + bytes + "\r\n"),
+          request("GET /", name, "If-None-Match: " + bytes + "\r\n"),
+          request("POST /api/v1/scenes", name, std::string(kJson) + "Origin: http://" + bytes + "\r\n", "{}"),
+          request("POST /api/v1/scenes", name, "Content-Type: " + bytes + "\r\n", "{}"),
+          request("POST /api/v1/scenes", name, kJson, bytes),
+          request("POST /api/v1/scenes", name, kJson, R"({"scene":")" + bytes + "\"}"),
+          request("POST /api/v1/scenes", name, kJson, R"({")" + bytes + "\":1}"),
+          request("POST /api/v1/pair", name, kJson, R"({"code":")" + bytes + "\"}")}) {
+      Client client(server_.local_endpoint());
+      client.send(sent);
+      EXPECT_THAT(client.answer(), AllOf(StartsWith("HTTP/1.1 "), Not(StartsWith("HTTP/1.1 500")))) << sent;
+    }
+  }
+  EXPECT_THAT(Client(server_.local_endpoint()).get("/healthz"), StartsWith("HTTP/1.1 200 OK"));
+}
+
+TEST(HttpServer, AHandlerThatThrowsCostsItsAnswerAlone) {
+  boost::asio::io_context io;
+  HttpServer server(io, "127.0.0.1:0", {}, [](const HttpRequest& request, const HttpReply& reply) {
+    if (request.path == "/after") reply({.body = "said"});
+    if (request.path != "/well") throw std::runtime_error("a secret");
+    reply({.body = "well"});
+  });
+  std::thread thread([&io] { io.run(); });
+  Client client(server.local_endpoint());
+  EXPECT_THAT(client.get("/before"), AllOf(StartsWith("HTTP/1.1 500"), Not(HasSubstr("a secret"))));
+  EXPECT_THAT(client.get("/after"), HasSubstr("said"));
+  EXPECT_THAT(client.get("/well"), HasSubstr("well")) << "on the same connection";
+  boost::asio::post(io, [&server] { server.close(); });
+  thread.join();
+}
+
 TEST_F(WebServerTest, NobodyElsesPageSeesOrChangesAnything) {
   Client client(server_.local_endpoint());
   const std::string answer = client.get("/api/v1/status");

@@ -1,9 +1,11 @@
 #include "drivers/windlog/recording_parts.hpp"
 
 #include <fstream>
+#include <optional>
 
 #include <gtest/gtest.h>
 
+#include "drivers/windlog/recording_files.hpp"
 #include "drivers/windlog/windlog_cursor.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -64,6 +66,21 @@ class RecordingOfParts : public testing::Test {
 
   test::TemporaryFolder folder_;
 };
+
+TEST_F(RecordingOfParts, IsReadToItsEndAlthoughItsWriterCompletesTheLastFileMeanwhile) {
+  auto reader = WindlogReader::open(recording());
+  ASSERT_TRUE(reader) << reader.error().message;
+  ASSERT_FALSE(rename_recording(recording(), part_name(recording(), kDay + 48h)));
+  test::write_session(recording(), readings_of_day(3), "roof");
+  EXPECT_EQ(reader->configuration(3).value(), "[wind]\n");
+  std::optional<LoggedReading> last;
+  std::size_t count = 0;
+  for (auto logged = reader->next(); logged && *logged; logged = reader->next(), ++count) last = **logged;
+  EXPECT_EQ(count, 3U * 700U);
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->reading.time.utc, readings_of_day(2).back().time.utc);
+  EXPECT_EQ(reader->sensors()[last->sensor].name, "mast");
+}
 
 TEST_F(RecordingOfParts, IsReadAsOne) {
   auto parts = WindlogReader::open(recording());

@@ -585,8 +585,9 @@ wire::SceneModel ground_model() {
   nodes.curl_y = nodes.curl_z = nodes.rest_curl_rad = zeros;
   nodes.rest_y = nodes.curl_x = nodes.link_length_m = ones;
   for (std::size_t i = 0; i < 64; ++i) {
+    const std::size_t row = i / 8;
     nodes.root_x_m[i] = 8.0F * (static_cast<float>(i % 8) - 3.5F);
-    nodes.root_z_m[i] = 8.0F * (static_cast<float>(i / 8) - 3.5F);
+    nodes.root_z_m[i] = 8.0F * (static_cast<float>(row) - 3.5F);
   }
   return {.name = "ground", .kind = "ground", .skeleton = nodes};
 }
@@ -735,7 +736,7 @@ TEST_F(StageTest, HasNoTroubleWithModelsOfNothing) {
 /// How much brighter the lowest rows of a picture are than those of another, of 255.
 double brighter_ground(const Pixels& a, const Pixels& b) {
   double sum = 0.0;
-  const std::size_t from = 3 * kWidth_px * (kHeight_px - kHeight_px / 8);
+  const std::size_t from = std::size_t{3} * kWidth_px * (kHeight_px - kHeight_px / 8);
   for (std::size_t i = from; i < a.size(); ++i) sum += static_cast<double>(a[i]) - static_cast<double>(b[i]);
   return sum / static_cast<double>(a.size() - from);
 }
@@ -808,6 +809,7 @@ TEST_F(StageTest, TheFirstPictureHasAllCloudsThatItShows) {
   open_stage();
   for (int picture = 0; picture < 140; ++picture) look_at(0.0, 3.0);  // by then all are there, whatever is in view
   std::vector<Pixels> complete;
+  complete.reserve(views.size());
   for (const auto& [heading_deg, pitch_deg] : views) complete.push_back(look_at(heading_deg, pitch_deg));
   for (std::size_t view = 0; view < views.size(); ++view) {
     open_stage();

@@ -1,10 +1,10 @@
-#include "daemon/recording/file_identity.hpp"
+#include "drivers/windlog/file_identity.hpp"
 
 #include <cerrno>
 
 #include <sys/stat.h>
 
-namespace yuragi::daemon::recording {
+namespace yuragi::drivers::windlog {
 
 Result<FileIdentity, std::error_code> identity_of(const std::filesystem::path& file) noexcept {
   struct stat status {};
@@ -12,4 +12,4 @@ Result<FileIdentity, std::error_code> identity_of(const std::filesystem::path& f
   return FileIdentity{status.st_dev, status.st_ino};
 }
 
-}  // namespace yuragi::daemon::recording
+}  // namespace yuragi::drivers::windlog

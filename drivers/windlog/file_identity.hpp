@@ -6,7 +6,7 @@
 
 #include "engine/base/result.hpp"
 
-namespace yuragi::daemon::recording {
+namespace yuragi::drivers::windlog {
 
 /// Which file a name refers to. Another file that takes over the name differs, as long as the first exists or is open.
 struct FileIdentity {
@@ -18,4 +18,4 @@ struct FileIdentity {
 /// The error says why the name cannot be looked up. Follows symbolic links. Never throws.
 Result<FileIdentity, std::error_code> identity_of(const std::filesystem::path& file) noexcept;
 
-}  // namespace yuragi::daemon::recording
+}  // namespace yuragi::drivers::windlog

@@ -1,0 +1,81 @@
+// Bytes as they come out of a client's socket, for the whole HTTP server with its page and its routes: whatever they
+// are, the client is answered or let go, no answer is a fault of the program, and the next client is answered.
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+
+#include "daemon/web/web_server.hpp"
+#include "engine/base/address.hpp"
+
+namespace {
+
+using namespace yuragi;
+using boost::asio::ip::tcp;
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+daemon::web::WebSettings settings() {
+  return {.listen = "127.0.0.1:0",
+          .hosts = {"roof"},
+          .token = Secret("correct horse battery staple"),
+          .software = "yuragi 0.0.0",
+          .ask = [](const wire::Control& control, bool,
+                    const auto& reply) { reply({.done = true, .message = control.scene, .scenes = {}}); },
+          .history =
+              [](unsigned, const auto& reply) {
+                reply(Failure{"nothing", FailureKind::kNoInput});
+              }};
+}
+
+/// What the server says to these bytes, until it closes the connection: no more of them will come.
+std::string said_to(std::string_view bytes) {
+  static daemon::web::WebServer server(settings());
+  static const Address address = parse_address(server.local_endpoint()).value();
+  boost::asio::io_context io;
+  tcp::socket socket(io);
+  socket.connect(tcp::endpoint(boost::asio::ip::make_address(address.host), address.port));
+  boost::system::error_code gone;
+  boost::asio::write(socket, boost::asio::buffer(bytes), gone);
+  socket.shutdown(tcp::socket::shutdown_send, gone);
+  std::string said;
+  boost::asio::read(socket, boost::asio::dynamic_buffer(said), gone);
+  return said;
+}
+
+/// The first byte chooses the part of a request that the others are, so that each is reached.
+std::string request_of(std::string_view data) {
+  if (data.empty()) return {};
+  const std::string rest(data.substr(1));
+  switch (static_cast<unsigned char>(data[0]) % 5) {
+    case 0:
+      return rest;
+    case 1:
+      return "GET /" + rest + " HTTP/1.1\r\nHost: roof\r\n\r\n";
+    case 2:
+      return "GET /api/v1/status HTTP/1.1\r\n" + rest + "\r\n\r\n";
+    case 3:
+      return "GET / HTTP/1.1\r\nHost: " + rest + "\r\n\r\n";
+    default:
+      return "POST /api/v1/scenes HTTP/1.1\r\nHost: roof\r\nContent-Type: application/json\r\nContent-Length: " +
+             std::to_string(rest.size()) + "\r\n\r\n" + rest;
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string said = said_to(request_of({reinterpret_cast<const char*>(data), size}));
+  require(said.empty() || said.starts_with("HTTP/1."));
+  require(said.find("HTTP/1.1 500") == std::string::npos);
+  static unsigned count = 0;
+  if (++count % 64 == 0) require(said_to("GET / HTTP/1.0\r\nHost: roof\r\n\r\n").starts_with("HTTP/1."));
+  return 0;
+}
