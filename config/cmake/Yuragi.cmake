@@ -140,7 +140,8 @@ endfunction()
 # its cases a CTest test; with sanitizers, where a process costs more than a case, a part of its cases is one. Those of the engine but
 # for its base and its workers, in which there are no threads, are labelled `threadless`. NEEDS names other programs that it runs.
 # UNSANITIZED names cases that repeat for their statistics what shorter cases do once: a sanitizer sees the same memory accesses there,
-# and leaves the long ones out; and cases that cannot run with one. LONG names cases that do on other records what the others do on one: they are labelled `long`.
+# and leaves the long ones out; and cases that cannot run with one. LONG names cases that do on other records what the others do on
+# one: they are labelled `long`.
 #
 # In a unity build the programs of a folder of tests/ that have the same labels are built as one (yuragi_join_tests), and the program
 # itself only when it is named. ALONE: not this one, which replaces operator new or is compiled in another way.

@@ -204,7 +204,7 @@ void HttpServer::interrupt() noexcept {
 }
 
 void HttpServer::accept() {
-  // Accepting tells the sender: a socket whose client has gone no longer knows it.
+  // async_accept gives the sender: remote_endpoint() fails once the client has gone.
   acceptor_.async_accept(sender_, [this](const boost::system::error_code& error, tcp::socket socket) {
     if (error == boost::asio::error::operation_aborted) return;
     // What the client has undone in the meantime is its own affair.

@@ -9,8 +9,9 @@ namespace yuragi::workers {
 /// holds the tick up.
 ///
 /// It tries the other way for kTrialTicks of each kCycleTicks and then keeps the one whose mean is smaller, so that
-/// what is tried in vain costs less than a hundredth of the difference, and is below the 99th percentile of ticks. It
-/// begins alone, with a trial at once. The choice changes no result (WorkerPool). Thread-safe: no. Realtime-safe: yes.
+/// a trial of the slower way costs less than a hundredth of the difference, and slows fewer than one tick in a hundred.
+/// It begins alone, with a trial after kTrialTicks. The choice changes no result (WorkerPool). Thread-safe: no.
+/// Realtime-safe: yes.
 class SharingChoice {
  public:
   static constexpr int kTrialTicks = 8;

@@ -179,7 +179,7 @@ std::vector<Target> targets_of(const Times& times) {
     add_ratio(name + " as shipped: times faster than the plain one", at(name + "/plain") / at(name + "/total"), 6.0,
               true);
   }
-  // Against a floor of the same run: a part of the paper's time says most of all how fast the machine is.
+  // As a ratio to a floor of the same run: the part of the paper's time depends on how fast the machine is.
   for (const std::string name : {"curtain", "flag"}) {
     add_ratio(name + ", noise alone: total in floors", at(name + "/total") / at(name + "/floor"), 8.0);
   }

@@ -1,5 +1,5 @@
-// Bytes as they come out of a client's socket, for the whole HTTP server with its page and its routes: whatever they
-// are, the client is answered or let go, no answer is a fault of the program, and the next client is answered.
+// Any bytes of a client, sent to the whole HTTP server with its page and its routes. The server answers the client or
+// closes the connection. It never answers 500, and it goes on answering other clients.
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
@@ -36,8 +36,8 @@ daemon::web::WebSettings settings() {
               }};
 }
 
-/// What the server says to these bytes, until it closes the connection: no more of them will come. Nothing where this
-/// machine has no port left for a client: those of the last second are kept.
+/// Sends these bytes and no more, and returns what the server says until it closes the connection. Returns nothing
+/// where the client cannot connect: so many clients in a second can use up the machine's ports.
 std::optional<std::string> said_to(std::string_view bytes) {
   static daemon::web::WebServer server(settings());
   static const Address address = parse_address(server.local_endpoint()).value();

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 #include <future>
+#include <initializer_list>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -518,38 +519,44 @@ TEST(Recorder, WritesToItsOpenFileWhileTheNameCannotBeLookedUp) {
   EXPECT_EQ(test::read_all(folder / "real" / "a.windlog").size(), 1U);
 }
 
+/// Replaces system calls of SQLite while it lives.
+class ReplacedCalls {
+ public:
+  ReplacedCalls(std::initializer_list<const char*> names, sqlite3_syscall_ptr replacement) {
+    sqlite3_initialize();
+    sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
+    for (const char* name : names) {
+      originals_.emplace_back(name, vfs->xGetSystemCall(vfs, name));
+      vfs->xSetSystemCall(vfs, name, replacement);
+    }
+  }
+  ~ReplacedCalls() {
+    sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
+    for (const auto& [name, original] : originals_) vfs->xSetSystemCall(vfs, name, original);
+  }
+  ReplacedCalls(const ReplacedCalls&) = delete;
+  ReplacedCalls& operator=(const ReplacedCalls&) = delete;
+
+ private:
+  std::vector<std::pair<const char*, sqlite3_syscall_ptr>> originals_;
+};
+
 /// Holds every write of SQLite's to the disk while it is closed, as a disk that hangs does.
 class DiskGate {
  public:
-  DiskGate() {
-    sqlite3_initialize();
-    sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
-    for (const char* name : kCalls) originals_.push_back(vfs->xGetSystemCall(vfs, name));
-    vfs->xSetSystemCall(vfs, "pwrite64", reinterpret_cast<sqlite3_syscall_ptr>(&write_when_open));
-    vfs->xSetSystemCall(vfs, "pwrite", reinterpret_cast<sqlite3_syscall_ptr>(&write_when_open));
-  }
-  ~DiskGate() {
-    sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
-    for (std::size_t i = 0; i < kCalls.size(); ++i) vfs->xSetSystemCall(vfs, kCalls[i], originals_[i]);
-  }
-  DiskGate(const DiskGate&) = delete;
-  DiskGate& operator=(const DiskGate&) = delete;
-
   static void set_open(bool is_open) {
     is_open_ = is_open;
     is_open_.notify_all();
   }
 
  private:
-  static constexpr std::array<const char*, 2> kCalls = {"pwrite", "pwrite64"};
-
   static ssize_t write_when_open(int file, const void* bytes, std::size_t size, off_t offset) {
     is_open_.wait(false);
     return pwrite(file, bytes, size, offset);
   }
 
   static inline std::atomic<bool> is_open_{true};
-  std::vector<sqlite3_syscall_ptr> originals_;
+  const ReplacedCalls calls_{{"pwrite", "pwrite64"}, reinterpret_cast<sqlite3_syscall_ptr>(&write_when_open)};
 };
 
 TEST(Recorder, ADiskThatHangsIsAStateAndTheReadingsWait) {
@@ -669,33 +676,19 @@ TEST(Recorder, CompletesAFileThatAnotherProgramReadsWithAllItsReadings) {
 /// what lies beside it.
 class AtTheFirstRead {
  public:
-  explicit AtTheFirstRead(std::function<void()> call) {
-    call_ = std::move(call);
-    sqlite3_initialize();
-    sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
-    for (const char* name : kCalls) originals_.push_back(vfs->xGetSystemCall(vfs, name));
-    for (const char* name : kCalls) {
-      vfs->xSetSystemCall(vfs, name, reinterpret_cast<sqlite3_syscall_ptr>(&call_and_read));
-    }
-  }
-  ~AtTheFirstRead() {
-    sqlite3_vfs* const vfs = sqlite3_vfs_find(nullptr);
-    for (std::size_t i = 0; i < kCalls.size(); ++i) vfs->xSetSystemCall(vfs, kCalls[i], originals_[i]);
-    call_ = nullptr;
-  }
+  explicit AtTheFirstRead(std::function<void()> call) { call_ = std::move(call); }
+  ~AtTheFirstRead() { call_ = nullptr; }
   AtTheFirstRead(const AtTheFirstRead&) = delete;
   AtTheFirstRead& operator=(const AtTheFirstRead&) = delete;
 
  private:
-  static constexpr std::array<const char*, 2> kCalls = {"pread", "pread64"};
-
   static ssize_t call_and_read(int file, void* bytes, std::size_t size, off_t offset) {
     if (call_) std::exchange(call_, nullptr)();
     return pread(file, bytes, size, offset);
   }
 
   static inline thread_local std::function<void()> call_;
-  std::vector<sqlite3_syscall_ptr> originals_;
+  const ReplacedCalls calls_{{"pread", "pread64"}, reinterpret_cast<sqlite3_syscall_ptr>(&call_and_read)};
 };
 
 TEST(Recorder, CompletesAFileOnlyWhereNobodyOfItsProcessIsAboutToOpenIt) {
