@@ -15,7 +15,6 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/commands/daemon_log.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/installation.hpp"
 #include "daemon/commands/json_output.hpp"
@@ -23,6 +22,7 @@
 #include "daemon/commands/simulator_process.hpp"
 #include "daemon/sensing/system_clock.hpp"
 #include "daemon/service/config_check.hpp"
+#include "daemon/service/daemon_log.hpp"
 #include "daemon/service/service.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/settings/standard_output.hpp"
@@ -204,7 +204,7 @@ void run_accept(const AcceptOptions& options) {
     throw ExitError(kExitUsage, "--ask is about real vanes: leave out --simulated-only");
   if (options.asks && isatty(STDIN_FILENO) == 0)
     throw ExitError(kExitUsage, "--ask: there is nobody at a terminal to be asked");
-  const DaemonLog log(false);
+  const service::DaemonLog log(false);
   spdlog::set_level(spdlog::level::err);  // what a sensor says is on the page
   const auto file = installed_config(options.config_file);
   const settings::Config config = file ? settings::load_config(*file) : settings::default_config();

@@ -7,10 +7,10 @@
 #include <unistd.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/commands/daemon_log.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/sensing/recorded_installation.hpp"
+#include "daemon/service/daemon_log.hpp"
 #include "daemon/service/service.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/tools/offline/lockstep_replay.hpp"
@@ -148,7 +148,7 @@ void replay_at_full_speed(const ReplayOptions& options) {
 }
 
 void replay(const ReplayOptions& options) {
-  const DaemonLog log(options.run.verbose);
+  const service::DaemonLog log(options.run.verbose);
   if (const auto reader = drivers::windlog::WindlogReader::open(options.file)) {
     for (const std::string& damage : reader->damage()) spdlog::warn("{}", damage);
   }

@@ -4,8 +4,8 @@
 #include <spdlog/spdlog.h>
 
 #include "daemon/commands/command.hpp"
-#include "daemon/commands/daemon_log.hpp"
 #include "daemon/commands/run_options.hpp"
+#include "daemon/service/daemon_log.hpp"
 #include "daemon/service/hold_back_hangups.hpp"
 #include "daemon/service/service.hpp"
 #include "daemon/settings/secret_exposure.hpp"
@@ -28,7 +28,7 @@ settings::Config config_with_warnings(const RunOptions& options) {
 /// configured one.
 void run_daemon(const RunOptions& options, const std::optional<std::filesystem::path>& record, bool with_scenes) {
   service::hold_back_hangups();
-  const DaemonLog log(options.verbose);
+  const service::DaemonLog log(options.verbose);
   const settings::Config config = config_with_warnings(options);
   log.set_level(config.log.level);
   service::ServiceOptions service{.record = record ? record : config.recording.file,

@@ -9,13 +9,13 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include "daemon/commands/daemon_log.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/commands/sensors.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/sensing/system_clock.hpp"
+#include "daemon/service/daemon_log.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/state/sensor_json.hpp"
@@ -182,7 +182,7 @@ void watch(const WatchOptions& options) {
   if (!options.raw && (options.hex || !options.sensor.empty())) {
     throw ExitError(kExitUsage, "a SENSOR and --hex are for raw messages: add --raw");
   }
-  const DaemonLog log(options.run.verbose);
+  const service::DaemonLog log(options.run.verbose);
   if (!options.run.verbose) spdlog::set_level(spdlog::level::warn);  // the table shows the rest
   const settings::Config config = options.run.config();
   const std::string& address = config.stream.listen;

@@ -1,4 +1,4 @@
-#include "daemon/commands/daemon_log.hpp"
+#include "daemon/service/daemon_log.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -12,7 +12,7 @@
 
 #include "engine/base/count_text.hpp"
 
-namespace yuragi::daemon::commands {
+namespace yuragi::daemon::service {
 namespace {
 
 constexpr const char* kPattern = "%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v";
@@ -111,4 +111,4 @@ DaemonLog::~DaemonLog() {
   writer_.reset();
 }
 
-}  // namespace yuragi::daemon::commands
+}  // namespace yuragi::daemon::service

@@ -1,4 +1,4 @@
-#include "daemon/commands/daemon_log.hpp"
+#include "daemon/service/daemon_log.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-namespace yuragi::daemon::commands {
+namespace yuragi::daemon::service {
 namespace {
 
 /// A pipe as a stream to write to, whose reader reads only when it is told to.
@@ -125,4 +125,4 @@ TEST(DaemonLog, IsDelayedByNobodyAndEndsAlthoughNobodyReads) {
 }
 
 }  // namespace
-}  // namespace yuragi::daemon::commands
+}  // namespace yuragi::daemon::service

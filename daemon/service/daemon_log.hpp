@@ -16,7 +16,7 @@ namespace spdlog::details {
 class thread_pool;
 }
 
-namespace yuragi::daemon::commands {
+namespace yuragi::daemon::service {
 
 /// Writes lines of the log to a stream (standard error), and never waits for long for whoever reads it: a line that the
 /// stream does not take within kPatience, or at once where the one before was not taken either, is dropped and counted.
@@ -77,4 +77,4 @@ class DaemonLog {
   std::shared_ptr<spdlog::details::thread_pool> writer_;
 };
 
-}  // namespace yuragi::daemon::commands
+}  // namespace yuragi::daemon::service
