@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/contain.hpp"
 #include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::alerts {
@@ -13,7 +14,7 @@ DeliveryQueue::DeliveryQueue(Deliver deliver, Report report, const RetryTimes& t
     : deliver_(std::move(deliver)),
       report_(std::move(report)),
       times_(times),
-      thread_([this](const std::stop_token& stop) { work(stop); }) {}
+      thread_([this](const std::stop_token& stop) { contain("delivering alerts", [&] { work(stop); }); }) {}
 
 DeliveryQueue::~DeliveryQueue() = default;
 
@@ -67,7 +68,8 @@ void DeliveryQueue::work(const std::stop_token& stop) {
 }
 
 bool DeliveryQueue::is_done(Waiting& one, const std::stop_token& stop) {
-  const auto delivered = deliver_(one.news, stop);
+  Result<void, Failure> delivered = Failure{"delivering it failed, which is a fault of the program"};
+  contain("delivering an alert", [&] { delivered = deliver_(one.news, stop); });
   const bool is_first_try = one.pause == Nanoseconds::zero();
   if (delivered) {
     if (!is_first_try) report_(one.news.alert, "was told at last");

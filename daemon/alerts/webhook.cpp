@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/base/json_text.hpp"
 #include "engine/base/version.hpp"
 
 namespace yuragi::daemon::alerts {
@@ -51,8 +52,7 @@ std::string webhook_body(const AlertNews& news, const std::string& host) {
       {"host", host},
       {"time", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)))},
       {"text", fmt::format("Yuragi on {}: {}", host, news.message)}};
-  // What a device says may be no UTF-8.
-  return body.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json_text(body);
 }
 
 Result<void, Failure> post_to_webhook(const AlertNews& news, const std::string& host, const std::stop_token& stop) {

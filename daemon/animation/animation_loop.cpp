@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <ctime>
-#include <exception>
 #include <system_error>
 
 #include <pthread.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
+
+#include "engine/base/contain.hpp"
 
 namespace yuragi::daemon::animation {
 namespace {
@@ -80,13 +81,11 @@ std::optional<std::string> AnimationLoop::failure() const {
 /// No exception leaves the thread. Scenes cannot throw (their steps are noexcept): what is left is the frame, where
 /// there is no memory for it, or a pose that is not of its skeleton's kind.
 void AnimationLoop::run(const std::stop_token& stop) {
-  try {
-    run_ticks(stop);
-  } catch (const std::exception& error) {
-    failure_ = error.what();
-    has_failed_.store(true, std::memory_order_release);
-    wake_io_thread();
-  }
+  const bool is_over = contain(
+      "the animation", [&] { run_ticks(stop); }, [this](const char* what) { failure_ = what; });
+  if (is_over) return;
+  has_failed_.store(true, std::memory_order_release);
+  wake_io_thread();
 }
 
 void AnimationLoop::run_ticks(const std::stop_token& stop) {

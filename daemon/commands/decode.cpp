@@ -18,6 +18,8 @@
 #include "daemon/tools/decode/decode_formats.hpp"
 #include "daemon/tools/decode/unit_reader.hpp"
 #include "engine/base/count_text.hpp"
+#include "engine/base/json_text.hpp"
+#include "engine/base/printable_text.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -61,17 +63,13 @@ class Input {
 
 /// `text` for JSON: where it is not valid UTF-8, each byte beyond ASCII as \xNN.
 std::string as_utf8(std::string_view text) {
-  try {
-    (void)Json(text).dump();
-    return std::string(text);
-  } catch (const Json::type_error&) {
-    std::string escaped;
-    for (const char c : text) {
-      const auto byte = static_cast<unsigned char>(c);
-      escaped += byte < 0x80 ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
-    }
-    return escaped;
+  if (is_utf8(text)) return std::string(text);
+  std::string escaped;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    escaped += byte < 0x80 ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
   }
+  return escaped;
 }
 
 Json number_or_null(std::optional<double> value) {
@@ -120,9 +118,7 @@ class Output {
   }
 
  private:
-  static void write(const Json& json) {
-    settings::write_at_once(json.dump(-1, ' ', true) + "\n");  // ASCII only: safe in any terminal
-  }
+  static void write(const Json& json) { settings::write_at_once(ascii_json_text(json) + "\n"); }
 
   bool shows_refused_;
   std::uint64_t readings_ = 0;

@@ -24,6 +24,7 @@
 #include "daemon/tools/plot/plot_script.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/recording_parts.hpp"
+#include "engine/base/json_text.hpp"
 #include "engine/noise/spectral_noise.hpp"
 
 namespace yuragi::daemon::commands {
@@ -321,7 +322,7 @@ void run_field(FieldOptions options) {
 
   file.end();
   output.commit().value();
-  write_text(beside, description.dump(2) + "\n", true);
+  write_text(beside, json_text(description, 2) + "\n", true);
   fmt::print("{}: float32 [frame {}, component {}, z {}, y {}, x {}], m/s; described in {}\n", options.output.string(),
              shape[0], shape[1], shape[2], shape[3], shape[4], beside.string());
   if (options.plot.empty()) return;

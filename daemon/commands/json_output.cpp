@@ -1,12 +1,13 @@
 #include "daemon/commands/json_output.hpp"
 
 #include "daemon/settings/standard_output.hpp"
+#include "engine/base/json_text.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
 
 void print_indented(const nlohmann::ordered_json& json, int indent) {
-  settings::write_at_once(json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  settings::write_at_once(json_text(json, indent) + "\n");
 }
 
 }  // namespace

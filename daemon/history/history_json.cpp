@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/base/json_text.hpp"
+
 namespace yuragi::daemon::history {
 namespace {
 
@@ -40,7 +42,7 @@ std::string history_json(const WindHistory& history) {
       row["direction_deg"].push_back(direction_of(step));
     }
   }
-  return content.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(content) + "\n";
 }
 
 }  // namespace yuragi::daemon::history

@@ -9,6 +9,8 @@
 
 #include <sys/resource.h>
 
+#include "engine/base/contain.hpp"
+
 namespace yuragi::daemon::history {
 namespace {
 
@@ -44,9 +46,9 @@ struct HistoryReader::Work {
   }
   void finish(unsigned hours, const Result<std::string, Failure>& result) {
     const std::lock_guard lock(mutex);
-    if (result) kept = Kept{hours, *result, steady_clock::now()};
     is_reading = false;
     is_done.notify_all();
+    if (result) kept = Kept{hours, *result, steady_clock::now()};
   }
 };
 
@@ -76,10 +78,12 @@ void HistoryReader::ask(unsigned hours, const Reply& reply) {
   if (at_once) return reply(*at_once);
   try {
     std::thread([work = work_, hours, reply] {
-      setpriority(PRIO_PROCESS, 0, kLowestPriority);  // of this thread alone, on Linux
-      const auto result = work->carry_out(hours);
-      work->finish(hours, result);
-      reply(result);
+      contain("reading the recording for the page", [&] {
+        setpriority(PRIO_PROCESS, 0, kLowestPriority);  // of this thread alone, on Linux
+        const auto result = work->carry_out(hours);
+        work->finish(hours, result);
+        reply(result);
+      });
     }).detach();
   } catch (const std::exception& error) {  // no thread is to be had
     const Failure failure{error.what(), FailureKind::kUnavailable};

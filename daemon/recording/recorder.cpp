@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "engine/base/contain.hpp"
 #include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::recording {
@@ -10,7 +11,8 @@ Recorder::Recorder(const std::filesystem::path& file, RecordingInfo info, Record
                    const RecorderLimits& limits, const settings::RecordingConfig& rules)
     : limits_(limits),
       worker_(std::make_shared<RecorderWorker>(file, rules, std::move(info), std::move(report), limits)),
-      thread_([worker = worker_](const std::stop_token& stop) { worker->run(stop); }) {}
+      thread_(
+          [worker = worker_](const std::stop_token& stop) { contain("the recorder", [&] { worker->run(stop); }); }) {}
 
 Recorder::~Recorder() {
   close();

@@ -12,6 +12,7 @@
 #include "drivers/windlog/older_recording.hpp"
 #include "drivers/windlog/recording_files.hpp"
 #include "drivers/windlog/recording_parts.hpp"
+#include "engine/base/contain.hpp"
 #include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::recording {
@@ -172,9 +173,9 @@ void RecorderWorker::run(const std::stop_token& stop) {
     std::unique_lock lock(wake_mutex_);
     wake_.wait_for(lock, stop, limits_.commit_every, [] { return false; });
     lock.unlock();
-    flush();
+    contain("writing the recording", [this] { flush(); });
   }
-  finish();
+  contain("ending the recording", [this] { finish(); });
   {
     const std::lock_guard lock(status_mutex_);
     has_ended_ = true;

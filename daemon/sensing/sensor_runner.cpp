@@ -1,9 +1,11 @@
 #include "daemon/sensing/sensor_runner.hpp"
 
 #include <algorithm>
-#include <exception>
+#include <optional>
 #include <string>
 #include <utility>
+
+#include "engine/base/contain.hpp"
 
 namespace yuragi::daemon::sensing {
 namespace {
@@ -17,7 +19,7 @@ SensorRunner::SensorRunner(std::unique_ptr<drivers::sensor::Sensor> sensor, cons
                            SensorThread thread)
     : sensor_(std::move(sensor)), clock_(clock), thread_kind_(thread) {
   if (thread == SensorThread::kOwn) {
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    thread_ = std::jthread([this](const std::stop_token& stop) { contain("a sensor's thread", [&] { run(stop); }); });
   }
 }
 
@@ -43,12 +45,13 @@ void SensorRunner::run(const std::stop_token& stop) {
 /// A driver throws for nothing that a device does. Where one does all the same (memory, an error of its own), the
 /// others go on, and the sensor says what happened.
 MonoTime SensorRunner::poll() {
-  try {
-    return sensor_->poll(clock_, *this);
-  } catch (const std::exception& error) {
-    link(wind::LinkState::kConnecting, std::string("its driver failed (") + error.what() + "); it is tried again");
-    return clock_.now().mono + kPauseAfterException;
-  }
+  std::optional<MonoTime> next;
+  contain(
+      "a sensor's driver", [&] { next = sensor_->poll(clock_, *this); },
+      [this](const char* what) {
+        link(wind::LinkState::kConnecting, std::string("its driver failed (") + what + "); it is tried again");
+      });
+  return next ? *next : clock_.now().mono + kPauseAfterException;
 }
 
 void SensorRunner::wake() {

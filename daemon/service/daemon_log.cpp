@@ -10,12 +10,26 @@
 #include <spdlog/async.h>
 #include <spdlog/spdlog.h>
 
+#include "daemon/service/fault_log.hpp"
+#include "engine/base/contain.hpp"
 #include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::service {
 namespace {
 
 constexpr const char* kPattern = "%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v";
+
+void log_fault(std::string_view kind, const char* what) noexcept {
+  try {
+    static std::mutex mutex;
+    static FaultLog faults;
+    const std::lock_guard lock(mutex);
+    const auto now = MonoTime(std::chrono::steady_clock::now().time_since_epoch());
+    if (const auto line = faults.line_for(kind, what, now)) spdlog::error("{}", *line);
+  } catch (...) {
+    // There is no memory for the line.
+  }
+}
 
 }  // namespace
 
@@ -74,6 +88,7 @@ DaemonLog::DaemonLog(bool verbose)
   spdlog::set_default_logger(logger);
   spdlog::set_pattern(kPattern);
   spdlog::set_level(verbose ? spdlog::level::debug : spdlog::level::info);
+  report_faults_to(&log_fault);
 }
 
 void DaemonLog::set_level(settings::LogLevel level) const {
@@ -104,6 +119,7 @@ web::LogTail DaemonLog::tail() const {
 }
 
 DaemonLog::~DaemonLog() {
+  report_faults_to(nullptr);
   // What is still said is written by who says it.
   const auto level = spdlog::get_level();
   spdlog::set_default_logger(std::make_shared<spdlog::logger>("yuragi", sink_));

@@ -51,7 +51,8 @@ class BoundedLogSink final : public spdlog::sinks::ansicolor_sink<spdlog::detail
 
 /// The log of a command that is the daemon or a client of it, on standard error while this object lives. Lines are
 /// written by a thread of its own: a terminal that is stopped, or a pipe that nobody reads, delays nobody. At most
-/// kMostWaiting lines wait; further ones replace the oldest and are counted.
+/// kMostWaiting lines wait; further ones replace the oldest and are counted. It logs contained exceptions
+/// (engine/base/contain.hpp), too, as FaultLog does.
 class DaemonLog {
  public:
   static constexpr std::size_t kMostWaiting = 1024;

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "engine/base/contain.hpp"
 #include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::service {
@@ -217,7 +218,9 @@ void Reload::begin() {
     };
   }
   try {
-    task_->thread = std::thread([task = task_, this] { task->work([this] { finish(); }); });
+    task_->thread = std::thread([task = task_, this] {
+      contain("reading the configuration again", [&] { task->work([this] { finish(); }); });
+    });
   } catch (const std::system_error& error) {
     task_->report = failure(wire::ReloadOutcome::kFailed, error.what());
     parts_.post([this] { finish(); });

@@ -40,6 +40,7 @@
 #include "daemon/web/access.hpp"
 #include "daemon/web/web_server.hpp"
 #include "drivers/sensor/secret_source.hpp"
+#include "engine/base/contain.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/base/latest.hpp"
 #include "engine/base/version.hpp"
@@ -150,7 +151,8 @@ class Service::Io {
       say_ready();
     }
 
-    io_.run();
+    while (!contain("a task of the I/O thread", [this] { io_.run(); })) {
+    }
 
     // Readings until now are recorded, too.
     hub_.advance();
@@ -264,7 +266,7 @@ class Service::Io {
       if (error) return;
       if (terminal_.is_closed()) return end("its terminal was closed");
       spdlog::info("reload: asked by SIGHUP");
-      reload({}, {});
+      contain("a reload", [this] { reload({}, {}); });
       wait_for_hangup();
     });
   }
@@ -346,15 +348,20 @@ class Service::Io {
     return [this](std::size_t sensor, const wind::WindReading& reading) { recorder_->push(sensor, reading); };
   }
 
-  /// Takes readings and advances the wind, at the rate of the animation.
-  void step_wind() {
+  /// Takes readings and advances the wind.
+  void advance_wind() {
     wind::ground::DrivingWind wind{hub_.advance(), hub_.ground(), hub_.stroke()};
     shaper_.shape(wind, time_for_the_hours(), hub_.is_any_live());
     wind_.publish(wind);
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
     hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
     manager_.went_round(clock_.now().mono, loop_ ? loop_->counters().ticks.load(std::memory_order_relaxed) : 0);
-    if (options_.end_with_recordings && hub_.is_finished()) return end("the recording has ended");
+    if (options_.end_with_recordings && hub_.is_finished()) end("the recording has ended");
+  }
+
+  /// Advances the wind at the rate of the animation.
+  void step_wind() {
+    contain("a step of the wind", [this] { advance_wind(); });
 
     // Steps are at fixed times; those missed while the machine was halted are skipped.
     const auto period = from_seconds(1.0 / rate_hz_);
@@ -376,17 +383,20 @@ class Service::Io {
     frame_ready_.async_read_some(asio::buffer(&frames_made_, sizeof frames_made_),
                                  [this](const boost::system::error_code& error, std::size_t) {
                                    if (error) return;
-                                   if (const animation::PublishedFrame* frame = loop_->take_frame()) {
-                                     if (auto scenes = scenes_->new_scenes(frame->generation))
-                                       stream_.publish_scenes(std::move(scenes));
-                                     stream_.publish(std::make_shared<const wire::Bytes>(frame->bytes));
-                                     exchange_scenes();
-                                     is_up_ = true;
-                                     say_ready();
-                                   }
+                                   contain("passing on a frame", [this] { pass_on_frame(); });
                                    if (const auto why = loop_->failure()) return end_with_failure(*why);
                                    wait_for_frame();
                                  });
+  }
+
+  void pass_on_frame() {
+    const animation::PublishedFrame* frame = loop_->take_frame();
+    if (frame == nullptr) return;
+    if (auto scenes = scenes_->new_scenes(frame->generation)) stream_.publish_scenes(std::move(scenes));
+    stream_.publish(std::make_shared<const wire::Bytes>(frame->bytes));
+    exchange_scenes();
+    is_up_ = true;
+    say_ready();
   }
 
   /// At first, and again after each reload.
@@ -395,10 +405,12 @@ class Service::Io {
   }
 
   void send_status() {
-    const wire::Sensors status = publish_status();
-    manager_.say_status(status);
-    say_ready();
-    if (alerts_) alerts_->judge(status, ticks_made(), clock_.now());
+    contain("the status", [this] {
+      const wire::Sensors status = publish_status();
+      manager_.say_status(status);
+      say_ready();
+      if (alerts_) alerts_->judge(status, ticks_made(), clock_.now());
+    });
 
     status_timer_.expires_after(kStatusInterval);
     status_timer_.async_wait([this](const boost::system::error_code& error) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/settings/output_file.hpp"
+#include "engine/base/json_text.hpp"
 
 namespace yuragi::daemon::shaping {
 namespace {
@@ -22,10 +23,9 @@ Failure write_site_file(const std::filesystem::path& file, const SiteMemory& mem
   try {
     settings::OutputFile output(file, true);
     std::ofstream out(output.working_path());
-    out << nlohmann::json{{kTimesKey, memory.times_s},
-                          {kOctavesKnownKey, memory.octaves_known_s},
-                          {kOctavesKey, memory.octaves_db}}
-               .dump()
+    out << json_text(nlohmann::json{{kTimesKey, memory.times_s},
+                                    {kOctavesKnownKey, memory.octaves_known_s},
+                                    {kOctavesKey, memory.octaves_db}})
         << '\n';
     out.close();
     if (!out) return {file.string() + ": could not be written; is the disk full, or the folder not writable?"};

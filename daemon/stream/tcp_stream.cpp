@@ -16,6 +16,7 @@
 #include "daemon/stream/pose_views.hpp"
 #include "daemon/stream/tcp_listening.hpp"
 #include "engine/base/address.hpp"
+#include "engine/base/contain.hpp"
 #include "engine/base/printable_text.hpp"
 #include "engine/base/result.hpp"
 
@@ -32,6 +33,8 @@ constexpr auto kAcceptBackOff = std::chrono::milliseconds(100);
 // Of what a client says, the log shows so many characters.
 constexpr std::size_t kShownNameCharacters = 64;
 constexpr std::size_t kShownReplyCharacters = 200;
+
+constexpr std::string_view kOwnFault = "serving it failed, which is a fault of the daemon";
 
 std::string text_of(const tcp::endpoint& endpoint) {
   return to_string(Address{endpoint.address().to_string(), endpoint.port()});
@@ -159,6 +162,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
  private:
+  /// Does what an event is about. An exception ends this connection, and no other.
+  template <class Work>
+  void go_on(Work&& work) {
+    if (!contain("a stream connection", std::forward<Work>(work))) end(kOwnFault);
+  }
+
   static ClientLimits limits_of(const Peer& peer, ClientLimits limits) {
     if (peer.only_asks_because) limits.stays_for = kQuestionsFor;
     return limits;
@@ -182,8 +191,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
                              [self = shared_from_this()](const error_code& error, std::size_t count) {
                                self->is_writing_ = false;
                                if (error) return self->end(error.message());
-                               self->queue_.written(count, self->feed_->settings.now());
-                               self->write();
+                               self->go_on([&] {
+                                 self->queue_.written(count, self->feed_->settings.now());
+                                 self->write();
+                               });
                              });
   }
 
@@ -192,7 +203,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       if (error) return self->end(error == asio::error::eof ? "it closed the connection" : error.message());
       const auto length = wire::read_size_prefix(self->prefix_, wire::kMaxClientMessageBytes);
       if (!length) return self->end("it sent a message of impossible length");
-      self->read_body(*length);
+      self->go_on([&] { self->read_body(*length); });
     });
   }
 
@@ -200,7 +211,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     body_.resize(length);
     asio::async_read(socket_, asio::buffer(body_), [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error) return self->end(error == asio::error::eof ? "it closed the connection" : error.message());
-      self->take_message();
+      self->go_on([&] { self->take_message(); });
     });
   }
 
@@ -349,18 +360,18 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
       for (const auto& connection : connections_) connection->limit_send_buffer();
     }
     feed_->poses.set_frame(std::move(frame));
-    for (const auto& connection : connections_) connection->offer_frame();
+    for_each([](Connection& connection) { connection.offer_frame(); });
   }
 
   void publish_scenes(SharedBytes scenes) {
     feed_->poses.set_scenes(std::move(scenes));
-    for (const auto& connection : connections_) connection->offer_scenes();
+    for_each([](Connection& connection) { connection.offer_scenes(); });
   }
 
   void publish_sensors(SharedBytes here, SharedBytes elsewhere) {
     feed_->newest_sensors_here = std::move(here);
     feed_->newest_sensors_elsewhere = std::move(elsewhere);
-    for (const auto& connection : connections_) connection->offer_newest_sensors();
+    for_each([](Connection& connection) { connection.offer_newest_sensors(); });
   }
 
   void set_admission(const AdmissionLimits& admission) { feed_->settings.admission = admission; }
@@ -372,9 +383,9 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   void publish_trace(const wire::RawTrace& trace) {
     if (!wants_trace(trace.sensor)) return;
     const SharedBytes bytes = share(wire::encode(trace));
-    for (const auto& connection : connections_) {
-      if (connection->wants_trace(trace.sensor)) connection->offer_trace(trace, bytes);
-    }
+    for_each([&](Connection& connection) {
+      if (connection.wants_trace(trace.sensor)) connection.offer_trace(trace, bytes);
+    });
   }
 
   void close() {
@@ -388,12 +399,20 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   }
 
  private:
+  /// An exception ends the connection of this one client.
+  template <class Work>
+  void for_each(Work&& work) {
+    for (const auto& connection : connections_) {
+      if (!contain("a stream connection", [&] { work(*connection); })) connection->end(kOwnFault);
+    }
+  }
+
   void accept() {
     acceptor_.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
       if (self->closed_) return;
       if (error) return self->accept_later(error);
       self->accept_error_.clear();
-      self->welcome(std::move(socket));
+      contain("accepting a stream client", [&] { self->welcome(std::move(socket)); });
       self->accept();
     });
   }
@@ -439,11 +458,11 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
 
   void check_clients() {
     const MonoTime now = feed_->settings.now();
-    for (const auto& connection : connections_) {
-      const auto overdue = connection->check(now);
+    for_each([&](Connection& connection) {
+      const auto overdue = connection.check(now);
       if (overdue == Overdue::kStuck) ++feed_->counts.stuck;
       if (overdue == Overdue::kNeverSubscribed || overdue == Overdue::kIdle) ++feed_->counts.idle;
-    }
+    });
     forget_closed();
     feed_->log->tell_left_out();
     check_timer_.expires_after(feed_->settings.check_every);

@@ -1,7 +1,6 @@
 #include "daemon/web/http_server.hpp"
 
 #include <algorithm>
-#include <exception>
 #include <optional>
 #include <utility>
 
@@ -18,6 +17,7 @@
 
 #include "daemon/stream/tcp_listening.hpp"
 #include "engine/base/address.hpp"
+#include "engine/base/contain.hpp"
 
 namespace yuragi::daemon::web {
 namespace {
@@ -63,8 +63,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
     parser_->header_limit(limits_.header_bytes);
     parser_->body_limit(limits_.body_bytes);
     stream_.expires_after(limits_.time);
-    http::async_read(stream_, buffer_, *parser_,
-                     [self = shared_from_this()](const error_code& error, std::size_t) { self->take(error); });
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](const error_code& error, std::size_t) {
+      self->go_on([&] { self->take(error); });
+    });
   }
   void end() {
     error_code ignored;
@@ -75,6 +76,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
   const stream::Peer& client() const { return client_; }
 
  private:
+  /// Does what an event is about. An exception ends this connection, and no other.
+  template <class Work>
+  void go_on(Work&& work) {
+    if (!contain("an HTTP connection", std::forward<Work>(work))) end();
+  }
+
   void take(const error_code& error) {
     if (has_ended_) return;
     if (error) {
@@ -105,17 +112,15 @@ class Connection : public std::enable_shared_from_this<Connection> {
     ask(request);
   }
 
-  /// A handler that throws costs its answer alone.
+  /// A handler that throws costs its answer only.
   void ask(const HttpRequest& request) {
     const auto waits = std::make_shared<bool>(true);
     const HttpReply reply = [self = shared_from_this(), waits](HttpResponse response) {
       if (std::exchange(*waits, false)) self->write(std::move(response));
     };
-    try {
-      handler_(request, reply);
-    } catch (const std::exception&) {
-      reply(plain(500, "this request could not be answered, which is a fault of the program"));
-    }
+    contain(
+        "an HTTP request", [&] { handler_(request, reply); },
+        [&](const char*) { reply(plain(500, "this request could not be answered, which is a fault of the program")); });
   }
 
   void write(HttpResponse response) {
@@ -136,7 +141,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     stream_.expires_after(limits_.time);
     http::async_write(stream_, message_, [self = shared_from_this()](const error_code& error, std::size_t) {
       if (error || self->has_ended_) return self->end();
-      self->is_last_ ? self->hang_up() : self->read();
+      self->go_on([&] { self->is_last_ ? self->hang_up() : self->read(); });
     });
   }
 
@@ -181,7 +186,7 @@ class HttpServer::Server : public std::enable_shared_from_this<Server> {
     acceptor_.async_accept([self = shared_from_this()](const error_code& error, tcp::socket socket) {
       if (self->is_closed_) return;
       if (error) return self->accept_later();
-      self->welcome(std::move(socket));
+      contain("accepting an HTTP client", [&] { self->welcome(std::move(socket)); });
       self->accept();
     });
   }

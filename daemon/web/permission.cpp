@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/web/problem.hpp"
+#include "engine/base/json_text.hpp"
 
 namespace yuragi::daemon::web {
 namespace {
@@ -61,7 +62,7 @@ HttpResponse pairing_answer(const std::string& code, const HttpRequest& request,
   }
   if (!access->is_pairing_code(code, utc_s))
     return problem(403, "Not the code", "this is not the code that `yuragi token` shows now");
-  HttpResponse response{.body = nlohmann::json({{"message", "paired"}}).dump() + "\n"};
+  HttpResponse response{.body = json_text(nlohmann::json({{"message", "paired"}})) + "\n"};
   response.fields.push_back(
       {"Set-Cookie", fmt::format("{}={}; Path=/; Max-Age={:.0f}; HttpOnly; SameSite=Strict{}", kSessionCookie,
                                  access->new_session(utc_s), Access::kSession_s, request.is_https ? "; Secure" : "")});

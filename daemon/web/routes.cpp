@@ -14,6 +14,7 @@
 #include "daemon/web/openapi.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/query.hpp"
+#include "engine/base/json_text.hpp"
 
 namespace yuragi::daemon::web {
 namespace {
@@ -21,8 +22,7 @@ namespace {
 using nlohmann::ordered_json;
 
 HttpResponse json_response(const ordered_json& content) {
-  // What a device says may be no UTF-8.
-  return {.body = content.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n"};
+  return {.body = json_text(content, 2) + "\n"};
 }
 
 /// Why nothing that the daemon said is true any more.

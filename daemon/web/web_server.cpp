@@ -1,7 +1,6 @@
 #include "daemon/web/web_server.hpp"
 
 #include <atomic>
-#include <exception>
 #include <thread>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "daemon/web/permission.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/routes.hpp"
+#include "engine/base/contain.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::web {
@@ -117,15 +117,8 @@ class WebServer::Thread {
   }
 
  private:
-  /// What throws costs the client that it was done for, or one message, and never the thread.
   void run() {
-    for (bool is_over = false; !is_over;) {
-      try {
-        io_->run();
-        is_over = true;
-      } catch (const std::exception&) {
-        // It goes on with the next thing that is ready.
-      }
+    while (!contain("a task of the web server", [this] { io_->run(); })) {
     }
   }
 

@@ -9,6 +9,8 @@
 
 #include <boost/asio/io_context.hpp>
 
+#include "engine/base/contain.hpp"
+
 namespace yuragi::drivers::bus {
 namespace {
 
@@ -63,7 +65,8 @@ LookupResult HostLookup::find(Nanoseconds timeout) {
   if (!state_->is_under_way && !state_->result) {
     try {
       std::thread([state = state_] {
-        LookupResult result = resolve_host(state->host, state->port);
+        LookupResult result = Failure{"looking up " + state->host + " failed"};
+        contain("looking up a host name", [&] { result = resolve_host(state->host, state->port); });
         const std::lock_guard guard(state->mutex);
         state->result = std::move(result);
         state->is_under_way = false;

@@ -9,6 +9,7 @@
 
 #include "drivers/mqtt/mqtt_payload.hpp"
 #include "drivers/mqtt/mqtt_preset.hpp"
+#include "engine/base/json_text.hpp"
 #include "engine/base/printable_text.hpp"
 
 namespace yuragi::drivers::mqtt {
@@ -109,7 +110,7 @@ std::optional<AnnouncedValue> value_of(const Announcement& all, const Announceme
   const auto identifiers = device.find(device.contains("identifiers") ? "identifiers" : "ids");
   AnnouncedValue value;
   value.kind = *kind;
-  value.device = identifiers != device.end() ? identifiers->dump(-1, ' ', false, Announcement::error_handler_t::replace)
+  value.device = identifiers != device.end() ? json_text(*identifiers)
                  : !device_name.empty()      ? device_name
                                              : path.substr(0, last_step);
   value.name = fmt::format("{}{}{} ({})", device_name, device_name.empty() || name.empty() ? "" : ", ", name, path);
@@ -151,7 +152,7 @@ std::string quoted_for_toml(const std::string& text) {
   // What JSON writes in quotes, TOML reads; what is not UTF-8 is replaced.
   std::string printable = text;
   make_printable(printable);
-  return nlohmann::json(printable).dump();
+  return json_text(nlohmann::json(printable));
 }
 
 std::vector<AnnouncedValue> announced_in(std::string_view topic, std::string_view payload) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "drivers/decode/text_fields.hpp"
+#include "engine/base/json_text.hpp"
 
 namespace yuragi::drivers::mqtt {
 namespace {
@@ -64,7 +65,7 @@ std::optional<std::string> Payload::text_at(const std::string& pointer) const {
     const Json* const value = find(pointer);
     if (value == nullptr) return std::nullopt;
     if (value->is_string()) return value->get<std::string>();
-    if (value->is_number_integer()) return value->dump();
+    if (value->is_number_integer()) return json_text(*value);
   } catch (const Json::exception&) {
     return std::nullopt;
   }

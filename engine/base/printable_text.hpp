@@ -11,6 +11,9 @@ namespace yuragi {
 /// are not UTF-8 (RFC 3629) are replaced by a question mark for each byte. The size does not change. Thread-safe: yes.
 void make_printable(std::string& text);
 
+/// Returns true if `text` is valid UTF-8 (RFC 3629), control characters included. Thread-safe: yes.
+bool is_utf8(std::string_view text);
+
 /// The first `characters` of `text`, which is UTF-8, and "..." where there are more. Thread-safe: yes.
 std::string shortened(std::string_view text, std::size_t characters);
 

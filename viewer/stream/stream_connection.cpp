@@ -5,7 +5,6 @@
 #include <charconv>
 #include <condition_variable>
 #include <deque>
-#include <exception>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -18,6 +17,7 @@
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
+#include "engine/base/contain.hpp"
 #include "engine/wire/message_reader.hpp"
 
 namespace yuragi::viewer::stream {
@@ -73,13 +73,11 @@ class StreamConnection::Session {
   /// An exception is an error of this program, or there is no memory for a message: the connection is given up for it,
   /// as for any other trouble.
   void serve() {
-    for (;;) {
-      try {
-        context_.run();
-        return;
-      } catch (const std::exception& error) {
-        give_up(fmt::format("lost the connection to {} by an error of this program ({})", address(), error.what()));
-      }
+    const auto lose_connection = [this](const char* what) {
+      give_up(fmt::format("lost the connection to {} by an error of this program ({})", address(), what));
+    };
+    while (!contain(
+        "the connection to the daemon", [this] { context_.run(); }, lose_connection)) {
     }
   }
 

@@ -9,6 +9,7 @@
 
 #include "daemon/tools/report/report_text.hpp"
 #include "engine/base/compass.hpp"
+#include "engine/base/json_text.hpp"
 #include "engine/base/version.hpp"
 #include "engine/wind/wind_vector.hpp"
 
@@ -196,7 +197,7 @@ std::string report_json(const RecordingNumbers& recording, const std::string& so
                        {"stale_intervals", recording.stale_intervals},
                        {"sensors", ordered_json::array()}};
   for (const SensorNumbers& sensor : recording.sensors) json["sensors"].push_back(json_of_sensor(recording, sensor));
-  return json.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 }  // namespace yuragi::daemon::tools::report

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/sensor/secret_source.hpp"
+#include "engine/base/json_text.hpp"
 
 namespace yuragi::daemon::tools::support {
 namespace {
@@ -134,7 +135,7 @@ Redaction::Redaction(const std::vector<std::string>& secrets) {
   for (const std::string& secret : secrets) {
     if (secret.empty() || secret == Secret::kWithheld) continue;
     secrets_.push_back(secret);
-    const std::string quoted = nlohmann::json(secret).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    const std::string quoted = json_text(nlohmann::json(secret));
     if (const std::string escaped = quoted.substr(1, quoted.size() - 2); escaped != secret) secrets_.push_back(escaped);
   }
   // One that holds another goes first, or its rest would stay.

@@ -19,6 +19,7 @@
 #include "daemon/settings/withhold_secrets.hpp"
 #include "daemon/tools/support/recording_head.hpp"
 #include "daemon/tools/support/redaction.hpp"
+#include "engine/base/json_text.hpp"
 
 namespace yuragi::daemon::tools::support {
 namespace {
@@ -80,10 +81,6 @@ std::string configuration_text(const fs::path& file) {
   }
 }
 
-std::string json_text(const nlohmann::ordered_json& json) {
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
-
 constexpr const char* kReadme =
     "What whoever helps needs to know of a Yuragi installation, made by `yuragi support-bundle` at {}.\n"
     "Passwords and the like are taken out: \"(secret)\" stands in their place. Read it before you send it.\n"
@@ -103,7 +100,7 @@ void add_status(std::map<std::string, std::string>& files, const BundleRequest& 
     return;
   }
   files["status.txt"] = sensors::status_text(*request.examination.daemon);
-  files["status.json"] = json_text(sensors::status_json(*request.examination.daemon));
+  files["status.json"] = json_text(sensors::status_json(*request.examination.daemon), 2) + "\n";
 }
 
 void add_configuration(std::map<std::string, std::string>& files, const BundleRequest& request) {
@@ -136,7 +133,7 @@ std::map<std::string, std::string> bundle_files(const BundleRequest& request) {
   add_configuration(files, request);
   add_status(files, request);
   files["doctor.txt"] = doctor::findings_text(request.findings);
-  files["doctor.json"] = json_text(doctor::findings_json(request.findings));
+  files["doctor.json"] = json_text(doctor::findings_json(request.findings), 2) + "\n";
   files["os-release.txt"] = file_text("/etc/os-release");
   add_recording(files, request);
   for (const SystemProgram& program : system_programs(request.with_host_name)) {

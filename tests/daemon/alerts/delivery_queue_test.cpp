@@ -3,6 +3,7 @@
 #include <chrono>
 #include <future>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -44,6 +45,20 @@ class Log {
 
 std::string text_of(const AlertNews& news) {
   return news.alert + (news.has_begun ? " began" : " ended");
+}
+
+TEST(DeliveryQueue, ADeliveryThatThrowsIsTriedAgainAndHoldsUpNoOther) {
+  Log log;
+  DeliveryQueue queue(
+      [&](const AlertNews& news, const std::stop_token&) -> Result<void, Failure> {
+        if (news.alert == "faulty") throw std::runtime_error("of the program");
+        log.add(text_of(news));
+        return {};
+      },
+      [&](auto alert, auto what) { log.add(std::string(alert) + ": " + std::string(what)); }, {});
+  queue.push(news_of("faulty"));
+  queue.push(news_of("b"));
+  EXPECT_THAT(log.wait_for(2), ElementsAre(HasSubstr("faulty: delivering it failed"), "b began"));
 }
 
 TEST(DeliveryQueue, DeliversInOrder) {

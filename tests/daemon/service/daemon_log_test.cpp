@@ -11,6 +11,8 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "engine/base/contain.hpp"
+
 namespace yuragi::daemon::service {
 namespace {
 
@@ -122,6 +124,19 @@ TEST(DaemonLog, IsDelayedByNobodyAndEndsAlthoughNobodyReads) {
   dup2(before, STDERR_FILENO);
   close(before);
   EXPECT_NE(pipe.read_all().find("of the log"), std::string::npos);
+}
+
+TEST(DaemonLog, ContainedExceptionsAreInTheLog) {
+  web::LogTail tail;
+  {
+    const DaemonLog log(false);
+    EXPECT_FALSE(contain("a task of the test", [] { throw 1; }));
+    tail = log.tail();
+  }
+  const auto lines = tail(1);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_TRUE(lines[0].text.starts_with("a task of the test failed")) << lines[0].text;
+  EXPECT_EQ(lines[0].level, "error");
 }
 
 }  // namespace

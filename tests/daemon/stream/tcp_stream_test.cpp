@@ -4,6 +4,7 @@
 #include <array>
 #include <deque>
 #include <sstream>
+#include <stdexcept>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -175,7 +176,10 @@ class TcpStreamTest : public testing::Test {
     settings.scenes = samples::scenes();
     settings.check_every = 1ms;
     settings.now = [this] { return now_; };
-    settings.is_of_this_machine = [](const std::string& address) { return address == "127.0.0.1"; };
+    settings.is_of_this_machine = [](const std::string& address) {
+      if (address == "127.0.0.66") throw std::runtime_error("of this address");
+      return address == "127.0.0.1";
+    };
     settings.raw_refusal = [](bool is_local) {
       return is_local ? std::nullopt : std::optional<std::string>("raw messages are not for other machines");
     };
@@ -183,6 +187,7 @@ class TcpStreamTest : public testing::Test {
     settings.on_control = [this](const wire::Control& control, bool is_local) {
       controls_.push_back(control);
       all_were_local_ = all_were_local_ && is_local;
+      if (control.scene == "faulty") throw std::runtime_error("of this scene");
       return wire::ControlReply{.done = true, .message = "it is done", .scenes = {}};
     };
     settings.on_reload = [this](const wire::ReloadCommand& command, bool is_local, auto reply) {
@@ -719,6 +724,25 @@ TEST_F(TcpStreamTest, EveryRequestToShowASceneGetsAReply) {
   EXPECT_FALSE(controls_[0].shown);
   EXPECT_EQ(controls_[0].over_s, 1.5);
   EXPECT_TRUE(all_were_local_) << "127.0.0.1 is this machine";
+}
+
+TEST_F(TcpStreamTest, ARequestThatThrowsEndsItsConnectionOnly) {
+  TestClient other(io_, stream_.local_endpoint());
+  other.send(wire::encode(wire::Subscribe{.client = "other"}));
+  TestClient client(io_, stream_.local_endpoint());
+  client.send(wire::encode(wire::Subscribe{.poses = false, .client = "unlucky"}));
+  client.send(wire::encode(wire::Control{.scene = "faulty"}));
+  ASSERT_TRUE(turn_until([&] { return client.closed; }));
+  stream_.publish(frame(1));
+  ASSERT_TRUE(turn_until([&] { return other.frames.size() == 1; }));
+  EXPECT_EQ(stream_.client_count(), 1u);
+}
+
+TEST_F(TcpStreamTest, AClientThatCannotBeWelcomedKeepsNobodyOut) {
+  TestClient unwelcome(io_, stream_.local_endpoint(), 0, "127.0.0.66");
+  ASSERT_TRUE(turn_until([&] { return unwelcome.closed; }));
+  TestClient client(io_, stream_.local_endpoint());
+  ASSERT_TRUE(turn_until([&] { return !client.hellos.empty(); }));
 }
 
 TEST_F(TcpStreamTest, AControlBeforeTheSubscriptionIsRefused) {

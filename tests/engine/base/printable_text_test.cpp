@@ -16,6 +16,13 @@ TEST(PrintableText, WhatCanBeShownStaysAsItIs) {
   EXPECT_EQ(printable(""), "");
 }
 
+TEST(PrintableText, KnowsWhatIsUtf8) {
+  EXPECT_TRUE(is_utf8(""));
+  EXPECT_TRUE(is_utf8(std::string_view("a\0\x1b\xC3\xA9\xF0\x9F\x8C\xAC", 9)));
+  EXPECT_FALSE(is_utf8("a\xFF"));
+  EXPECT_FALSE(is_utf8("\xE3\x82"));
+}
+
 TEST(PrintableText, ControlCharactersBecomeQuestionMarks) {
   EXPECT_EQ(printable(std::string("a\0b\x1b[2J\n\t\x7f", 10)), "a?b?[2J???");
   EXPECT_EQ(printable("a\xC2\x80\xC2\x9F"), "a????");

@@ -1,0 +1,34 @@
+#include "daemon/service/fault_log.hpp"
+
+#include <gtest/gtest.h>
+
+namespace yuragi::daemon::service {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(FaultLog, TheFirstOfAKindIsLoggedAtOnce) {
+  FaultLog log;
+  const MonoTime now{1h};
+  EXPECT_EQ(log.line_for("an HTTP request", "bad\x1b[2J", now),
+            "an HTTP request failed: bad?[2J; this is a fault of the program");
+  EXPECT_TRUE(log.line_for("a stream connection", "bad", now));
+}
+
+TEST(FaultLog, FurtherOnesAreCountedAndLoggedOnceAMinute) {
+  FaultLog log;
+  MonoTime now{1h};
+  int lines = 0;
+  std::string last;
+  for (int request = 0; request < 600; ++request, now += 1s) {
+    if (const auto line = log.line_for("an HTTP request", "bad", now)) {
+      ++lines;
+      last = *line;
+    }
+  }
+  EXPECT_EQ(lines, 10);
+  EXPECT_EQ(last, "an HTTP request failed: bad (59 more since the last such line); this is a fault of the program");
+}
+
+}  // namespace
+}  // namespace yuragi::daemon::service
