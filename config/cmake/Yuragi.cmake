@@ -315,6 +315,6 @@ function(yuragi_fuzz name)
   target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK})
   target_compile_options(${name} PRIVATE -fsanitize=fuzzer)
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
-  add_test(NAME ${name} COMMAND ${name} -max_total_time=10 -timeout=10 -rss_limit_mb=2048)
+  add_test(NAME ${name} COMMAND ${name} -max_total_time=8 -timeout=10 -rss_limit_mb=2048)
   set_tests_properties(${name} PROPERTIES PROCESSORS 2) # a core of its own: it works for so long, however much that is
 endfunction()

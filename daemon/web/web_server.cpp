@@ -11,12 +11,12 @@
 #include <fmt/format.h>
 
 #include "daemon/web/http_server.hpp"
-#include "daemon/web/known_host.hpp"
 #include "daemon/web/page.hpp"
 #include "daemon/web/permission.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/routes.hpp"
 #include "engine/base/contain.hpp"
+#include "engine/base/known_host.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::web {

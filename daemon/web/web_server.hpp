@@ -20,8 +20,8 @@ namespace yuragi::daemon::web {
 struct WebSettings {
   std::string listen = {};  ///< "HOST:PORT"; port 0 takes any free one
   std::vector<std::string> hosts =
-      {};                            ///< names by which clients may call this machine, besides its own (known_host())
-  Secret token = {};                 ///< of clients of other machines; empty: they only read
+      {};             ///< names by which clients may call this machine, besides its own (is_known_host())
+  Secret token = {};  ///< of clients of other machines; empty: they only read
   bool reading_takes_token = false;  ///< then they do not read without it, either
   stream::AdmissionLimits clients = {};
   std::string software = {};  ///< "yuragi 0.2.0"

@@ -13,7 +13,9 @@
 #include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
+#include <boost/asio/ip/host_name.hpp>
 #include <fmt/format.h>
 
 #include "drivers/bus/sender_filter.hpp"
@@ -23,6 +25,8 @@
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
+#include "engine/base/known_host.hpp"
+#include "engine/base/printable_text.hpp"
 
 namespace yuragi::drivers::network {
 namespace {
@@ -31,6 +35,8 @@ namespace {
 constexpr Nanoseconds kPushWait = std::chrono::milliseconds(250);
 /// So many of its usual pauses are silence.
 constexpr int kSilentPushPauses = 5;
+/// Of a host that a gateway names by mistake.
+constexpr std::size_t kShownHostCharacters = 64;
 
 const std::array kEcowittPushParameters = {
     Parameter{.name = "host",
@@ -49,6 +55,12 @@ const std::array kEcowittPushParameters = {
               .default_value = std::string(""),
               .help = "who may push: addresses and nets separated by commas (192.168.1.30, 10.0.0.0/8); 0.0.0.0/0: "
                       "any; may be empty only where host hears this machine alone"},
+    Parameter{.name = "host_name",
+              .unit = "",
+              .default_value = std::string(""),
+              .help =
+                  "what is set as Server IP/Hostname in the gateway, if it is neither an address of this machine nor "
+                  "its own name: pushes to other names are refused"},
     Parameter{.name = "path",
               .unit = "",
               .default_value = std::string(""),
@@ -89,6 +101,7 @@ constexpr std::string_view kEcowittPushSetup =
 struct EcowittPushSettings {
   Address address;
   bus::SenderFilter from;
+  std::vector<std::string> host_names;
   std::string path;
   Secret station_key;
   Nanoseconds silence{};
@@ -198,6 +211,19 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     const std::string shown = decode::network::without_push_secrets(form);
     sink.raw(sensor::RawDirection::kReceived, {reinterpret_cast<const std::uint8_t*>(shown.data()), shown.size()});
     const std::string sender = bus::plain_address(request.sender).to_string();
+    // A page of anybody, open in a browser of this network, can have it push.
+    if (request.is_of_browser) {
+      trouble_ = "a web page in a browser at " + sender + " pushes: it is refused";
+      return PushRefusal{Refusal::kNotMine, {403, "browsers are refused"}};
+    }
+    if (!request.host.empty() && !is_known_host(request.host, settings_.host_names)) {
+      std::string host(request.host);
+      make_printable(host);
+      trouble_ = fmt::format(
+          "{} pushes to the host \"{}\": set this machine's address in the gateway, or that name as host_name here",
+          sender, shortened(host, kShownHostCharacters));
+      return PushRefusal{Refusal::kNotMine, {421, "this machine has another name"}};
+    }
     if (!settings_.path.empty() && target.path != settings_.path) {
       trouble_ = sender + " pushes to another path: set Path in the gateway to " + settings_.path + "/, or path here";
       return PushRefusal{Refusal::kNotMine, {404, "another path is taken"}};
@@ -293,6 +319,8 @@ EcowittPushSettings ecowitt_push_settings_of(const ParameterValues& values) {
   settings.address = push_address_of(values);
   settings.station_key = values.secret("station_key");
   settings.silence = from_seconds(values.number("silence"));
+
+  settings.host_names = {boost::asio::ip::host_name(), values.text("host_name")};
 
   const std::string& path = values.text("path");
   if (!path.empty() && !path.starts_with('/'))

@@ -1,5 +1,6 @@
 #include "drivers/network/http_server.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -12,6 +13,8 @@
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <fmt/format.h>
+
+#include "engine/base/contain.hpp"
 
 namespace yuragi::drivers::network {
 namespace {
@@ -65,9 +68,10 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
 
   void begin() {
     stream_.expires_after(server_.limits_.time);
-    http::async_read(
-        stream_, buffer_, parser_,
-        [self = shared_from_this()](const beast::error_code& error, std::size_t /*size*/) { self->take(error); });
+    http::async_read(stream_, buffer_, parser_,
+                     [self = shared_from_this()](const beast::error_code& error, std::size_t /*size*/) {
+                       self->go_on([&] { self->take(error); });
+                     });
   }
 
   void end() noexcept {
@@ -80,17 +84,20 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   bool is_waiting() const noexcept { return is_waiting_; }
 
  private:
+  /// Does what an event is about. An exception ends this connection, and no other.
+  template <class Work>
+  void go_on(Work&& work) {
+    if (!contain("a connection that pushes", std::forward<Work>(work))) end();
+  }
+
   void take(const beast::error_code& error) {
     is_waiting_ = false;
     HttpService* const service = server_.service_;
     if (service == nullptr || error == boost::asio::error::operation_aborted) return;
     if (!error) {
-      const auto& request = parser_.get();
-      const auto view_of = [](beast::string_view text) { return std::string_view(text.data(), text.size()); };
-      return reply(service->answer({.sender = sender_,
-                                    .method = view_of(request.method_string()),
-                                    .target = view_of(request.target()),
-                                    .body = request.body()}));
+      HttpAnswer answer = {.status = 500, .text = "this request could not be answered"};
+      contain("a push", [&] { answer = service->answer(request()); });
+      return reply(answer);
     }
     if (error == beast::error::timeout) return service->failed(HttpFailure::kTooSlow, sender_);
     if (error == http::error::end_of_stream) return;  // it said nothing: somebody looked whether the port is open
@@ -111,6 +118,20 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
       return reply({.status = 400, .text = "this is no HTTP"});
     }
     if (parser_.got_some()) service->failed(HttpFailure::kCutOff, sender_);
+  }
+
+  HttpRequest request() const {
+    const auto& message = parser_.get();
+    const auto view_of = [](beast::string_view text) { return std::string_view(text.data(), text.size()); };
+    const bool is_of_browser = std::ranges::any_of(
+        std::array{"Origin", "Referer", "Sec-Fetch-Site", "Sec-Fetch-Mode", "Sec-Fetch-Dest", "Sec-Fetch-User"},
+        [&](const char* field) { return message.count(field) > 0; });
+    return {.sender = sender_,
+            .method = view_of(message.method_string()),
+            .target = view_of(message.target()),
+            .host = view_of(message[http::field::host]),
+            .is_of_browser = is_of_browser,
+            .body = message.body()};
   }
 
   void reply(const HttpAnswer& answer) {
@@ -212,7 +233,7 @@ void HttpServer::accept() {
       failure_ = Failure{"cannot accept connections (" + error.message() + "): opened again"};
       return;
     }
-    if (!error) take(std::move(socket));
+    if (!error) contain("accepting a connection that pushes", [&] { take(std::move(socket)); });
     accept();
   });
 }

@@ -24,6 +24,8 @@ struct HttpRequest {
   boost::asio::ip::address sender = {};
   std::string_view method = {};  ///< "GET", "POST"
   std::string_view target = {};  ///< what stands behind it: the path and the query
+  std::string_view host = {};    ///< the field "Host"; empty: none
+  bool is_of_browser = false;    ///< it has fields that only browsers send (Origin, Referer, Sec-Fetch-...)
   std::string_view body = {};
 };
 

@@ -2,6 +2,8 @@
 
 #include <functional>
 
+#include "engine/base/contain.hpp"
+
 namespace yuragi::drivers::sensor {
 namespace {
 
@@ -18,7 +20,10 @@ MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
     backoff_.reset();
   }
 
-  const Result<MonoTime, Failure> next = is_open_ ? work(clock, sink) : open(clock);
+  Result<MonoTime, Failure> next = Failure{};
+  contain(
+      "a sensor's driver", [&] { next = is_open_ ? work(clock, sink) : open(clock); },
+      [&](const char* what) { next = Failure{std::string("its driver failed (") + what + "); it is opened again"}; });
   if (next) {
     is_open_ = true;
     next_poll_ = *next;

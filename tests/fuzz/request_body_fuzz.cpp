@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "daemon/web/known_host.hpp"
 #include "daemon/web/request_body.hpp"
+#include "engine/base/known_host.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace web = yuragi::daemon::web;
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const std::array<std::string, 1> names = {"roof"};
   const std::size_t half = size / 2;
-  static_cast<void>(web::is_known_host(text, names));
+  static_cast<void>(is_known_host(text, names));
   static_cast<void>(web::is_same_origin(text.substr(0, half), text.substr(half)));
   return 0;
 }

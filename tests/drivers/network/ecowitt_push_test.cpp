@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -172,7 +173,7 @@ std::string answer_to(std::uint16_t port, std::string_view request) {
 }
 
 std::string post_of(std::string_view form, std::string_view path = "/data/report/") {
-  return fmt::format("POST {} HTTP/1.1\r\nHOST: y\r\nContent-Length: {}\r\n\r\n{}", path, form.size(), form);
+  return fmt::format("POST {} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: {}\r\n\r\n{}", path, form.size(), form);
 }
 
 std::string wind_form(std::string_view station, double speed_mph) {
@@ -226,7 +227,7 @@ TEST(EcowittPushDriver, AnswersWhatItTakes) {
 
 TEST(EcowittPushDriver, TakesTargetsThatWereTypedWithoutAQuestionMark) {
   PushBench bench;
-  EXPECT_THAT(bench.ask("GET /data/report/" + wind_form(kPasskey, 10) + " HTTP/1.1\r\nHost: y\r\n\r\n"),
+  EXPECT_THAT(bench.ask("GET /data/report/" + wind_form(kPasskey, 10) + " HTTP/1.1\r\nHost: 10.0.0.1\r\n\r\n"),
               StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(bench.ask("GET " + wind_form(kPasskey, 10) + " HTTP/1.0\r\n\r\n"), StartsWith("HTTP/1.1 200"));
   EXPECT_EQ(bench.sink.readings.size(), 2U);
@@ -246,6 +247,27 @@ TEST(EcowittPushDriver, SaysWhatIsWrongWithARequest) {
   EXPECT_THAT(bench.sink.readings, IsEmpty());
   EXPECT_EQ(bench.sink.refusals.size(), 7U);
   EXPECT_THAT(bench.ask(post_of(wind_form(kPasskey, 10), "/roof")), StartsWith("HTTP/1.1 200"));
+}
+
+TEST(EcowittPushDriver, RefusesBrowsersAndHostsOfOthers) {
+  PushBench bench({{"host_name", std::string("wall.example.org")}});
+  const auto push_with = [&](const std::string& fields) {
+    return bench.ask("GET /data/report/?" + wind_form(kPasskey, 10) + " HTTP/1.1\r\n" + fields + "\r\n\r\n");
+  };
+  for (const char* const field : {"Origin: http://evil.example", "Referer: http://evil.example/",
+                                  "Sec-Fetch-Site: cross-site", "Sec-Fetch-Mode: no-cors"}) {
+    EXPECT_THAT(push_with(std::string("Host: 127.0.0.1\r\n") + field), StartsWith("HTTP/1.1 403")) << field;
+    EXPECT_THAT(bench.sink.last_detail(), HasSubstr("a web page in a browser at 127.0.0.1 pushes"));
+  }
+  for (const char* const host : {"evil.example", "127.0.0.1.evil.example", "[::1]evil", "wall.example.org.evil"}) {
+    EXPECT_THAT(push_with(std::string("Host: ") + host), StartsWith("HTTP/1.1 421")) << host;
+    EXPECT_THAT(bench.sink.last_detail(), HasSubstr("set this machine's address in the gateway"));
+  }
+  EXPECT_THAT(bench.sink.readings, IsEmpty());
+  for (const char* const host :
+       {"127.0.0.1", "192.168.1.5:8090", "[::1]:8090", "localhost", "wall.example.org:8090", ""}) {
+    EXPECT_THAT(push_with(std::string("Host: ") + host), StartsWith("HTTP/1.1 200")) << host;
+  }
 }
 
 TEST(EcowittPushDriver, WarnsOfASecondStationUntilTheFirstFallsSilent) {
@@ -352,11 +374,13 @@ TEST(EcowittPushSettings, AreChecked) {
 struct KeptFailures final : HttpService {
   bool admits(const boost::asio::ip::address& /*sender*/) override { return true; }
   HttpAnswer answer(const HttpRequest& /*request*/) override {
+    if (std::exchange(is_faulty, false)) throw std::runtime_error("a fault");
     ++answered;
     return {.status = 200, .text = "taken"};
   }
   void failed(HttpFailure why, const boost::asio::ip::address& /*sender*/) override { failures.push_back(why); }
 
+  bool is_faulty = false;  ///< at the next request
   int answered = 0;
   std::vector<HttpFailure> failures;
 };
@@ -430,6 +454,19 @@ TEST(HttpServer, TellsOfAClientThatBreaksOffBeforeItWasAccepted) {
   for (int turn = 0; turn < 100 && service.failures.empty(); ++turn)
     ASSERT_TRUE(server.serve(100ms, service).has_value());
   EXPECT_THAT(service.failures, ElementsAre(HttpFailure::kCutOff));
+}
+
+TEST(HttpServer, ARequestThatThrowsCostsItsAnswerOnly) {
+  HttpServer server({.host = "127.0.0.1", .port = 0});
+  ASSERT_TRUE(server.open().has_value());
+  KeptFailures service;
+  service.is_faulty = true;
+  const std::string request = "GET / HTTP/1.1\r\n\r\n";
+  for (const char* const answer : {"HTTP/1.1 500", "HTTP/1.1 200"}) {
+    const Descriptor client = connect_to(server.port());
+    send_all(client, request);
+    EXPECT_THAT(serve_until_answered(server, service, client), StartsWith(answer));
+  }
 }
 
 TEST(HttpServer, IsInterrupted) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,6 +19,7 @@ class FickleSensor final : public ReopeningSensor {
   FickleSensor() : ReopeningSensor(1) {}
 
   bool is_there = true;
+  bool is_faulty = false;
   bool makes_sense = true;
   bool is_back = false;
   int opened = 0;
@@ -32,6 +34,7 @@ class FickleSensor final : public ReopeningSensor {
   }
   Result<MonoTime, Failure> work(const Clock& clock, SensorSink& sink) override {
     if (!is_there) return Failure{"it went away"};
+    if (is_faulty) throw std::runtime_error("a fault");
     ++worked;
     if (makes_sense) {
       report_connected(sink, "fickle");
@@ -98,6 +101,20 @@ TEST_F(ReopeningSensorTest, ClosesOnceWhatFailedAndFindsItAgain) {
   EXPECT_EQ(sensor_.closed, 1);
   EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnecting);
   sensor_.is_there = true;
+  poll_s();
+  poll_s();
+  EXPECT_EQ(sensor_.opened, 2);
+  EXPECT_EQ(sink_.last_state(), wind::LinkState::kConnected);
+}
+
+TEST_F(ReopeningSensorTest, OpensAgainAfterAnException) {
+  poll_s();
+  poll_s();
+  sensor_.is_faulty = true;
+  poll_s();
+  EXPECT_EQ(sensor_.closed, 1);
+  EXPECT_EQ(sink_.last_detail(), "its driver failed (a fault); it is opened again");
+  sensor_.is_faulty = false;
   poll_s();
   poll_s();
   EXPECT_EQ(sensor_.opened, 2);

@@ -1,10 +1,10 @@
-#include "daemon/web/known_host.hpp"
+#include "engine/base/known_host.hpp"
 
 #include <array>
 
 #include <gtest/gtest.h>
 
-namespace yuragi::daemon::web {
+namespace yuragi {
 namespace {
 
 const std::array<std::string, 2> kNames = {"roof", "wall.example.org"};
@@ -16,7 +16,7 @@ TEST(KnownHost, AddressesLocalhostAndNames) {
   }
 }
 TEST(KnownHost, NothingElse) {
-  for (const char* host : {"", "evil.example", "roof.evil.example", "evilroof", "127.0.0.1.evil.example", "[::1",
+  for (const char* host : {"", "evil.example", "roof.evil.example", "evilroof", "127.0.0.1.evil.example", "[::1", "[::1]evil", "[::1]evil:7480", "[evil.example]", "roof:evil", "127.0.0.1evil", "1",
                            "wall.example.org.evil", "local", ".local", ":7480", "localhost.evil:7480"}) {
     EXPECT_FALSE(is_known_host(host, kNames)) << host;
   }
@@ -35,4 +35,4 @@ TEST(SameOrigin, AnotherPort_AnotherName_OrNull) {
 }
 
 }  // namespace
-}  // namespace yuragi::daemon::web
+}  // namespace yuragi
