@@ -346,7 +346,7 @@ Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earlie
       forget_quantities(begin);
     }
     if (is_due) {
-      if (auto completed = complete_file(); !completed) return completed;
+      if (auto completed = complete_file(first.utc); !completed) return completed;
       if (auto made = make_room(first.utc); !made) return made;
       return open_session(first);
     }
@@ -366,10 +366,13 @@ Result<void, Failure> RecorderWorker::commit() {
 }
 
 /// Closes the file and renames it to what a completed part is called.
-Result<void, Failure> RecorderWorker::complete_file() {
+Result<void, Failure> RecorderWorker::complete_file(UtcTime now) {
   if (auto closed = writer_->close(); !closed) return closed;
   writer_.reset();
   UtcTime begin = *began_;
+  // Parts are read in the order of their names: one from a wrong date ahead goes before those that follow it.
+  const auto parts = drivers::windlog::completed_parts(file_);
+  if (parts.empty() || parts.back().begin < now) begin = std::min(begin, now);
   for (int tries = 0; tries < kMostPartNames; ++tries) {
     if (drivers::windlog::is_free_name(drivers::windlog::part_name(file_, begin))) break;
     begin += std::chrono::seconds(1);

@@ -113,7 +113,7 @@ class RecorderWorker {
   Result<void, Failure> commit();
   Result<void, Failure> check_name() const;
   Result<void, Failure> open_session(Instant started);
-  Result<void, Failure> complete_file();
+  Result<void, Failure> complete_file(UtcTime now);
   Result<void, Failure> make_room(UtcTime now);
   std::optional<UtcTime> newest_time() const;
   void judge_clock(Instant now);

@@ -756,7 +756,7 @@ TEST(Recorder, ADoubtedClockHoldsUpNoRuleOfSpace) {
   const test::TemporaryFolder folder;
   record_parts(folder / "a.windlog", 1, 3);
   Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}), {}, {}, {.most_bytes = 4});
-  recorder.push(0, test::reading_at(400 * 24 * kHour_ms, 1.0));
+  recorder.push(0, test::reading_at(24 * kHour_ms * 400, 1.0));
   wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
   EXPECT_TRUE(recorder.status().clock_doubt);
   EXPECT_EQ(count_parts(folder), 0U);
@@ -771,6 +771,9 @@ TEST(Recorder, RotatesOnAfterAStartAYearAhead) {
   DailyRecorder recorder(folder.path(), kDay);
   for (int day = 1; day <= 3; ++day) recorder.record(day * kDay);
   EXPECT_EQ(count_parts(folder), 3U) << "the one of next year, and two days";
+  const auto all = test::read_all(folder / "a.windlog");
+  ASSERT_EQ(all.size(), 4U);
+  EXPECT_EQ(all[0].reading.time.utc, all[1].reading.time.utc + 365 * kDay) << "read in the order of recording";
 }
 
 TEST(Recorder, BeginsANewFileInTheMiddleOfARun) {
