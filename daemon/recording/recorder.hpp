@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "daemon/recording/clock_synchronization.hpp"
 #include "daemon/recording/recorder_status.hpp"
 #include "daemon/recording/recorder_worker.hpp"
 
@@ -27,9 +28,11 @@ class Recorder {
   /// Opens the recording, or creates it so that others cannot read it (mode 0640), and begins its session; a recording
   /// of an older format is renamed first (set_older_recording_aside). `report` is called on the recorder's thread, in
   /// the constructor, or in close(). Throws FailureError (kCannotCreate) where it cannot. `rules`: when a new file is
-  /// begun, and what is deleted; its `file` is not looked at.
+  /// begun, and what is deleted; its `file` is not looked at. `synchronized_file`: for is_synchronized(). While the
+  /// date of what is pushed is doubted (ClockJudge) age deletes nothing, and FILE-clock exists.
   Recorder(const std::filesystem::path& file, RecordingInfo info, RecorderReport report = {},
-           const RecorderLimits& limits = {}, const settings::RecordingConfig& rules = {});
+           const RecorderLimits& limits = {}, const settings::RecordingConfig& rules = {},
+           const std::filesystem::path& synchronized_file = kSynchronizedFile);
   ~Recorder();  ///< closes
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

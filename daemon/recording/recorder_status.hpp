@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "daemon/recording/clock_judge.hpp"
+
 namespace yuragi::daemon::recording {
 
 enum class RecorderState : std::uint8_t {
@@ -19,6 +21,7 @@ struct RecorderStatus {
   std::uint64_t lost = 0;                   ///< readings that were dropped
   std::string error;                        ///< why it cannot write at present; empty while it can
   std::optional<std::uint64_t> free_bytes;  ///< on the recording's disk, for this user; nothing where it is not known
+  std::optional<ClockDoubt> clock_doubt;    ///< while it lasts, age deletes nothing
 };
 
 }  // namespace yuragi::daemon::recording

@@ -7,6 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include "daemon/recording/clock_doubt_file.hpp"
+#include "daemon/recording/clock_synchronization.hpp"
 #include "daemon/recording/private_file.hpp"
 #include "daemon/recording/retention.hpp"
 #include "drivers/windlog/older_recording.hpp"
@@ -69,8 +71,10 @@ class AtTheDisk {
 }  // namespace
 
 RecorderWorker::RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules,
-                               RecordingInfo info, RecorderReport report, const RecorderLimits& limits)
+                               RecordingInfo info, RecorderReport report, const RecorderLimits& limits,
+                               std::filesystem::path synchronized_file)
     : file_(file),
+      synchronized_file_(std::move(synchronized_file)),
       rules_(rules),
       sensor_count_(info.sensors.size()),
       info_(std::move(info)),
@@ -79,8 +83,11 @@ RecorderWorker::RecorderWorker(const std::filesystem::path& file, const settings
       quantities_ring_(kQuantitiesCapacity),
       report_(std::move(report)) {
   auto opened = open_session(info_.started);
+  const auto newest = newest_time();
   if (opened) opened = commit();
   if (!opened) throw FailureError({"cannot record: " + opened.error().message, FailureKind::kCannotCreate});
+  clock_ = ClockJudge(newest, read_clock_doubt(clock_doubt_file(file_)));
+  save_doubt();
   measure_free_space();
 }
 
@@ -138,7 +145,8 @@ RecorderStatus RecorderWorker::locked_status() const {
                         .waiting = 0,
                         .lost = lost_.load(std::memory_order_relaxed) + given_up_.load(std::memory_order_relaxed),
                         .error = error_,
-                        .free_bytes = free_bytes_};
+                        .free_bytes = free_bytes_,
+                        .clock_doubt = clock_doubt_};
   const std::uint64_t done = status.written + given_up_.load(std::memory_order_relaxed);
   status.waiting = std::max(pushed_.load(std::memory_order_relaxed), done) - done;
   if (writing_since_ && std::chrono::steady_clock::now() - *writing_since_ >= limits_.hang_after) {
@@ -193,6 +201,7 @@ void RecorderWorker::finish() {
     const auto closed = writer_->close();
     if (!closed) set_status(closed.error().message);
   }
+  if (clock_.doubt()) write_clock_doubt(clock_doubt_file(file_), clock_.doubt());
   ring_.drain([this](const Entry& entry) { pending_.push_back(entry); });
   const auto given_up = static_cast<std::size_t>(
       std::ranges::count_if(pending_, [](const Entry& entry) { return entry.sensor != kNextSession; }));
@@ -326,6 +335,7 @@ Result<void, Failure> RecorderWorker::learn_begin() {
 /// `earliest`. What stations said before that goes into the session that ends: a session has no place for what was
 /// before it.
 Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earliest) {
+  judge_clock(first);
   if (auto made = make_room(first.utc); !made) return made;
   if (writer_) {
     if (auto kept = check_name(); !kept) return kept;
@@ -337,7 +347,8 @@ Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earlie
       forget_quantities(begin);
     }
     if (is_due) {
-      if (auto completed = complete_file(); !completed) return completed;
+      if (auto completed = complete_file(first.utc); !completed) return completed;
+      if (auto made = make_room(first.utc); !made) return made;
       return open_session(first);
     }
     return is_session_due_ ? begin_session_at(earliest) : Result<void, Failure>{};
@@ -356,10 +367,13 @@ Result<void, Failure> RecorderWorker::commit() {
 }
 
 /// Closes the file and renames it to what a completed part is called.
-Result<void, Failure> RecorderWorker::complete_file() {
+Result<void, Failure> RecorderWorker::complete_file(UtcTime now) {
   if (auto closed = writer_->close(); !closed) return closed;
   writer_.reset();
   UtcTime begin = *began_;
+  // Parts are read in the order of their names: one from a wrong date ahead goes before those that follow it.
+  const auto parts = drivers::windlog::completed_parts(file_);
+  if (parts.empty() || parts.back().begin < now) begin = std::min(begin, now);
   for (int tries = 0; tries < kMostPartNames; ++tries) {
     if (drivers::windlog::is_free_name(drivers::windlog::part_name(file_, begin))) break;
     begin += std::chrono::seconds(1);
@@ -368,7 +382,37 @@ Result<void, Failure> RecorderWorker::complete_file() {
   // Where another program reads it, its newest readings may still lie beside it.
   const std::error_code error = drivers::windlog::rename_recording(file_, part);
   if (error) return Failure{file_.string() + ": cannot be renamed to " + part.string() + ": " + error.message()};
+  may_delete_by_age_ = kMaxDeletedByAge;
   return {};
+}
+
+/// The newest time that the recording held before the present session; nullopt if it held nothing.
+std::optional<UtcTime> RecorderWorker::newest_time() const {
+  if (writer_ && writer_->last_before_session()) return writer_->last_before_session();
+  const auto parts = drivers::windlog::completed_parts(file_);
+  if (parts.empty()) return std::nullopt;
+  return parts.back().begin;
+}
+
+void RecorderWorker::judge_clock(Instant now) {
+  clock_.look(now, is_synchronized(synchronized_file_, now.utc));
+  save_doubt();
+}
+
+/// Reports a doubt of the clock that has begun or ended, and saves it then and once a minute. If that fails the disk
+/// takes no readings, either.
+void RecorderWorker::save_doubt() {
+  const auto& doubt = clock_.doubt();
+  {
+    const std::lock_guard lock(status_mutex_);
+    clock_doubt_ = doubt;
+  }
+  const bool has_changed =
+      doubt.has_value() != saved_doubt_.has_value() || (doubt && doubt->since != saved_doubt_->since);
+  if (has_changed) report(doubt ? text_of(*doubt) : "the clock is no longer doubted");
+  if (!has_changed && (!doubt || doubt->running - saved_doubt_->running < kSaveDoubtEvery)) return;
+  write_clock_doubt(clock_doubt_file(file_), doubt);
+  saved_doubt_ = doubt;
 }
 
 /// Deletes what is not to be kept. Fails where there is less space all the same than is to be left free.
@@ -382,9 +426,11 @@ Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
   for (const auto& part : drivers::windlog::completed_parts(file_)) {
     parts.push_back({part.file, part.begin, size_of(part.file)});
   }
-  for (const auto& part :
-       parts_to_delete(rules, parts, size_of(file_), free_bytes.value_or(rules.least_free_bytes), now)) {
-    if (drivers::windlog::remove_recording(part)) report("deleted " + part.string() + ", which is not to be kept");
+  for (const auto& part : parts_to_delete(rules, parts, size_of(file_), free_bytes.value_or(rules.least_free_bytes),
+                                          now, clock_.doubt() ? 0 : may_delete_by_age_)) {
+    if (!drivers::windlog::remove_recording(part.file)) continue;
+    report("deleted " + part.file.string() + ", which is not to be kept");
+    if (part.is_by_age) --may_delete_by_age_;
   }
   if (!parts.empty()) free_bytes = measure_free_space();
   if (!free_bytes || *free_bytes >= rules.least_free_bytes) return {};

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "daemon/recording/clock_judge.hpp"
 #include "daemon/recording/recorder_status.hpp"
 #include "daemon/settings/recording_config.hpp"
 #include "drivers/windlog/file_identity.hpp"
@@ -40,8 +41,8 @@ struct RecordingInfo {
   std::vector<RecordedSensor> sensors;
 };
 
-/// Called with a sentence when writing begins to fail and when it works again, and when an older recording was renamed.
-/// Must not throw.
+/// Called with a sentence when writing begins to fail and when it works again, when an older recording was renamed, and
+/// when a doubt of the clock begins and ends. Must not throw.
 using RecorderReport = std::function<void(std::string_view)>;
 
 /// How long a Recorder waits, and for what.
@@ -58,10 +59,11 @@ class RecorderWorker {
  public:
   static constexpr std::size_t kMaxPending = 65'536;
   static constexpr int kCommitsPerCheckpoint = 60;
+  static constexpr Nanoseconds kSaveDoubtEvery = std::chrono::minutes(1);
 
-  /// Opens or creates the recording and begins its session. Throws FailureError (kCannotCreate) where it cannot.
+  /// As Recorder::Recorder(). Throws FailureError (kCannotCreate) if it cannot open the recording.
   RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules, RecordingInfo info,
-                 RecorderReport report, const RecorderLimits& limits);
+                 RecorderReport report, const RecorderLimits& limits, std::filesystem::path synchronized_file);
 
   /// Writes until `stop` is requested, then what is left, and closes the file.
   void run(const std::stop_token& stop);
@@ -111,14 +113,18 @@ class RecorderWorker {
   Result<void, Failure> commit();
   Result<void, Failure> check_name() const;
   Result<void, Failure> open_session(Instant started);
-  Result<void, Failure> complete_file();
+  Result<void, Failure> complete_file(UtcTime now);
   Result<void, Failure> make_room(UtcTime now);
+  std::optional<UtcTime> newest_time() const;
+  void judge_clock(Instant now);
+  void save_doubt();
   std::optional<std::uint64_t> measure_free_space();
   void report(std::string_view sentence);
   void set_status(const std::string& error);
   RecorderStatus locked_status() const;
 
   std::filesystem::path file_;
+  std::filesystem::path synchronized_file_;
   settings::RecordingConfig rules_;
   std::size_t sensor_count_;  ///< of every session; it never changes, so that push() may look at it
   RecordingInfo info_;
@@ -143,6 +149,7 @@ class RecorderWorker {
   mutable std::condition_variable status_changed_;
   std::string error_;
   std::optional<std::uint64_t> free_bytes_;
+  std::optional<ClockDoubt> clock_doubt_;
   std::optional<SteadyTime> writing_since_;  ///< while it is at the disk
   bool has_ended_ = false;
 
@@ -155,6 +162,9 @@ class RecorderWorker {
   std::vector<std::int64_t> sensor_ids_;
   bool is_session_due_ = false;  ///< the next reading begins one
   int commits_ = 0;              ///< since the file was opened
+  ClockJudge clock_;
+  std::optional<ClockDoubt> saved_doubt_;  ///< as it is on the disk
+  std::size_t may_delete_by_age_ = 0;      ///< until the next file is completed
   Nanoseconds back_off_{0};
   SteadyTime retry_at_{};
 

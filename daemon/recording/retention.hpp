@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -12,7 +13,8 @@ namespace yuragi::daemon::recording {
 
 // How much of a recording is kept. Pure.
 
-/// Is a file that began at a moment, and is so large, to be completed, so that a new one is begun?
+/// Is a file that began at a moment, and is so large, to be completed, so that a new one is begun? A daily one also if
+/// the clock has been set back to before its beginning, since that day may be far away.
 bool is_complete(const settings::RecordingConfig& rules, UtcTime begin, std::uint64_t bytes, UtcTime now);
 
 /// What a recording may grow by between two looks at its size: SQLite's log beside the file (1000 pages of 4 KiB until
@@ -30,10 +32,20 @@ struct KeptPart {
   std::uint64_t bytes = 0;
 };
 
-/// Those of the completed files (given oldest first) that are to be deleted, oldest first: too old, or more than the
-/// limits of size and free space allow. `written_bytes`: of the file that is being written, which is never deleted.
-std::vector<std::filesystem::path> parts_to_delete(const settings::RecordingConfig& rules,
-                                                   std::span<const KeptPart> parts, std::uint64_t written_bytes,
-                                                   std::uint64_t free_bytes, UtcTime now);
+/// Age deletes at most so many completed files for each one that is completed, whatever the date is.
+inline constexpr std::size_t kMaxDeletedByAge = 2;
+
+/// A completed file that is to be deleted.
+struct PartToDelete {
+  std::filesystem::path file;
+  bool is_by_age = false;  ///< otherwise by the limits of size and free space
+};
+
+/// Those of the completed files (given oldest first) that are to be deleted, oldest first: at most `max_by_age` because
+/// they are too old, and those that are more than the limits of size and free space allow. `written_bytes`: of the
+/// file that is being written, which is never deleted.
+std::vector<PartToDelete> parts_to_delete(const settings::RecordingConfig& rules, std::span<const KeptPart> parts,
+                                          std::uint64_t written_bytes, std::uint64_t free_bytes, UtcTime now,
+                                          std::size_t max_by_age);
 
 }  // namespace yuragi::daemon::recording

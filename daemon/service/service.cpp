@@ -68,7 +68,8 @@ wire::RecorderStatus to_wire(const recording::RecorderStatus& status) {
           .waiting = status.waiting,
           .lost = status.lost,
           .free_bytes = status.free_bytes,
-          .error = status.error};
+          .error = status.error,
+          .clock_doubt = status.clock_doubt ? recording::text_of(*status.clock_doubt) : std::string()};
 }
 
 std::vector<look::Camera> cameras_of(const settings::Config& config) {

@@ -93,7 +93,8 @@ ordered_json json_of_recorder(const std::optional<wire::RecorderStatus>& recorde
           {"waiting", recorder->waiting},
           {"lost", recorder->lost},
           {"free_bytes", json_or_null(recorder->free_bytes)},
-          {"error", recorder->error}};
+          {"error", recorder->error},
+          {"clock_doubt", recorder->clock_doubt}};
 }
 
 ordered_json json_of_animation(const std::optional<wire::AnimationStatus>& animation) {

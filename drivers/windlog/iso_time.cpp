@@ -1,7 +1,9 @@
 #include "drivers/windlog/iso_time.hpp"
 
+#include <array>
 #include <chrono>
 #include <cstdint>
+#include <ctime>
 
 #include "drivers/windlog/format.hpp"
 
@@ -112,6 +114,15 @@ std::optional<UtcTime> parse_iso_time(std::string_view text) {
   const auto days = day->time_since_epoch().count();
   if (days < -kMaxDays || days > kMaxDays) return std::nullopt;
   return UtcTime(*day) + clock - *zone;
+}
+
+std::string iso_time_text(UtcTime moment) {
+  const std::time_t time_s = std::chrono::floor<std::chrono::seconds>(moment).time_since_epoch().count();
+  std::tm utc{};
+  gmtime_r(&time_s, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
 }
 
 }  // namespace yuragi::drivers::windlog

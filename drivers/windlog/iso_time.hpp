@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "engine/base/time.hpp"
@@ -12,5 +13,8 @@ namespace yuragi::drivers::windlog {
 /// UTC where it names none), and with slashes in the date. A leap second is the first of the next minute. Nothing where
 /// the text is something else, or a moment that no recording can hold. Thread-safe: yes.
 std::optional<UtcTime> parse_iso_time(std::string_view text);
+
+/// 2018-07-20T14:00:00Z; fractions of a second are cut off. Thread-safe: yes.
+std::string iso_time_text(UtcTime moment);
 
 }  // namespace yuragi::drivers::windlog

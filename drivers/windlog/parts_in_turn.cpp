@@ -1,29 +1,18 @@
 #include "drivers/windlog/parts_in_turn.hpp"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
-#include <ctime>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "drivers/windlog/contents.hpp"
+#include "drivers/windlog/iso_time.hpp"
 #include "drivers/windlog/merged_readings.hpp"
 #include "drivers/windlog/recording_parts.hpp"
 
 namespace yuragi::drivers::windlog {
 namespace {
-
-std::string utc_text(UtcTime moment) {
-  const std::time_t time_s = std::chrono::floor<std::chrono::seconds>(moment).time_since_epoch().count();
-  std::tm utc{};
-  gmtime_r(&time_s, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text.data();
-}
 
 /// The moment in the name of a part; the last file of a series is named as the whole.
 std::optional<UtcTime> begin_by_name(const std::vector<std::filesystem::path>& files, std::size_t index) {
@@ -40,8 +29,8 @@ std::string span_by_names(const std::vector<std::filesystem::path>& files, std::
   const auto begin = begin_by_name(files, index);
   const auto end = index + 1 < files.size() ? begin_by_name(files, index + 1) : std::nullopt;
   std::string span;
-  if (begin) span += " from " + utc_text(*begin) + (end ? "" : " on");
-  if (end) span += " up to " + utc_text(*end);
+  if (begin) span += " from " + iso_time_text(*begin) + (end ? "" : " on");
+  if (end) span += " up to " + iso_time_text(*end);
   return span;
 }
 
@@ -164,7 +153,8 @@ void PartsInTurn::leave_out(const std::filesystem::path& file, const std::string
 bool PartsInTurn::leave_out_rest(const Part& part, const std::optional<UtcTime>& read_to,
                                  const Failure& failure) const {
   if (stop_.stop_requested() || failure.kind != FailureKind::kBadData) return false;
-  leave_out(part.file, (read_to ? " after " + utc_text(*read_to) : "") + " up to " + utc_text(part.last), failure);
+  leave_out(part.file, (read_to ? " after " + iso_time_text(*read_to) : "") + " up to " + iso_time_text(part.last),
+            failure);
   return true;
 }
 

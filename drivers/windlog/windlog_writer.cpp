@@ -164,6 +164,7 @@ Result<std::int64_t, Failure> WindlogWriter::begin_of_next_session(UtcTime start
       __builtin_add_overflow(time_ns, std::max<std::int64_t>(gap_ns, 1), &begin_ns) || begin_ns >= kMaxTime_ns) {
     return Failure{database_.file().string() + ": its times leave no room for another session; choose another file"};
   }
+  last_before_session_ = UtcTime(Nanoseconds(utc_ns));
   // Nor before what stations said last: the clock may have been set back since.
   if (const auto said_ns = last_quantities_ns(); said_ns && *said_ns < kMaxTime_ns - 1) {
     begin_ns = std::max(begin_ns, *said_ns + 1);

@@ -59,6 +59,10 @@ class WindlogWriter {
   /// When the first session of a file that has readings or quantities was begun; nothing where it has none.
   Result<std::optional<UtcTime>, Failure> began();
 
+  /// The time of the last reading before the session that was begun last, or when the session before that was begun if
+  /// this is later in the recording. Nullopt if there was no session.
+  std::optional<UtcTime> last_before_session() const { return last_before_session_; }
+
   /// Makes everything so far durable.
   Result<void, Failure> commit();
 
@@ -100,6 +104,7 @@ class WindlogWriter {
   std::int64_t session_ = 0;
   std::int64_t begin_ns_ = 0;  ///< of the session, on the recording's time line
   Instant started_;
+  std::optional<UtcTime> last_before_session_;
 };
 
 /// Can this reading be recorded?

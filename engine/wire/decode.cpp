@@ -193,7 +193,7 @@ bool read(const fb::Recorder* from, std::optional<RecorderStatus>& to) {
                       .waiting = from->waiting(),
                       .lost = from->lost()};
   if (const auto free_bytes = from->free_bytes()) to->free_bytes = *free_bytes;
-  return read_text(from->error(), to->error);
+  return read_text(from->error(), to->error) && read_text(from->clock_doubt(), to->clock_doubt);
 }
 
 /// Never refuses: what is out of range is brought into it, so that a picture is shown.

@@ -157,6 +157,7 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
 
 flatbuffers::Offset<fb::Recorder> add_recorder(Builder& builder, const RecorderStatus& recorder) {
   const auto error = add_text(builder, recorder.error);
+  const auto clock_doubt = add_text(builder, recorder.clock_doubt);
   fb::RecorderBuilder table(builder);
   table.add_state(static_cast<fb::RecorderState>(recorder.state));
   table.add_written(recorder.written);
@@ -164,6 +165,7 @@ flatbuffers::Offset<fb::Recorder> add_recorder(Builder& builder, const RecorderS
   table.add_lost(recorder.lost);
   if (recorder.free_bytes) table.add_free_bytes(*recorder.free_bytes);
   table.add_error(error);
+  table.add_clock_doubt(clock_doubt);
   return table.Finish();
 }
 

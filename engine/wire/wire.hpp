@@ -175,6 +175,7 @@ struct RecorderStatus {
   std::uint64_t lost = 0;                                  ///< readings that were dropped
   std::optional<std::uint64_t> free_bytes = std::nullopt;  ///< on its disk
   std::string error = {};                                  ///< why it cannot write at present; empty: it can
+  std::string clock_doubt = {};                            ///< why the date is doubted; empty: it is believed
 };
 
 /// How long one scene takes of each tick of the animation: a mean of the last seconds. One that is hidden takes

@@ -40,6 +40,7 @@ export interface Recorder {
   lost: number;
   free_bytes: number | null;
   error: string;
+  clock_doubt: string;
 }
 
 export interface Status {

@@ -27,10 +27,12 @@
 namespace yuragi::daemon::recording {
 namespace {
 
+using namespace std::chrono_literals;
+
 constexpr std::int64_t kHour_ms = 3'600'000;
 
-RecordingInfo info_of(std::vector<RecordedSensor> sensors) {
-  return {.started = test::at_ms(0, test::kSampleUtc_ms),
+RecordingInfo info_of(std::vector<RecordedSensor> sensors, Instant started = test::at_ms(0, test::kSampleUtc_ms)) {
+  return {.started = started,
           .software = "yuragi test",
           .configuration = "[wind]\nspeed = 4\n",
           .sensors = std::move(sensors)};
@@ -623,6 +625,157 @@ TEST(Recorder, BeginsAFileADayAndDeletesTheOldest) {
   EXPECT_NE(reports[0].find("deleted"), std::string::npos) << reports[0];
 }
 
+/// Records readings 1 to `count` into files of one reading each.
+void record_parts(const std::filesystem::path& file, int first, int count) {
+  Recorder recorder(file, info_of({{"mast", "", ""}}), {}, {}, {.most_file_bytes = 1});
+  for (int i = first; i < first + count; ++i) {
+    recorder.push(0, test::reading_at(std::int64_t{1000} * i, i));
+    wait_for(recorder,
+             [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i - first + 1); });
+  }
+}
+
+/// A recorder of a file a day, with what it reported. Its clock shows `ahead` more than monotonic time, which goes on
+/// from one to the next.
+class DailyRecorder {
+ public:
+  DailyRecorder(const std::filesystem::path& folder, std::chrono::hours at, std::chrono::hours ahead = {})
+      : recorder_(
+            folder / "a.windlog", info_of({{"mast", "", ""}}, time_of(at, ahead)),
+            [this](std::string_view report) { reports_.emplace_back(report); },
+            {.commit_every = std::chrono::milliseconds(1)}, {.is_daily = true, .keep_days = 180},
+            folder / "synchronized") {}
+
+  void record(Nanoseconds at, std::chrono::hours ahead = {}) {
+    wind::WindReading reading;
+    reading.time = time_of(at, ahead);
+    reading.speed_m_s = 1.0;
+    EXPECT_TRUE(recorder_.push(0, reading));
+    ++count_;
+    wait_for(recorder_, [this](const RecorderStatus& status) { return status.written == count_; });
+  }
+
+  RecorderStatus status() const { return recorder_.status(); }
+  /// Of a recorder that is at rest: record() has returned.
+  const std::vector<std::string>& reports() const { return reports_; }
+
+ private:
+  static Instant time_of(Nanoseconds at, std::chrono::hours ahead) {
+    return {MonoTime(at), UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms)) + at + ahead};
+  }
+
+  std::vector<std::string> reports_;
+  Recorder recorder_;
+  std::uint64_t count_ = 0;
+};
+
+constexpr std::chrono::hours kDay = std::chrono::days(1);
+
+std::size_t count_parts(const test::TemporaryFolder& folder) {
+  return drivers::windlog::completed_parts(folder / "a.windlog").size();
+}
+
+/// Records six parts and what the seventh is to become.
+void record_a_week(const test::TemporaryFolder& folder) {
+  DailyRecorder recorder(folder.path(), kDay);
+  for (int day = 1; day <= 7; ++day) recorder.record(day * kDay);
+  EXPECT_TRUE(recorder.reports().empty());
+}
+
+TEST(Recorder, ADateThatJumpsDeletesNothing) {
+  const test::TemporaryFolder folder;
+  record_a_week(folder);
+  ASSERT_EQ(count_parts(folder), 6U);
+  DailyRecorder recorder(folder.path(), 7 * kDay);
+  recorder.record(7 * kDay);
+  for (int second = 1; second <= 5; ++second) recorder.record(7 * kDay + std::chrono::seconds(second), 400 * kDay);
+  EXPECT_EQ(count_parts(folder), 7U);
+  ASSERT_TRUE(recorder.status().clock_doubt);
+  const std::string text = text_of(*recorder.status().clock_doubt);
+  EXPECT_NE(text.find("it jumped ahead by 400 days"), std::string::npos) << text;
+  ASSERT_EQ(recorder.reports().size(), 1U);
+  EXPECT_EQ(recorder.reports()[0].substr(0, 60), text.substr(0, 60));
+  const auto all = test::read_all(folder / "a.windlog");
+  ASSERT_EQ(all.size(), 13U);
+  EXPECT_EQ(all.back().reading.time.utc, UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms)) + 407 * kDay + 5s)
+      << "as it was, though it is doubted";
+}
+
+TEST(Recorder, AStartAtAWrongDateDeletesNothing) {
+  const test::TemporaryFolder folder;
+  record_a_week(folder);
+  DailyRecorder recorder(folder.path(), 7 * kDay, 400 * kDay);
+  for (int second = 1; second <= 5; ++second) recorder.record(7 * kDay + std::chrono::seconds(second), 400 * kDay);
+  EXPECT_EQ(count_parts(folder), 7U);
+  ASSERT_TRUE(recorder.status().clock_doubt);
+  EXPECT_TRUE(recorder.status().clock_doubt->is_at_start);
+}
+
+TEST(Recorder, AfterADayOfDoubtAgeDeletesTwoPartsForEachThatIsCompleted) {
+  const test::TemporaryFolder folder;
+  record_a_week(folder);
+  {
+    DailyRecorder recorder(folder.path(), 7 * kDay, 400 * kDay);
+    recorder.record(7 * kDay, 400 * kDay);
+    recorder.record(7 * kDay + std::chrono::hours(8), 400 * kDay);
+  }
+  EXPECT_EQ(count_parts(folder), 7U);
+  ASSERT_TRUE(std::filesystem::exists(folder / "a.windlog-clock"));
+  DailyRecorder recorder(folder.path(), 8 * kDay, 400 * kDay);
+  EXPECT_TRUE(recorder.status().clock_doubt) << "saved";
+  for (const std::chrono::hours hour : {0h, 8h, 16h - 1h}) recorder.record(8 * kDay + hour, 400 * kDay);
+  EXPECT_TRUE(recorder.status().clock_doubt);
+  EXPECT_EQ(count_parts(folder), 9U);
+  recorder.record(8 * kDay + 16h, 400 * kDay);
+  EXPECT_FALSE(recorder.status().clock_doubt);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.windlog-clock"));
+  for (int second = 1; second <= 3; ++second)
+    recorder.record(8 * kDay + 16h + std::chrono::seconds(second), 400 * kDay);
+  EXPECT_EQ(count_parts(folder), 7U) << "two for the one that was completed last";
+  recorder.record(10 * kDay, 400 * kDay);
+  recorder.record(10 * kDay + 1s, 400 * kDay);
+  EXPECT_EQ(count_parts(folder), 6U) << "one more, and two less";
+}
+
+TEST(Recorder, BelievesAClockThatIsKnownToBeSynchronized) {
+  const test::TemporaryFolder folder;
+  record_a_week(folder);
+  DailyRecorder recorder(folder.path(), 7 * kDay, 40 * kDay);
+  recorder.record(7 * kDay, 40 * kDay);
+  EXPECT_TRUE(recorder.status().clock_doubt);
+  const auto now = UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms)) + 47 * kDay;
+  std::ofstream(folder / "synchronized").flush();
+  std::filesystem::last_write_time(folder / "synchronized", std::chrono::file_clock::from_sys(now));
+  recorder.record(7 * kDay + 1s, 40 * kDay);
+  EXPECT_FALSE(recorder.status().clock_doubt);
+  ASSERT_EQ(recorder.reports().size(), 2U);
+  EXPECT_EQ(recorder.reports()[1], "the clock is no longer doubted");
+}
+
+TEST(Recorder, ADoubtedClockHoldsUpNoRuleOfSpace) {
+  const test::TemporaryFolder folder;
+  record_parts(folder / "a.windlog", 1, 3);
+  Recorder recorder(folder / "a.windlog", info_of({{"mast", "", ""}}), {}, {}, {.most_bytes = 4});
+  recorder.push(0, test::reading_at(24 * kHour_ms * 400, 1.0));
+  wait_for(recorder, [](const RecorderStatus& status) { return status.written == 1; });
+  EXPECT_TRUE(recorder.status().clock_doubt);
+  EXPECT_EQ(count_parts(folder), 0U);
+}
+
+TEST(Recorder, RotatesOnAfterAStartAYearAhead) {
+  const test::TemporaryFolder folder;
+  {
+    DailyRecorder recorder(folder.path(), kDay, 365 * kDay);
+    recorder.record(kDay, 365 * kDay);
+  }
+  DailyRecorder recorder(folder.path(), kDay);
+  for (int day = 1; day <= 3; ++day) recorder.record(day * kDay);
+  EXPECT_EQ(count_parts(folder), 3U) << "the one of next year, and two days";
+  const auto all = test::read_all(folder / "a.windlog");
+  ASSERT_EQ(all.size(), 4U);
+  EXPECT_EQ(all[0].reading.time.utc, all[1].reading.time.utc + 365 * kDay) << "read in the order of recording";
+}
+
 TEST(Recorder, BeginsANewFileInTheMiddleOfARun) {
   const test::TemporaryFolder folder;
   {
@@ -635,16 +788,6 @@ TEST(Recorder, BeginsANewFileInTheMiddleOfARun) {
   }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 3);
   EXPECT_EQ(test::read_all(folder / "a.windlog").size(), 3U);
-}
-
-/// Records readings 1 to `count` into files of one reading each.
-void record_parts(const std::filesystem::path& file, int first, int count) {
-  Recorder recorder(file, info_of({{"mast", "", ""}}), {}, {}, {.most_file_bytes = 1});
-  for (int i = first; i < first + count; ++i) {
-    recorder.push(0, test::reading_at(std::int64_t{1000} * i, i));
-    wait_for(recorder,
-             [&](const RecorderStatus& status) { return status.written == static_cast<unsigned>(i - first + 1); });
-  }
 }
 
 std::vector<double> speeds_in(const std::filesystem::path& file) {

@@ -17,7 +17,8 @@ TEST(Retention, AFileIsCompleteOnAnotherDayOrWhenItIsLarge) {
   rules.is_daily = true;
   EXPECT_FALSE(is_complete(rules, kNoon, 0, kNoon + 12h - 1ns));
   EXPECT_TRUE(is_complete(rules, kNoon, 0, kNoon + 12h));
-  EXPECT_FALSE(is_complete(rules, kNoon, 0, kNoon - 24h)) << "the clock was set back";
+  EXPECT_FALSE(is_complete(rules, kNoon, 0, kNoon - 1h)) << "a small step back, at midnight perhaps";
+  EXPECT_TRUE(is_complete(rules, kNoon, 0, kNoon - 1h - 1ns)) << "the clock was set back";
   rules = {.most_file_bytes = 1000};
   EXPECT_FALSE(is_complete(rules, kNoon, 1000, kNoon));
   EXPECT_TRUE(is_complete(rules, kNoon, 1001, kNoon));
@@ -33,9 +34,9 @@ std::vector<KeptPart> parts_of_days(int days) {
 }
 
 std::size_t count_deleted(const settings::RecordingConfig& rules, std::uint64_t written_bytes = 0,
-                          std::uint64_t free_bytes = 0) {
-  const auto deleted = parts_to_delete(rules, parts_of_days(10), written_bytes, free_bytes, kNoon);
-  for (std::size_t i = 0; i < deleted.size(); ++i) EXPECT_EQ(deleted[i], std::to_string(10 - i)) << "oldest first";
+                          std::uint64_t free_bytes = 0, std::size_t max_by_age = 10) {
+  const auto deleted = parts_to_delete(rules, parts_of_days(10), written_bytes, free_bytes, kNoon, max_by_age);
+  for (std::size_t i = 0; i < deleted.size(); ++i) EXPECT_EQ(deleted[i].file, std::to_string(10 - i)) << "oldest first";
   return deleted.size();
 }
 
@@ -51,6 +52,19 @@ TEST(Retention, TheOldestGoUntilAllRulesHold) {
   EXPECT_EQ(count_deleted({.least_free_bytes = 250}, 0, 249), 1U);
   EXPECT_EQ(count_deleted({.least_free_bytes = 250}, 0, 0), 3U);
   EXPECT_EQ(count_deleted({.keep_days = 7, .most_bytes = 450, .least_free_bytes = 10}, 0, 0), 6U);
+}
+
+TEST(Retention, AgeDeletesNoMoreThanItMayAndSpaceWhatItMust) {
+  EXPECT_EQ(count_deleted({.keep_days = 2}), 7U);
+  EXPECT_EQ(count_deleted({.keep_days = 2}, 0, 0, 2), 2U);
+  EXPECT_EQ(count_deleted({.keep_days = 2}, 0, 0, 0), 0U);
+  EXPECT_EQ(count_deleted({.keep_days = 2, .most_bytes = 450}, 0, 0, 0), 6U);
+  EXPECT_EQ(count_deleted({.keep_days = 2, .most_bytes = 650}, 0, 0, 2), 6U) << "four by space, two by age";
+  const auto deleted = parts_to_delete({.keep_days = 2, .least_free_bytes = 150}, parts_of_days(10), 0, 0, kNoon, 1);
+  ASSERT_EQ(deleted.size(), 3U);
+  EXPECT_FALSE(deleted[0].is_by_age);
+  EXPECT_FALSE(deleted[1].is_by_age);
+  EXPECT_TRUE(deleted[2].is_by_age);
 }
 
 TEST(Retention, TheLimitsHoldUntilTheNextLookToo) {

@@ -67,6 +67,12 @@ TEST(Attention, IsNeededByARecorderThatCannotWrite) {
   EXPECT_THAT(needs_attention(sensors), ElementsAre(HasSubstr("does not answer")));
 }
 
+TEST(Attention, IsNeededByAClockThatIsDoubted) {
+  wire::Sensors sensors = well();
+  sensors.recorder->clock_doubt = "the clock is doubted since today";
+  EXPECT_THAT(needs_attention(sensors), ElementsAre("the clock is doubted since today"));
+}
+
 TEST(Attention, IsNeededByReadingsThatWereLost) {
   wire::Sensors sensors = well();
   sensors.recorder->lost = 1;

@@ -56,5 +56,13 @@ TEST(IsoTime, RefusesWhatIsNoTime) {
   }
 }
 
+TEST(IsoTime, IsWrittenInWholeSeconds) {
+  for (const char* text : {"2018-07-20T14:00:00Z", "1969-12-31T23:59:59Z"}) {
+    const auto moment = parse_iso_time(text);
+    ASSERT_TRUE(moment);
+    EXPECT_EQ(iso_time_text(*moment + std::chrono::milliseconds(999)), text);
+  }
+}
+
 }  // namespace
 }  // namespace yuragi::drivers::windlog

@@ -16,7 +16,8 @@ TEST(KnownHost, AddressesLocalhostAndNames) {
   }
 }
 TEST(KnownHost, NothingElse) {
-  for (const char* host : {"", "evil.example", "roof.evil.example", "evilroof", "127.0.0.1.evil.example", "[::1", "[::1]evil", "[::1]evil:7480", "[evil.example]", "roof:evil", "127.0.0.1evil", "1",
+  for (const char* host : {"", "evil.example", "roof.evil.example", "evilroof", "127.0.0.1.evil.example", "[::1",
+                           "[::1]evil", "[::1]evil:7480", "[evil.example]", "roof:evil", "127.0.0.1evil", "1",
                            "wall.example.org.evil", "local", ".local", ":7480", "localhost.evil:7480"}) {
     EXPECT_FALSE(is_known_host(host, kNames)) << host;
   }
