@@ -18,6 +18,7 @@
 
 #include "daemon/stream/tcp_listening.hpp"
 #include "engine/base/address.hpp"
+#include "engine/base/close_on_exec.hpp"
 
 namespace yuragi::daemon::web {
 namespace {
@@ -203,6 +204,7 @@ class HttpServer::Server : public std::enable_shared_from_this<Server> {
     });
   }
   void welcome(tcp::socket socket) {
+    close_on_exec(socket.native_handle());
     std::erase_if(connections_, [](const auto& connection) { return connection->has_ended(); });
     error_code error;
     const tcp::endpoint endpoint = socket.remote_endpoint(error);
