@@ -11,7 +11,7 @@
 namespace yuragi::daemon::alerts {
 
 /// What is kept of what a command prints.
-inline constexpr std::size_t kMaxCommandOutput_bytes = 64 * 1024;
+inline constexpr std::size_t kMaxCommandOutput_bytes = 64UL * 1024;
 
 /// Runs news.command by /bin/sh, with YURAGI_ALERT, YURAGI_ALERT_STATE and YURAGI_ALERT_MESSAGE in its environment, and
 /// waits for its end; after `most`, or when a stop is requested, it is killed. What it has started ends with it. It

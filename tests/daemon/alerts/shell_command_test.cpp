@@ -67,13 +67,13 @@ TEST(ShellCommand, IsKilledWhenItTakesTooLong) {
   EXPECT_EQ(why_not("sleep 1000 & sleep 1000", 10ms), "was killed, as it had not ended after 0 s");
 }
 
-/// Runs a command whose background job alone holds a named pipe open for writing. True: nobody holds it any more.
+/// Runs a command that holds a named pipe open for writing, as its background job does. True: nobody holds it any more.
 bool ends_background_job(const std::string& command, Nanoseconds most) {
   const test::TemporaryFolder folder;
   const std::string pipe = (folder.path() / "alive").string();
   if (mkfifo(pipe.c_str(), S_IRUSR | S_IWUSR) != 0) return false;
   const Descriptor alive(open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  why_not("sleep 1000 >" + pipe + " 2>&1 & " + command, most);
+  why_not("exec 9>" + pipe + "; sleep 1000 & " + command, most);
   char byte = 0;
   if (read(alive.get(), &byte, 1) == 0) return true;
   pollfd wait{.fd = alive.get(), .events = POLLIN, .revents = 0};
