@@ -15,7 +15,7 @@ constexpr const char* kTimesKey = "seconds_at_each_speed";
 constexpr const char* kOctavesKnownKey = "seconds_of_each_octave_of_gusts";
 constexpr const char* kOctavesKey = "decibels_of_each_octave_of_gusts";
 /// Many times the size of a valid file: a larger one is refused.
-constexpr std::streamsize kLongestSiteFile = 64 * 1024;
+constexpr std::streamsize kLongestSiteFile = 64L * 1024;
 
 /// The failure has an empty text where there was none.
 Failure write_site_file(const std::filesystem::path& file, const SiteMemory& memory) {
