@@ -38,6 +38,7 @@ ChildProgram::ChildProgram(const std::vector<std::string>& command, const Stream
     give(streams.input >= 0 ? streams.input : open("/dev/null", O_RDONLY), STDIN_FILENO);
     give(streams.output, STDOUT_FILENO);
     give(streams.error, STDERR_FILENO);
+    close_range(STDERR_FILENO + 1, ~0U, 0);
     execvp(words[0], words.data());
     _exit(kNotThere);
   }

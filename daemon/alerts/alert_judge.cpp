@@ -1,6 +1,7 @@
 #include "daemon/alerts/alert_judge.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@ using settings::AlertCondition;
 using settings::AlertConfig;
 
 constexpr double kMegabyte = 1e6;
+constexpr Nanoseconds kMaxAge = std::chrono::hours(10 * 365 * 24);
 
 std::string reason_of(const wire::SensorStatus& sensor) {
   const std::string& why = sensor.state_reason.empty() ? sensor.detail : sensor.state_reason;
@@ -32,6 +34,29 @@ void AlertJudge::change(const std::vector<AlertConfig>& alerts) {
         {config, before != alerts_.end() ? std::move(before->of_subject) : std::map<std::string, Progress>()});
   }
   alerts_ = std::move(next);
+}
+
+void AlertJudge::resume(const std::vector<AlertOn>& on, const Instant& now) {
+  for (const AlertOn& one : on) {
+    const bool is_of_sensor = one.when == AlertCondition::kSensorSilent;
+    for (Alert& alert : alerts_) {
+      if (alert.config.name != one.alert || alert.config.when != one.when || one.subject.empty() == is_of_sensor)
+        continue;
+      // The clock may have been set meanwhile.
+      const Nanoseconds age = std::clamp<Nanoseconds>(now.utc - one.begun, Nanoseconds::zero(), kMaxAge);
+      alert.of_subject[one.subject] = {.has_begun = true, .begun = now.mono - age, .begun_utc = one.begun};
+    }
+  }
+}
+
+std::vector<AlertOn> AlertJudge::on() const {
+  std::vector<AlertOn> all;
+  for (const Alert& alert : alerts_) {
+    for (const auto& [subject, progress] : alert.of_subject) {
+      if (progress.has_begun) all.push_back({alert.config.name, alert.config.when, subject, progress.begun_utc});
+    }
+  }
+  return all;
 }
 
 std::vector<AlertJudge::Subject> AlertJudge::subjects_of(const AlertConfig& alert, const wire::Sensors& status) const {
@@ -107,10 +132,12 @@ std::vector<AlertNews> AlertJudge::judge(const wire::Sensors& status, std::optio
         news.message = subject.begins;
         if (for_s > 0.0) news.message += fmt::format(" (for {})", settings::duration_text(for_s));
         progress.begun = *progress.differs_since;
+        progress.begun_utc = now.utc - (now.mono - progress.begun);
       } else {
         const double lasted_s = seconds(*progress.differs_since - progress.begun);
         news.message = fmt::format("{}, after {}", subject.ends, settings::duration_text(lasted_s));
       }
+      if (news.message.size() > kMaxMessage_bytes) news.message.resize(kMaxMessage_bytes);
       progress.has_begun = subject.holds;
       progress.differs_since.reset();
       all.push_back(std::move(news));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "daemon/alerts/alert_news.hpp"
+#include "daemon/alerts/alert_record.hpp"
 #include "daemon/settings/alert_config.hpp"
 #include "engine/base/time.hpp"
 #include "engine/wire/wire.hpp"
@@ -22,6 +24,15 @@ class AlertJudge {
   /// Other alerts from now on. One of the same name about the same goes on where it was; one that is gone tells no end.
   void change(const std::vector<settings::AlertConfig>& alerts);
 
+  /// Alerts that were on in an earlier process go on. Those that are not configured any more are ignored.
+  void resume(const std::vector<AlertOn>& on, const Instant& now);
+
+  /// Returns those that have begun and not ended.
+  std::vector<AlertOn> on() const;
+
+  /// Longer sentences are cut.
+  static constexpr std::size_t kMaxMessage_bytes = 500;
+
   /// What has begun or ended since the last call. `frames`: how many the animation has made; nothing: it has no scenes.
   std::vector<AlertNews> judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now);
 
@@ -36,6 +47,7 @@ class AlertJudge {
   struct Progress {
     bool has_begun = false;
     MonoTime begun{};
+    UtcTime begun_utc{};
     std::optional<MonoTime> differs_since{};  ///< since when what holds is not what was told
   };
   struct Alert {

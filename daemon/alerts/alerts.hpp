@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/alerts/alert_judge.hpp"
+#include "daemon/alerts/alert_ledger.hpp"
 #include "daemon/alerts/delivery_queue.hpp"
 #include "daemon/settings/alert_config.hpp"
 #include "engine/base/time.hpp"
@@ -13,21 +17,35 @@
 
 namespace yuragi::daemon::alerts {
 
-/// The [[alert]]s of an installation: what begins or ends is written into the log, and told by commands and webhooks on
-/// threads of their own. Thread-safe: no.
+/// Returns the file in which alerts outlive the daemon: alerts.json in the folder that systemd provides
+/// (STATE_DIRECTORY), otherwise CONFIG.alerts.json beside the configuration. Empty if there is neither.
+std::filesystem::path alert_record_file(const std::filesystem::path& config_file);
+
+/// The [[alert]]s of an installation: what begins or ends is written into the log, and told by commands and webhooks,
+/// each of each alert on a thread of its own. Thread-safe: no.
 class Alerts {
  public:
-  /// `host`: the name of this machine, for who is told.
-  Alerts(const std::vector<settings::AlertConfig>& alerts, std::string host);
+  /// `host`: the name of this machine, for who is told. `record_file`: AlertLedger's, from which alerts go on; empty:
+  /// they begin anew.
+  Alerts(const std::vector<settings::AlertConfig>& alerts, std::string host, const std::filesystem::path& record_file,
+         const Instant& now);
+  ~Alerts();
+  Alerts(const Alerts&) = delete;
+  Alerts& operator=(const Alerts&) = delete;
 
-  void change(const std::vector<settings::AlertConfig>& alerts) { judge_.change(alerts); }
+  void change(const std::vector<settings::AlertConfig>& alerts);
 
   /// To be called about twice a second. Does not wait. See AlertJudge::judge().
   void judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now);
 
  private:
+  void resume(const std::vector<settings::AlertConfig>& alerts, const Instant& now);
+  void push(AlertWay way, const AlertNews& news);
+
   AlertJudge judge_;
-  DeliveryQueue commands_, webhooks_;
+  std::string host_;
+  std::optional<AlertLedger> ledger_;
+  std::map<std::pair<std::string, AlertWay>, DeliveryQueue> queues_;  ///< by the alert's name; made when needed
 };
 
 }  // namespace yuragi::daemon::alerts

@@ -1,6 +1,8 @@
 #include "daemon/alerts/delivery_queue.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,81 +12,80 @@
 
 namespace yuragi::daemon::alerts {
 
-DeliveryQueue::DeliveryQueue(Deliver deliver, Report report, const RetryTimes& times)
-    : deliver_(std::move(deliver)),
-      report_(std::move(report)),
+DeliveryQueue::DeliveryQueue(Calls calls, const RetryTimes& times)
+    : calls_(std::move(calls)),
       times_(times),
       thread_([this](const std::stop_token& stop) { contain("delivering alerts", [&] { work(stop); }); }) {}
 
 DeliveryQueue::~DeliveryQueue() = default;
 
 void DeliveryQueue::push(AlertNews news) {
-  const auto now = Clock::now();
-  const std::lock_guard lock(mutex_);
-  if (waiting_.size() == kMostWaiting) {
-    waiting_.erase(waiting_.begin());
-    ++given_up_;
+  std::optional<AlertNews> given_up;
+  {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() == kMostWaiting) {
+      given_up = std::move(waiting_.front());
+      waiting_.pop_front();
+      ++given_up_;
+    }
+    waiting_.push_back(std::move(news));
+    changed_.notify_one();
   }
-  waiting_.push_back({.news = std::move(news), .first_try = now, .due = now});
-  has_changed_ = true;
-  changed_.notify_one();
+  if (given_up) calls_.settle(*given_up);
 }
 
-std::vector<DeliveryQueue::Waiting>::iterator DeliveryQueue::soonest() {
-  auto found = waiting_.end();
-  for (auto one = waiting_.begin(); one != waiting_.end(); ++one) {
-    const auto is_of_same = [&](const Waiting& other) { return other.news.alert == one->news.alert; };
-    const bool is_first = std::find_if(waiting_.begin(), one, is_of_same) == one;
-    if (is_first && (found == waiting_.end() || one->due < found->due)) found = one;
-  }
-  return found;
+bool DeliveryQueue::is_idle() const {
+  const std::lock_guard lock(mutex_);
+  return waiting_.empty() && !is_delivering_;
 }
 
 void DeliveryQueue::work(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  while (!stop.stop_requested()) {
-    has_changed_ = false;
-    if (const std::size_t count = std::exchange(given_up_, 0); count > 0) {
-      report_({}, fmt::format("{} not told: too many wait", count_text(count, "alert")));
-    }
-    const auto next = soonest();
-    if (next == waiting_.end()) {
-      changed_.wait(lock, stop, [this] { return has_changed_; });
-      continue;
-    }
-    // A copy: it is read without the lock while it is waited for, and push() moves those that wait.
-    if (const auto due = next->due; due > Clock::now()) {
-      changed_.wait_until(lock, stop, due, [this] { return has_changed_; });
-      continue;
-    }
-    Waiting one = std::move(*next);
-    waiting_.erase(next);
+  while (changed_.wait(lock, stop, [this] { return !waiting_.empty(); }) && !stop.stop_requested()) {
+    const AlertNews news = std::move(waiting_.front());
+    waiting_.pop_front();
+    const std::size_t given_up = std::exchange(given_up_, 0);
+    is_delivering_ = true;
     lock.unlock();
-    const bool done = is_done(one, stop);
+    if (given_up > 0)
+      calls_.report(news.alert, fmt::format("{} not told: too many wait", count_text(given_up, "message")));
+    deliver(news, stop);
     lock.lock();
-    // In front of those of its alert that came after it.
-    if (!done) waiting_.insert(waiting_.begin(), std::move(one));
+    is_delivering_ = false;
   }
 }
 
-bool DeliveryQueue::is_done(Waiting& one, const std::stop_token& stop) {
-  Result<void, Failure> delivered = Failure{"delivering it failed, which is a fault of the program"};
-  contain("delivering an alert", [&] { delivered = deliver_(one.news, stop); });
-  const bool is_first_try = one.pause == Nanoseconds::zero();
-  if (delivered) {
-    if (!is_first_try) report_(one.news.alert, "was told at last");
-    return true;
+void DeliveryQueue::deliver(const AlertNews& news, const std::stop_token& stop) {
+  using Clock = std::chrono::steady_clock;
+  const auto first_try = Clock::now();
+  Nanoseconds pause{0};
+  while (true) {
+    const auto delivered = try_once(news, stop);
+    const bool is_first_try = pause == Nanoseconds::zero();
+    if (delivered) {
+      if (!is_first_try) calls_.report(news.alert, "was told at last");
+      return calls_.settle(news);
+    }
+    if (stop.stop_requested()) return;
+    const std::string& why = delivered.error().message;
+    pause = is_first_try ? times_.first : std::min(2 * pause, times_.longest);
+    if (Clock::now() + pause - first_try > times_.give_up) {
+      calls_.report(news.alert, why);
+      return calls_.settle(news);
+    }
+    if (is_first_try) calls_.report(news.alert, why + "; it is tried again");
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, stop, pause, [] { return false; });
+    if (stop.stop_requested()) return;
   }
-  if (stop.stop_requested()) return true;
-  const std::string& why = delivered.error().message;
-  one.pause = is_first_try ? times_.first : std::min(2 * one.pause, times_.longest);
-  one.due = Clock::now() + one.pause;
-  if (one.due - one.first_try > times_.give_up) {
-    report_(one.news.alert, why);
-    return true;
-  }
-  if (is_first_try) report_(one.news.alert, why + "; it is tried again");
-  return false;
+}
+
+Result<void, Failure> DeliveryQueue::try_once(const AlertNews& news, const std::stop_token& stop) const {
+  Result<void, Failure> delivered;
+  contain(
+      "delivering an alert", [&] { delivered = calls_.deliver(news, stop); },
+      [&](const char* what) { delivered = Failure{what}; });
+  return delivered;
 }
 
 }  // namespace yuragi::daemon::alerts

@@ -3,13 +3,12 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <deque>
 #include <functional>
 #include <mutex>
 #include <stop_token>
-#include <string>
 #include <string_view>
 #include <thread>
-#include <vector>
 
 #include "daemon/alerts/alert_news.hpp"
 #include "engine/base/result.hpp"
@@ -24,19 +23,23 @@ struct RetryTimes {
   Nanoseconds give_up{0};  ///< no more, counted from the first try; 0: there is only one
 };
 
-/// Delivers news on a thread of its own, so that nobody waits for whom they are for. Those of one alert go in their
-/// order: the end does not overtake a beginning that is tried again. Its end gives up what waits. Thread-safe: push().
+/// Delivers the news of one alert by one way, in their order, on a thread of its own: only what comes later of the same
+/// alert waits for a delivery that takes long or is tried again. Its end gives up what waits. Thread-safe: yes.
 class DeliveryQueue {
  public:
-  /// Called on the queue's thread. May wait, but not for long after a stop was requested.
-  using Deliver = std::function<Result<void, Failure>(const AlertNews&, const std::stop_token&)>;
-  /// Called on the queue's thread with the alert's name and a sentence. Must not throw.
-  using Report = std::function<void(std::string_view alert, std::string_view what)>;
+  struct Calls {
+    /// Called on the queue's thread. May wait, but not for long after a stop was requested.
+    std::function<Result<void, Failure>(const AlertNews&, const std::stop_token&)> deliver;
+    /// Called on the queue's thread with the alert's name and a sentence. Must not throw.
+    std::function<void(std::string_view alert, std::string_view what)> report;
+    /// Called when news is delivered or given up, but not with what the queue's end gives up. Must not throw.
+    std::function<void(const AlertNews&)> settle = [](const AlertNews&) {};
+  };
 
-  /// The oldest gives way where more would wait.
-  static constexpr std::size_t kMostWaiting = 200;
+  /// The oldest gives way if more would wait.
+  static constexpr std::size_t kMostWaiting = 64;
 
-  DeliveryQueue(Deliver deliver, Report report, const RetryTimes& times);
+  DeliveryQueue(Calls calls, const RetryTimes& times);
   ~DeliveryQueue();
   DeliveryQueue(const DeliveryQueue&) = delete;
   DeliveryQueue& operator=(const DeliveryQueue&) = delete;
@@ -44,28 +47,24 @@ class DeliveryQueue {
   /// Does not wait.
   void push(AlertNews news);
 
+  /// Returns true if nothing waits and nothing is being delivered.
+  bool is_idle() const;
+
+  /// Ends the thread soon; the destructor waits for that.
+  void request_stop() { thread_.request_stop(); }
+
  private:
-  using Clock = std::chrono::steady_clock;
-  struct Waiting {
-    AlertNews news;
-    Clock::time_point first_try{};
-    Clock::time_point due{};
-    Nanoseconds pause{0};  ///< before the last try; 0: there was none yet
-  };
-
   void work(const std::stop_token& stop);
-  /// The one to try soonest: the first of its alert. end() where none waits.
-  std::vector<Waiting>::iterator soonest();
-  /// Nothing is left of it, or it is to wait for its next try.
-  bool is_done(Waiting& one, const std::stop_token& stop);
+  /// Tries until it is delivered, given up, or a stop is requested.
+  void deliver(const AlertNews& news, const std::stop_token& stop);
+  Result<void, Failure> try_once(const AlertNews& news, const std::stop_token& stop) const;
 
-  Deliver deliver_;
-  Report report_;
+  Calls calls_;
   RetryTimes times_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::vector<Waiting> waiting_;  ///< in the order of their push
-  bool has_changed_ = false;
+  std::deque<AlertNews> waiting_;
+  bool is_delivering_ = false;
   std::size_t given_up_ = 0;  ///< for want of room, not yet reported
   std::jthread thread_;
 };

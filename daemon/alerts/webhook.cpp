@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/base/close_on_exec.hpp"
 #include "engine/base/json_text.hpp"
 #include "engine/base/version.hpp"
 
@@ -35,6 +36,11 @@ std::string host_of(const Secret& webhook) {
 
 std::size_t ignore_answer(char* /*text*/, std::size_t size, std::size_t count, void* /*user*/) {
   return size * count;
+}
+
+int keep_from_children(void* /*user*/, curl_socket_t socket, curlsocktype /*purpose*/) {
+  close_on_exec(socket);
+  return CURL_SOCKOPT_OK;
 }
 
 int is_stopped(void* stop, curl_off_t /*of*/, curl_off_t /*received*/, curl_off_t /*to*/, curl_off_t /*sent*/) {
@@ -76,6 +82,7 @@ Result<void, Failure> post_to_webhook(const AlertNews& news, const std::string& 
   curl_easy_setopt(request, CURLOPT_NOSIGNAL, 1L);
   curl_easy_setopt(request, CURLOPT_QUICK_EXIT, 1L);  // waits for no look-up of a name that was given up
   curl_easy_setopt(request, CURLOPT_WRITEFUNCTION, &ignore_answer);
+  curl_easy_setopt(request, CURLOPT_SOCKOPTFUNCTION, &keep_from_children);
   curl_easy_setopt(request, CURLOPT_NOPROGRESS, 0L);
   curl_easy_setopt(request, CURLOPT_XFERINFOFUNCTION, &is_stopped);
   curl_easy_setopt(request, CURLOPT_XFERINFODATA, &stop);

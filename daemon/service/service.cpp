@@ -10,6 +10,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -108,12 +109,15 @@ class Service::Io {
       shaper_.keep_site_file(hub_.site());
       loop_ = std::make_unique<animation::AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
       scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);
-      frame_ready_.assign(dup(loop_->frame_ready_fd()));
+      frame_ready_.assign(fcntl(loop_->frame_ready_fd(), F_DUPFD_CLOEXEC, 0));
     }
     if (options.record) history_ = make_history(*options.record);
     if (!config.http.listen.empty()) web_ = std::make_unique<web::WebServer>(web_settings(config));
     // What is replayed has happened already.
-    if (!options.recorded_from) alerts_.emplace(config.alerts, asio::ip::host_name());
+    if (!options.recorded_from) {
+      alerts_.emplace(config.alerts, asio::ip::host_name(), alerts::alert_record_file(options.config_file),
+                      clock_.now());
+    }
     if (options.record) {
       recorder_ = make_recorder(config, *options.record);
       hub_.listen_to_quantities([this](std::size_t sensor, const wind::StationQuantities& quantities) {

@@ -1,5 +1,6 @@
 #include "daemon/settings/output_file.hpp"
 
+#include <fstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -60,6 +61,15 @@ Result<void, Failure> OutputFile::commit() {
   std::filesystem::rename(working_path_, file_, error);
   if (error) return Failure{file_.string() + ": " + error.message(), FailureKind::kCannotCreate};
   return {};
+}
+
+Result<void, Failure> write_whole(const std::filesystem::path& file, std::string_view text) {
+  OutputFile output(file, true);
+  std::ofstream out(output.working_path(), std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) return Failure{file.string() + ": could not be written; is the disk full, or the folder not writable?"};
+  return output.commit();
 }
 
 }  // namespace yuragi::daemon::settings

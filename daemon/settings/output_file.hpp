@@ -34,4 +34,7 @@ class OutputFile {
   std::span<const std::string_view> side_suffixes_;
 };
 
+/// Writes a file whole or not at all, in place of one that exists. The failure names the file. Throws as OutputFile.
+Result<void, Failure> write_whole(const std::filesystem::path& file, std::string_view text);
+
 }  // namespace yuragi::daemon::settings

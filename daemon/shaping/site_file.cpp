@@ -16,21 +16,15 @@ constexpr const char* kTimesKey = "seconds_at_each_speed";
 constexpr const char* kOctavesKnownKey = "seconds_of_each_octave_of_gusts";
 constexpr const char* kOctavesKey = "decibels_of_each_octave_of_gusts";
 /// Many times the size of a valid file: a larger one is refused.
-constexpr std::streamsize kLongestSiteFile = 64 * 1024;
+constexpr std::streamsize kLongestSiteFile = 64L * 1024;
 
 /// The failure has an empty text where there was none.
 Failure write_site_file(const std::filesystem::path& file, const SiteMemory& memory) {
   try {
-    settings::OutputFile output(file, true);
-    std::ofstream out(output.working_path());
-    out << json_text(nlohmann::json{{kTimesKey, memory.times_s},
-                                    {kOctavesKnownKey, memory.octaves_known_s},
-                                    {kOctavesKey, memory.octaves_db}})
-        << '\n';
-    out.close();
-    if (!out) return {file.string() + ": could not be written; is the disk full, or the folder not writable?"};
-    const auto committed = output.commit();
-    return committed ? Failure{} : committed.error();
+    const nlohmann::json json = {
+        {kTimesKey, memory.times_s}, {kOctavesKnownKey, memory.octaves_known_s}, {kOctavesKey, memory.octaves_db}};
+    const auto written = settings::write_whole(file, json_text(json) + '\n');
+    return written ? Failure{} : written.error();
   } catch (const std::exception& error) {
     return {error.what()};
   }

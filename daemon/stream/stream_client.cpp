@@ -9,6 +9,7 @@
 #include <boost/asio/write.hpp>
 
 #include "engine/base/address.hpp"
+#include "engine/base/close_on_exec.hpp"
 #include "engine/wire/message_reader.hpp"
 
 namespace yuragi::daemon::stream {
@@ -57,7 +58,10 @@ class StreamClient::Connection {
     if (error) return error;
     asio::async_connect(socket_, endpoints,
                         [&error](const error_code& result, const tcp::endpoint&) { error = result; });
-    if (run_for(timeout)) return error;
+    if (run_for(timeout)) {
+      if (!error) close_on_exec(socket_.native_handle());
+      return error;
+    }
     close();  // cancelling alone would make it try the next address
     io_.run();
     return asio::error::timed_out;

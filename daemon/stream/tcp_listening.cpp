@@ -5,6 +5,7 @@
 #include <boost/asio/io_context.hpp>
 
 #include "engine/base/address.hpp"
+#include "engine/base/close_on_exec.hpp"
 #include "engine/base/result.hpp"
 
 namespace yuragi::daemon::stream {
@@ -67,7 +68,9 @@ tcp::acceptor open_acceptor(asio::io_context& io, std::string_view listen) {
     // SO_REUSEADDR, which this constructor sets, lets a restarted daemon have its port back at once.
     tcp::resolver resolver(io);
     const auto found = resolver.resolve(address->host, std::to_string(address->port), tcp::resolver::passive);
-    return {io, found.begin()->endpoint()};
+    tcp::acceptor acceptor(io, found.begin()->endpoint());
+    close_on_exec(acceptor.native_handle());
+    return acceptor;
   } catch (const boost::system::system_error& error) {
     const bool in_use = error.code() == asio::error::address_in_use;
     throw FailureError(

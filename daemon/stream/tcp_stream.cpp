@@ -16,6 +16,7 @@
 #include "daemon/stream/pose_views.hpp"
 #include "daemon/stream/tcp_listening.hpp"
 #include "engine/base/address.hpp"
+#include "engine/base/close_on_exec.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/base/printable_text.hpp"
 #include "engine/base/result.hpp"
@@ -427,6 +428,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   }
 
   void welcome(tcp::socket socket) {
+    close_on_exec(socket.native_handle());
     forget_closed();
     error_code error;
     const tcp::endpoint endpoint = socket.remote_endpoint(error);

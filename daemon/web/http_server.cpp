@@ -17,6 +17,7 @@
 
 #include "daemon/stream/tcp_listening.hpp"
 #include "engine/base/address.hpp"
+#include "engine/base/close_on_exec.hpp"
 #include "engine/base/contain.hpp"
 
 namespace yuragi::daemon::web {
@@ -208,6 +209,7 @@ class HttpServer::Server : public std::enable_shared_from_this<Server> {
     });
   }
   void welcome(tcp::socket socket) {
+    close_on_exec(socket.native_handle());
     std::erase_if(connections_, [](const auto& connection) { return connection->has_ended(); });
     error_code error;
     const tcp::endpoint endpoint = socket.remote_endpoint(error);

@@ -15,6 +15,7 @@
 #include <poll.h>
 
 #include "drivers/bus/byte_port.hpp"
+#include "engine/base/close_on_exec.hpp"
 
 namespace yuragi::drivers::bus {
 namespace {
@@ -92,7 +93,9 @@ Result<std::vector<DatagramAnswer>, Failure> ask_networks(const DatagramInquiry&
   if (error) return Failure{"\"" + inquiry.to + "\" is no IPv4 address", FailureKind::kUsage};
   boost::asio::io_context context;
   udp::socket socket(context);
-  if (socket.open(udp::v4(), error) || socket.set_option(udp::socket::broadcast(true), error) ||
+  socket.open(udp::v4(), error);
+  if (!error) close_on_exec(socket.native_handle());
+  if (error || socket.set_option(udp::socket::broadcast(true), error) ||
       socket.set_option(boost::asio::ip::multicast::hops(1), error) ||
       socket.bind(udp::endpoint(udp::v4(), 0), error) || socket.non_blocking(true, error))
     return Failure{"cannot open a UDP socket: " + error.message(), FailureKind::kUnavailable};

@@ -18,6 +18,7 @@
 #include "drivers/bus/callback_exception.hpp"
 #include "drivers/bus/host_lookup.hpp"
 #include "drivers/bus/interruption.hpp"
+#include "engine/base/close_on_exec.hpp"
 
 namespace yuragi::drivers::bus {
 namespace {
@@ -146,7 +147,10 @@ class MosquittoClient final : public MqttClient {
       if (error != MOSQ_ERR_SUCCESS) return error;
     }
     const auto keep_alive = std::chrono::duration_cast<std::chrono::seconds>(wanted_.keep_alive);
-    return mosquitto_connect_async(client_.get(), host.c_str(), wanted_.port, static_cast<int>(keep_alive.count()));
+    const int error =
+        mosquitto_connect_async(client_.get(), host.c_str(), wanted_.port, static_cast<int>(keep_alive.count()));
+    close_on_exec(mosquitto_socket(client_.get()));
+    return error;
   }
 
   /// Waits for the socket for at most `timeout`, and lets the library read and write.

@@ -38,6 +38,8 @@ void close_if_open(int& descriptor) noexcept {
   signal(SIGPIPE, SIG_DFL);
 
   const int empty = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  // What a library opened without O_CLOEXEC. exec closes it; until then `failure` is needed.
+  close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
   if (empty >= 0 && dup2(empty, STDIN_FILENO) >= 0 && dup2(output, STDOUT_FILENO) >= 0) execv(words[0], words);
   const int error = errno;
   [[maybe_unused]] const ssize_t written = write(failure, &error, sizeof error);

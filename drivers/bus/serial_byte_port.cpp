@@ -10,6 +10,7 @@
 #include <termios.h>
 
 #include "drivers/bus/descriptor_port.hpp"
+#include "engine/base/close_on_exec.hpp"
 
 namespace yuragi::drivers::bus {
 namespace {
@@ -88,6 +89,7 @@ class SerialBytePort final : public DescriptorPort {
 
     // No other program may read: each would get a part of the bytes.
     const int handle = port_.native_handle();
+    close_on_exec(handle);
     if (flock(handle, LOCK_EX | LOCK_NB) != 0 || ioctl(handle, TIOCEXCL) != 0) {
       return {errno, boost::system::system_category()};
     }

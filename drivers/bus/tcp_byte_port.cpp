@@ -8,6 +8,7 @@
 
 #include "drivers/bus/descriptor_port.hpp"
 #include "drivers/bus/host_lookup.hpp"
+#include "engine/base/close_on_exec.hpp"
 
 namespace yuragi::drivers::bus {
 namespace {
@@ -53,7 +54,9 @@ class TcpBytePort final : public DescriptorPort {
  private:
   boost::system::error_code connect(const tcp::endpoint& endpoint, Nanoseconds timeout) {
     boost::system::error_code error;
-    if (socket_.open(endpoint.protocol(), error) || socket_.non_blocking(true, error)) return error;
+    if (socket_.open(endpoint.protocol(), error)) return error;
+    close_on_exec(socket_.native_handle());
+    if (socket_.non_blocking(true, error)) return error;
     set_keep_alive();
 
     const int handle = socket_.native_handle();

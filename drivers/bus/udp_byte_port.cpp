@@ -12,6 +12,7 @@
 
 #include "drivers/bus/descriptor_port.hpp"
 #include "drivers/bus/sender_filter.hpp"
+#include "engine/base/close_on_exec.hpp"
 
 namespace yuragi::drivers::bus {
 namespace {
@@ -120,7 +121,9 @@ class UdpBytePort final : public DescriptorPort {
   boost::system::error_code listen(const ip::address& local) {
     boost::system::error_code error;
     const udp::endpoint endpoint(local, address().port);
-    if (socket_.open(endpoint.protocol(), error) || socket_.non_blocking(true, error)) return error;
+    if (socket_.open(endpoint.protocol(), error)) return error;
+    close_on_exec(socket_.native_handle());
+    if (socket_.non_blocking(true, error)) return error;
     const int yes = 1;
     setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RXQ_OVFL, &yes, sizeof yes);  // without it nothing is counted
     dropped_ = 0;

@@ -14,6 +14,7 @@
 #include <boost/beast/http/write.hpp>
 #include <fmt/format.h>
 
+#include "engine/base/close_on_exec.hpp"
 #include "engine/base/contain.hpp"
 
 namespace yuragi::drivers::network {
@@ -181,8 +182,9 @@ Result<void, Failure> HttpServer::open() {
   const auto host = boost::asio::ip::make_address(address_.host, error);
   if (error) return Failure{"host: \"" + address_.host + "\" is not an address"};
   const tcp::endpoint endpoint(host, address_.port);
-  const bool failed = acceptor_.open(endpoint.protocol(), error) ||
-                      acceptor_.set_option(tcp::acceptor::reuse_address(true), error) ||
+  acceptor_.open(endpoint.protocol(), error);
+  if (!error) close_on_exec(acceptor_.native_handle());
+  const bool failed = error || acceptor_.set_option(tcp::acceptor::reuse_address(true), error) ||
                       acceptor_.bind(endpoint, error) || acceptor_.listen(kListenBacklog, error);
   if (!failed) port_ = acceptor_.local_endpoint(error).port();
   if (error) {
@@ -239,6 +241,7 @@ void HttpServer::accept() {
 }
 
 void HttpServer::take(tcp::socket socket) {
+  close_on_exec(socket.native_handle());
   const auto sender = sender_.address();
   if (service_ == nullptr || !service_->admits(sender)) return;
   std::erase_if(connections_, [](const auto& connection) { return connection.expired(); });

@@ -17,6 +17,7 @@
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
+#include "engine/base/close_on_exec.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/wire/message_reader.hpp"
 
@@ -134,6 +135,7 @@ class StreamConnection::Session {
   }
 
   void subscribe(std::uint64_t attempt) {
+    close_on_exec(socket_.native_handle());
     error_code ignored;
     socket_.set_option(tcp::no_delay(true), ignored);
     asio::async_write(socket_, asio::buffer(subscription_), [this, attempt](error_code error, std::size_t) {

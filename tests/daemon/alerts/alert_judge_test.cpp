@@ -89,6 +89,48 @@ TEST(AlertJudge, TellsASilentSensorOnceAndItsEndOnce) {
                                         "- sensor roof is live again, after 2 h"));
 }
 
+TEST(AlertJudge, GoesOnAfterARestart) {
+  Judging before({silent_sensor()});
+  wire::Sensors status;
+  status.sensors = {sensor("roof", SensorState::kStale)};
+  before.hold(status, 1h);
+  const auto on = before.judge.on();
+  ASSERT_THAT(on, testing::SizeIs(1));
+
+  Judging after({silent_sensor()});
+  after.judge.resume(on, {.mono = MonoTime(5min), .utc = UtcTime(2h)});
+  EXPECT_EQ(after.judge.on(), on);
+  after.hold(status, 10min);
+  EXPECT_THAT(after.told, IsEmpty()) << "its beginning was told";
+  status.sensors[0] = sensor("roof", SensorState::kLive);
+  after.hold(status, 1h);
+  EXPECT_THAT(after.told, ElementsAre("- sensor roof is live again, after 2 h 5 min"));
+  EXPECT_THAT(after.judge.on(), IsEmpty());
+}
+
+TEST(AlertJudge, ForgetsAfterARestartWhatIsNotConfigured) {
+  Judging judging({silent_sensor()});
+  judging.judge.resume({{.alert = "other", .subject = "roof"},
+                        {.alert = "silent", .when = AlertCondition::kNoFrame},
+                        {.alert = "silent", .when = AlertCondition::kSensorSilent, .subject = {}},
+                        {.alert = "silent", .subject = "gone", .begun = UtcTime(1h)}},
+                       {});
+  EXPECT_THAT(judging.judge.on(), testing::SizeIs(1)) << "which sensors there are is not known yet";
+  wire::Sensors status;
+  status.sensors = {sensor("roof", SensorState::kLive)};
+  judging.hold(status, 1h);
+  EXPECT_THAT(judging.told, IsEmpty());
+  EXPECT_THAT(judging.judge.on(), IsEmpty());
+}
+
+TEST(AlertJudge, CutsLongSentences) {
+  Judging judging({silent_sensor()});
+  wire::Sensors status;
+  status.sensors = {sensor("roof", SensorState::kStale, std::string(100'000, 'x'))};
+  judging.hold(status, 1h);
+  EXPECT_EQ(judging.last.message.size(), AlertJudge::kMaxMessage_bytes);
+}
+
 TEST(AlertJudge, TellsEachSensorByItself) {
   Judging judging({silent_sensor()});
   wire::Sensors status;

@@ -1,6 +1,7 @@
 // The watchdog's grip on real processes, also on those that do not want to end.
 #include "drivers/bus/process_port.hpp"
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -69,6 +70,18 @@ class ProcessPortTest : public testing::Test {
 
   test::TemporaryFolder folder_;
 };
+
+TEST_F(ProcessPortTest, AProgramInheritsNothing) {
+  std::array<int, 2> leaking{};
+  ASSERT_EQ(pipe(leaking.data()), 0);
+  const Descriptor first(leaking[0]);
+  const Descriptor second(leaking[1]);
+  // What the shell itself opened to list them is closed again.
+  const auto port = make_process_port(
+      {"/bin/sh", "-c", "for file in /proc/$$/fd/*; do if [ -e $file ]; then echo ${file##*/}; fi; done"});
+  ASSERT_TRUE(port->open());
+  EXPECT_EQ(read_all(*port), "0\n1\n2\n");
+}
 
 TEST_F(ProcessPortTest, ReadsWhatAProgramSaysUntilItEnds) {
   const auto port = make_process_port({"/bin/sh", "-c", "echo one; echo two; cat; echo $0 three", "argument"});

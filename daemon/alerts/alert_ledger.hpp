@@ -1,0 +1,48 @@
+#pragma once
+
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "daemon/alerts/alert_news.hpp"
+#include "daemon/alerts/alert_record.hpp"
+
+namespace yuragi::daemon::alerts {
+
+/// Keeps in a file which alerts are on and what is undelivered, so that both outlive the process. A thread of its own
+/// writes the file whole, or removes it if there is nothing to keep; who calls never waits for the disk. Failures are
+/// logged, and cost only the saving. Thread-safe: yes. The constructor reads the file, the destructor writes it.
+class AlertLedger {
+ public:
+  explicit AlertLedger(std::filesystem::path file);
+  ~AlertLedger();
+  AlertLedger(const AlertLedger&) = delete;
+  AlertLedger& operator=(const AlertLedger&) = delete;
+
+  AlertRecord record() const;
+
+  /// Sets which alerts are on, and adds the news to the undelivered ones, in one piece.
+  void set(std::vector<AlertOn> on, const std::vector<AlertNews>& news);
+
+  /// News is delivered by this way, or will never be.
+  void settle(AlertWay way, const AlertNews& news);
+
+ private:
+  AlertRecord read() const;
+  void work(const std::stop_token& stop);
+  void save(const AlertRecord& record);
+
+  std::filesystem::path file_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  AlertRecord record_;
+  bool has_changed_ = false;
+  std::string failure_;  ///< the last, which is logged once; only on the thread
+  std::jthread thread_;
+};
+
+}  // namespace yuragi::daemon::alerts
