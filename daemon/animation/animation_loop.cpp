@@ -95,12 +95,10 @@ void AnimationLoop::run_ticks(const std::stop_token& stop) {
     const MonoTime begun = clock_.now().mono;
     const TickSchedule::Tick now = schedule.begin_tick(begun);
     tick(now);
-    counters_.lateness.add(now.lateness);
     const Nanoseconds taken = clock_.now().mono - begun;
     counters_.work.add(taken);
     counters_.tick_time.add(taken);
-    counters_.skipped_ticks.fetch_add(now.skipped, std::memory_order_relaxed);
-    counters_.ticks.fetch_add(1, std::memory_order_relaxed);
+    counters_.add(now, schedule.period());
   }
 }
 

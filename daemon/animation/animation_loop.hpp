@@ -20,9 +20,20 @@ namespace yuragi::daemon::animation {
 struct LoopCounters {
   std::atomic<std::uint64_t> ticks{0};
   std::atomic<std::uint64_t> skipped_ticks{0};
-  DurationHistogram lateness;  ///< of the start of each tick
+  DurationHistogram lateness;  ///< of the start of each tick, and of each that was skipped
   DurationHistogram work;      ///< duration of each tick
   RunningMean tick_time;       ///< the same of late
+
+  /// Counts a tick, and those skipped before it: they are late by a period and more.
+  void add(const TickSchedule::Tick& tick, Nanoseconds period) noexcept {
+    lateness.add(tick.lateness);
+    if (tick.skipped > 0) {
+      lateness.add(tick.lateness + static_cast<Nanoseconds::rep>(tick.skipped) * period);
+      lateness.add(tick.lateness + period, tick.skipped - 1);
+    }
+    skipped_ticks.fetch_add(tick.skipped, std::memory_order_relaxed);
+    ticks.fetch_add(1, std::memory_order_relaxed);
+  }
 };
 
 /// An encoded frame, and the number of the list of scenes that it is of.

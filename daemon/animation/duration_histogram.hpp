@@ -4,6 +4,7 @@
 #include <atomic>
 #include <bit>
 #include <cstdint>
+#include <numeric>
 
 #include "engine/base/time.hpp"
 
@@ -14,9 +15,16 @@ namespace yuragi::daemon::animation {
 ///
 /// Thread-safe: one writer, any number of readers. Realtime-safe: yes.
 class DurationHistogram {
+  static constexpr std::size_t kStepsPerOctave = 8;
+  static constexpr std::size_t kOctaves = 32;
+
  public:
-  void add(Nanoseconds duration) noexcept {
-    counts_[class_of(duration)].fetch_add(1, std::memory_order_relaxed);
+  static constexpr std::size_t kClasses = kOctaves * kStepsPerOctave;
+  /// How many durations are in each class.
+  using Counts = std::array<std::uint64_t, kClasses>;
+
+  void add(Nanoseconds duration, std::uint64_t times = 1) noexcept {
+    counts_[class_of(duration)].fetch_add(times, std::memory_order_relaxed);
     if (duration > longest_.load(std::memory_order_relaxed)) longest_.store(duration, std::memory_order_relaxed);
   }
 
@@ -24,23 +32,28 @@ class DurationHistogram {
   double max_s() const noexcept { return seconds(longest_.load(std::memory_order_relaxed)); }
 
   /// The duration that `share` (0 to 1) of all counted ones do not exceed, s; 0 where nothing was counted.
-  double percentile_s(double share) const noexcept {
-    std::uint64_t total = 0;
-    for (const auto& count : counts_) total += count.load(std::memory_order_relaxed);
+  double percentile_s(double share) const noexcept { return percentile_s(counts(), share); }
+
+  Counts counts() const noexcept {
+    Counts counts{};
+    for (std::size_t index = 0; index < kClasses; ++index)
+      counts[index] = counts_[index].load(std::memory_order_relaxed);
+    return counts;
+  }
+
+  /// percentile_s() of such counts.
+  static double percentile_s(const Counts& counts, double share) noexcept {
+    const auto total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     const double wanted = share * static_cast<double>(total);
     std::uint64_t seen = 0;
     for (std::size_t index = 0; index < kClasses; ++index) {
-      seen += counts_[index].load(std::memory_order_relaxed);
+      seen += counts[index];
       if (seen > 0 && static_cast<double>(seen) >= wanted) return upper_bound_s(index);
     }
     return 0.0;
   }
 
  private:
-  static constexpr std::size_t kStepsPerOctave = 8;
-  static constexpr std::size_t kOctaves = 32;
-  static constexpr std::size_t kClasses = kOctaves * kStepsPerOctave;
-
   /// Classes are linear within an octave: cheap, and no logarithm is needed.
   static std::size_t class_of(Nanoseconds duration) noexcept {
     const auto us = static_cast<std::uint64_t>(duration.count() > 0 ? duration.count() / 1000 : 0);

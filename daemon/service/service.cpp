@@ -18,6 +18,7 @@
 #include "daemon/alerts/alerts.hpp"
 #include "daemon/animation/animation.hpp"
 #include "daemon/animation/animation_loop.hpp"
+#include "daemon/animation/recent_lateness.hpp"
 #include "daemon/animation/scene_director.hpp"
 #include "daemon/animation/scene_exchange.hpp"
 #include "daemon/history/history_json.hpp"
@@ -79,8 +80,8 @@ std::vector<look::Camera> cameras_of(const settings::Config& config) {
   return cameras;
 }
 
-wire::Lateness lateness_of(const animation::DurationHistogram& histogram) {
-  return {.p50_s = histogram.percentile_s(0.5), .p99_s = histogram.percentile_s(0.99), .max_s = histogram.max_s()};
+wire::Lateness lateness_of(const animation::RecentLateness& recent) {
+  return {.p50_s = recent.percentile_s(0.5), .p99_s = recent.percentile_s(0.99), .max_s = recent.max_s()};
 }
 
 }  // namespace
@@ -108,6 +109,7 @@ class Service::Io {
     if (animation_) {
       shaper_.keep_site_file(hub_.site());
       loop_ = std::make_unique<animation::AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
+      recent_tick_lateness_.emplace(loop_->counters().lateness);
       scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);
       frame_ready_.assign(fcntl(loop_->frame_ready_fd(), F_DUPFD_CLOEXEC, 0));
     }
@@ -444,9 +446,14 @@ class Service::Io {
     status.refused_clients = counts.refused;
     status.stuck_clients = counts.stuck;
     status.idle_clients = counts.idle;
-    status.io_lateness = lateness_of(io_lateness_);
+    const MonoTime now = clock_.now().mono;
+    recent_io_lateness_.advance(now);
+    status.io_lateness = lateness_of(recent_io_lateness_);
     if (loop_) {
-      status.tick_lateness = lateness_of(loop_->counters().lateness);
+      recent_tick_lateness_->advance(now);
+      status.tick_lateness = lateness_of(*recent_tick_lateness_);
+      status.recent_ticks = recent_tick_lateness_->count();
+      status.recent_skipped_ticks = status.late_ticks - skipped_before_.begin_at(now, status.late_ticks);
       status.animation = animation_status();
     }
     if (recorder_) status.recorder = to_wire(recorder_->status());
@@ -511,6 +518,9 @@ class Service::Io {
   asio::steady_timer end_timer_{io_}, wind_timer_{io_}, status_timer_{io_};
   asio::steady_timer::time_point next_wind_;
   animation::DurationHistogram io_lateness_;  ///< of each step of the wind
+  animation::RecentLateness recent_io_lateness_{io_lateness_};
+  std::optional<animation::RecentLateness> recent_tick_lateness_;  ///< nothing: no scenes
+  animation::RecentWindow<std::uint64_t> skipped_before_;
   asio::posix::stream_descriptor frame_ready_{io_};
   std::uint64_t frames_made_ = 0;
   std::optional<std::string> failure_;  ///< why it ends although nobody asked it to

@@ -21,6 +21,18 @@ void add_recorder_attention(std::vector<std::string>& all, const wire::RecorderS
   }
 }
 
+/// Empty if the animation is on time.
+std::string stutter_of(const wire::Sensors& sensors) {
+  const auto ticks = static_cast<double>(sensors.recent_ticks);
+  const auto skipped = static_cast<double>(sensors.recent_skipped_ticks);
+  if (ticks < kMinJudgedTicks || skipped < kMaxSkippedShare * ticks) return {};
+  return fmt::format(
+      "the animation stutters: {:.1f} % of the ticks of the last 10 minutes were skipped ({} of {}); the machine has "
+      "too "
+      "much to do: end other programs, or make scenes smaller (`yuragi status` shows what each takes)",
+      100.0 * skipped / ticks, sensors.recent_skipped_ticks, sensors.recent_ticks);
+}
+
 }  // namespace
 
 std::vector<std::string> needs_attention(const wire::Sensors& sensors) {
@@ -31,13 +43,11 @@ std::vector<std::string> needs_attention(const wire::Sensors& sensors) {
     all.push_back(fmt::format("sensor {} is {}{}{}", sensor.name, name_of(sensor.state), why.empty() ? "" : ": ", why));
   }
   if (sensors.recorder) add_recorder_attention(all, *sensors.recorder);
-  if (sensors.tick_lateness && sensors.tick_lateness->p99_s > kLateTicks_s) {
-    all.push_back(fmt::format("the animation is late: 1 % of its ticks by more than {:.0f} ms ({} skipped)",
-                              1e3 * sensors.tick_lateness->p99_s, sensors.late_ticks));
-  }
+  if (const std::string stutter = stutter_of(sensors); !stutter.empty()) all.push_back(stutter);
   if (sensors.io_lateness && sensors.io_lateness->p99_s > kLateIo_s) {
-    all.push_back(fmt::format("the thread of sensors and clients is late: 1 % of its steps by more than {:.0f} ms",
-                              1e3 * sensors.io_lateness->p99_s));
+    all.push_back(fmt::format(
+        "the thread of sensors and clients is late: 1 % of its steps of the last 10 minutes by more than {:.0f} ms",
+        1e3 * sensors.io_lateness->p99_s));
   }
   return all;
 }

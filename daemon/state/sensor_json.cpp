@@ -124,6 +124,8 @@ ordered_json sensors_json(const wire::Sensors& sensors) {
             {"stuck", sensors.stuck_clients},
             {"idle", sensors.idle_clients}}},
           {"late_ticks", sensors.late_ticks},
+          {"recent_ticks", sensors.recent_ticks},
+          {"recent_skipped_ticks", sensors.recent_skipped_ticks},
           {"io_lateness", json_of_lateness(sensors.io_lateness)},
           {"tick_lateness", json_of_lateness(sensors.tick_lateness)},
           {"animation", json_of_animation(sensors.animation)}};

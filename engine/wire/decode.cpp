@@ -259,6 +259,8 @@ bool read(const fb::Sensors& from, Sensors& to) {
   to.idle_clients = from.idle_clients();
   read(from.look(), to.look);
   to.parameters_revision = from.parameters_revision();
+  to.recent_ticks = from.recent_ticks();
+  to.recent_skipped_ticks = std::min(from.recent_skipped_ticks(), to.recent_ticks);
   return read_cameras(from, to) && read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
          read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder) &&
          read(from.animation(), to.animation);

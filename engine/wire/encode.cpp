@@ -390,6 +390,8 @@ Bytes encode(const Sensors& sensors) {
   table.add_camera(static_cast<std::uint32_t>(sensors.camera));
   table.add_parameters_revision(sensors.parameters_revision);
   if (sensors.animation) table.add_animation(animation);
+  table.add_recent_ticks(sensors.recent_ticks);
+  table.add_recent_skipped_ticks(sensors.recent_skipped_ticks);
   return finish(builder, fb::Body_Sensors, table.Finish());
 }
 

@@ -158,7 +158,7 @@ struct Shaping {
   double openness = 1.0;  ///< 0: closed, 1: open
 };
 
-/// How late something was that has its time, since the daemon began.
+/// How late something was that has its time, in the last 10 minutes.
 struct Lateness {
   double p50_s = 0.0;
   double p99_s = 0.0;
@@ -195,21 +195,23 @@ struct AnimationStatus {
 
 struct Sensors {
   std::vector<SensorStatus> sensors;
-  wind::WindState wind;  ///< the real one; that of the frames is shaped
-  std::uint64_t late_ticks = 0;
+  wind::WindState wind;          ///< the real one; that of the frames is shaped
+  std::uint64_t late_ticks = 0;  ///< skipped since the daemon began
   std::uint32_t clients = 0;
   Shaping shaping = {};
   std::uint64_t refused_clients = 0;                      ///< there was no place for them
   std::uint64_t stuck_clients = 0;                        ///< let go because they stopped reading
   std::uint64_t idle_clients = 0;                         ///< let go because they subscribed to nothing, or not at all
   std::optional<Lateness> io_lateness = std::nullopt;     ///< of the I/O thread's steps
-  std::optional<Lateness> tick_lateness = std::nullopt;   ///< of the animation's ticks
+  std::optional<Lateness> tick_lateness = std::nullopt;   ///< of the animation's ticks, with those that were skipped
   std::optional<RecorderStatus> recorder = std::nullopt;  ///< nothing: nothing is recorded, or it is not known
   look::Look look = {};                                   ///< within_limits(), whatever was sent
   std::vector<look::Camera> cameras = {};                 ///< the same; at most look::kMostCameras
   std::size_t camera = 0;                                 ///< which is on by the time of day; 0 where there are none
   std::uint64_t parameters_revision = 0;                  ///< another number where a ParameterReport would be another
   std::optional<AnimationStatus> animation = std::nullopt;  ///< nothing: not known, or it has no scenes
+  std::uint64_t recent_ticks = 0;          ///< of the last 10 minutes, with those that were skipped; 0: not known
+  std::uint64_t recent_skipped_ticks = 0;  ///< those of them that were skipped
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };

@@ -74,13 +74,13 @@ std::string lateness_text(const wire::Lateness& lateness) {
                      1e3 * std::min(lateness.p99_s, lateness.max_s), 1e3 * lateness.max_s);
 }
 
-/// How the daemon has done since it began; empty where it does not tell.
+/// How the daemon does; empty if it does not report it.
 std::string service_text(const wire::Sensors& sensors) {
   if (!sensors.io_lateness) return {};
-  return fmt::format("since the start: clients refused {}, stuck {}, idle {}; late (p50, p99, most): I/O {}{}",
-                     sensors.refused_clients, sensors.stuck_clients, sensors.idle_clients,
-                     lateness_text(*sensors.io_lateness),
-                     sensors.tick_lateness ? "; ticks " + lateness_text(*sensors.tick_lateness) : "");
+  return fmt::format(
+      "since the start: clients refused {}, stuck {}, idle {}; late in the last 10 min (p50, p99, most): I/O {}{}",
+      sensors.refused_clients, sensors.stuck_clients, sensors.idle_clients, lateness_text(*sensors.io_lateness),
+      sensors.tick_lateness ? "; ticks " + lateness_text(*sensors.tick_lateness) : "");
 }
 
 /// How the recording does; empty where nothing is recorded.
@@ -122,9 +122,9 @@ std::string wrapped(std::string_view text) {
 
 std::string sensor_table(const wire::Sensors& sensors) {
   const wind::WindVector wind = sensors.wind.wind;
-  std::string table = fmt::format("wind {:.1f} m/s from {} ({})   clients {}   late ticks {}\n", speed_of(wind),
+  std::string table = fmt::format("wind {:.1f} m/s from {} ({})   clients {}   ticks skipped {}\n", speed_of(wind),
                                   direction_text(wind::direction_from_deg(wind)), wind_source(sensors), sensors.clients,
-                                  sensors.late_ticks);
+                                  sensors.recent_skipped_ticks);
   if (const std::string place = place_of_wind(sensors.wind); !place.empty()) table += wrapped(place);
   if (!sensors.shaping.text.empty()) table += wrapped("shaped: " + sensors.shaping.text);
   if (const std::string recorder = recorder_text(sensors); !recorder.empty()) table += wrapped(recorder);

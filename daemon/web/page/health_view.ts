@@ -32,7 +32,7 @@ function recorder_text(recorder: Recorder | null): string {
 }
 
 const FACTS: [string, (status: Status) => string][] = [
-  ["Ticks", (status) => `${status.tick_rate_hz} Hz, ${status.late_ticks.toLocaleString("en")} skipped`],
+  ["Ticks", (status) => `${status.tick_rate_hz} Hz, ${status.recent_skipped_ticks.toLocaleString("en")} skipped in 10 minutes`],
   ["Work of a tick", (status) => animation_text(status.animation)],
   ["Of it, by scene", (status) => scene_costs_text(status.animation)],
   ["Ticks late by", (status) => lateness_text(status.tick_lateness)],

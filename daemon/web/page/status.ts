@@ -55,6 +55,8 @@ export interface Status {
   recorder: Recorder | null;
   clients: { connected: number; refused: number; stuck: number; idle: number };
   late_ticks: number;
+  recent_ticks: number;
+  recent_skipped_ticks: number;
   io_lateness: Lateness | null;
   tick_lateness: Lateness | null;
   animation: Animation | null;

@@ -392,6 +392,8 @@ TEST(WireRoundTrip, HowTheDaemonDoesComesBack) {
   EXPECT_EQ(sensors.tick_lateness->p50_s, 0.03125);
   EXPECT_EQ(sensors.tick_lateness->p99_s, 0.25);
   EXPECT_EQ(sensors.tick_lateness->max_s, 2.5);
+  EXPECT_EQ(sensors.recent_ticks, 36'000U);
+  EXPECT_EQ(sensors.recent_skipped_ticks, 40U);
   ASSERT_TRUE(sensors.recorder);
   EXPECT_EQ(sensors.recorder->state, RecorderState::kRetrying);
   EXPECT_EQ(sensors.recorder->written, 9U);

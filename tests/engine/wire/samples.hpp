@@ -409,7 +409,9 @@ inline wire::Sensors sensors() {
           .animation = wire::AnimationStatus{.running_s = 3600.5,
                                              .period_s = 0.015625,
                                              .tick_s = 0.00390625,
-                                             .scenes = {{"grass", 0.001953125}, {"fire", 0.0009765625}}}};
+                                             .scenes = {{"grass", 0.001953125}, {"fire", 0.0009765625}}},
+          .recent_ticks = 36'000,
+          .recent_skipped_ticks = 40};
 }
 
 inline wire::RawTrace raw_trace() {

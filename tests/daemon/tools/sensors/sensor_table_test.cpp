@@ -30,14 +30,19 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   wire::SensorStatus silent;
   silent.name = "mast";
   silent.driver = "modbus";
-  const wire::Sensors sensors{
-      {live, silent},
-      {.time = {}, .wind = {5.0, 0.0}, .source = wind::WindSource::kLive, .live_weight = 1.0, .reading_age_s = 0.2},
-      2,
-      3};
+  const wire::Sensors sensors{.sensors = {live, silent},
+                              .wind = {.time = {},
+                                       .wind = {5.0, 0.0},
+                                       .source = wind::WindSource::kLive,
+                                       .live_weight = 1.0,
+                                       .reading_age_s = 0.2},
+                              .late_ticks = 40,
+                              .clients = 3,
+                              .recent_ticks = 36'000,
+                              .recent_skipped_ticks = 2};
 
   const std::string table = sensor_table(sensors);
-  EXPECT_THAT(table, HasSubstr("wind 5.0 m/s from 270 W (live)   clients 3   late ticks 2"));
+  EXPECT_THAT(table, HasSubstr("wind 5.0 m/s from 270 W (live)   clients 3   ticks skipped 2"));
   EXPECT_THAT(table, HasSubstr("roof"));
   EXPECT_THAT(table, HasSubstr("8.60"));
   EXPECT_THAT(table, HasSubstr(" 90 E"));
@@ -54,7 +59,7 @@ TEST(SensorTable, ShowsHowTheDaemonDoesInOneLine) {
   sensors.stuck_clients = 1;
   sensors.io_lateness = wire::Lateness{.p50_s = 6e-5, .p99_s = 2e-4, .max_s = 0.0125};
   EXPECT_THAT(sensor_table(sensors), HasSubstr("  since the start: clients refused 2, stuck 1, idle 0; "
-                                               "late (p50, p99, most): I/O 0.06, 0.20, 12.50 ms\n"));
+                                               "late in the last 10 min (p50, p99, most): I/O 0.06, 0.20, 12.50 ms\n"));
   sensors.tick_lateness = wire::Lateness{.p50_s = 1e-4, .p99_s = 3e-4, .max_s = 2.9e-4};
   EXPECT_THAT(sensor_table(sensors), HasSubstr("; ticks 0.10, 0.29, 0.29 ms\n"));
 }
