@@ -2,12 +2,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <vector>
 
 #include "drivers/modbus/modbus_profile.hpp"
+#include "engine/tables/parse_toml.hpp"
 
 namespace yuragi::drivers::modbus {
 namespace {
@@ -52,7 +52,7 @@ std::string known_names(const std::vector<fs::path>& directories) {
 
 ModbusProfile read_profile(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const std::string text = tables::toml_text(in);
   if (!in.is_open() || in.bad()) {
     throw std::runtime_error(path.string() + ": the profile cannot be read; check that it is a file and may be read");
   }
