@@ -73,7 +73,9 @@ class SecretWithholder {
   std::string written_root() const {
     std::ostringstream out;
     out << root_ << '\n';
-    return out.str();
+    std::string text = out.str();
+    tables::parse_toml(text);  // throws if escapes have made it too large
+    return text;
   }
 
   std::string_view text_;

@@ -31,7 +31,9 @@ class TableReader {
     std::ostringstream out;
     out << file_ << ':' << std::max(at.line, 1U) << ':' << std::max(at.column, 1U) << ": " << path_ << key << ": "
         << what;
-    throw std::runtime_error(out.str());
+    std::string text = out.str();
+    make_printable(text);
+    throw std::runtime_error(text);
   }
 
   bool has(std::string_view key) const { return table_.contains(key); }

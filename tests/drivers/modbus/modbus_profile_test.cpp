@@ -199,6 +199,11 @@ TEST(ModbusProfile, CannotLeaveOutWhoConfirmsIt) {
   EXPECT_EQ(error_of(name + "confirmed_by = []\nunconfirmed = \"all\"\n" + speed), "no error");
 }
 
+TEST(ModbusProfile, HasNoControlCharacters) {
+  EXPECT_EQ(error_of("name = \"a\\u001b[2J\"\n"), "device.toml:1:8: name: has a control character in it; type it anew");
+  EXPECT_THAT(error_of(minimal("", "[quantities.\"a\\u001b\"]\n")), HasSubstr("quantities.a?: is not known here"));
+}
+
 TEST(ModbusProfile, KnowsNoOtherQuantitiesThanRecordings) {
   const std::string where = "slave = 1\naddress = 0\ntype = \"u16\"\n";
   EXPECT_EQ(error_of(minimal("", "[quantities.rain_rate_mm_h]\n" + where)), "no error");
