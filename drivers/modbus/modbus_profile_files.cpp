@@ -51,7 +51,9 @@ std::string known_names(const std::vector<fs::path>& directories) {
 }
 
 ModbusProfile read_profile(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
+  std::error_code ignored;
+  std::ifstream in;
+  if (fs::is_regular_file(path, ignored)) in.open(path, std::ios::binary);  // a pipe would be waited for
   const std::string text = tables::toml_text(in);
   if (!in.is_open() || in.bad()) {
     throw std::runtime_error(path.string() + ": the profile cannot be read; check that it is a file and may be read");

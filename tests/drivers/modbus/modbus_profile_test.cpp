@@ -6,8 +6,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/places.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::drivers::modbus {
 namespace {
@@ -197,6 +199,15 @@ TEST(ModbusProfile, CannotLeaveOutWhoConfirmsIt) {
   EXPECT_THAT(error_of(name + "confirmed_by = []\nunconfirmed = \"\"\n" + speed),
               StartsWith("device.toml:4:15: unconfirmed: is empty, and nobody confirms the profile"));
   EXPECT_EQ(error_of(name + "confirmed_by = []\nunconfirmed = \"all\"\n" + speed), "no error");
+}
+
+TEST(ModbusProfile, ThatIsAPipeIsRefusedWithoutWaiting) {
+  const test::TemporaryFolder folder;
+  const std::string pipe = (folder.path() / "device.toml").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT([&] { load_modbus_profile(pipe, ""); },
+              testing::ThrowsMessage<std::runtime_error>(
+                  pipe + ": the profile cannot be read; check that it is a file and may be read"));
 }
 
 TEST(ModbusProfile, HasNoControlCharacters) {
