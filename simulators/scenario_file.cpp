@@ -1,6 +1,7 @@
 #include "simulators/scenario_file.hpp"
 
 #include <cmath>
+#include <fstream>
 #include <set>
 #include <stdexcept>
 
@@ -9,6 +10,7 @@
 #include <toml++/toml.h>
 
 #include "engine/base/duration.hpp"
+#include "engine/tables/parse_toml.hpp"
 
 namespace yuragi::simulators {
 namespace {
@@ -121,9 +123,12 @@ ScenarioDevice read_device(ScenarioTable table) {
 }  // namespace
 
 Scenario read_scenario(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string text = tables::toml_text(in);
+  if (in.bad() || !in.is_open()) throw std::runtime_error(file.string() + ": cannot be read; check its path");
   toml::table root;
   try {
-    root = toml::parse_file(file.string());
+    root = tables::parse_toml(text, file.string());
   } catch (const toml::parse_error& error) {
     const toml::source_position& at = error.source().begin;
     throw std::runtime_error(fmt::format("{}:{}:{}: {}", file.string(), at.line, at.column, error.description()));

@@ -1,6 +1,7 @@
 // `yuragi export -o TAKE.glb`: the motion of a scene for 3D programs.
 #include "daemon/commands/export_take.hpp"
 
+#include <cmath>
 #include <fstream>
 #include <memory>
 
@@ -20,8 +21,6 @@ namespace {
 
 /// What 3D programs open without effort.
 constexpr std::size_t kUsualJoints = 12'000;
-/// A take's places are kept until it is written: so many, of 12 bytes each, are about a gigabyte.
-constexpr double kMostPlaces = 80e6;
 
 std::string scene_of(const TakeOptions& options, const wire::Scenes& scenes) {
   std::string names;
@@ -47,12 +46,7 @@ class TakeMaker {
     if (!recorder_) begin(animation);
     // A tick is taken that is nearer to the moment than the next one would be.
     if (log_time_s + 1e-9 < static_cast<double>(recorder_->frames()) / options_.fps) return;
-    if (static_cast<double>(recorder_->frames() + 1) * static_cast<double>(recorder_->joints()) > kMostPlaces) {
-      throw ExitError(kExitUsage,
-                      fmt::format("the take is too long: {} joints in {} pictures are all that fits; take a "
-                                  "shorter --duration, fewer --fps, or a larger --every",
-                                  recorder_->joints(), recorder_->frames()));
-    }
+    tools::take::checked_size(recorder_->joints(), static_cast<double>(recorder_->frames() + 1)).value();
     recorder_->add(*animation.poses()[scene_]);
   }
   const tools::take::TakeRecorder& recorder() const {
@@ -79,6 +73,9 @@ class TakeMaker {
       throw ExitError(kExitUsage, fmt::format("--every: is to be at least {} here: a glTF file takes {} joints", *least,
                                               tools::take::kMostJoints));
     recorder_ = std::make_unique<tools::take::TakeRecorder>(skeleton, name_, every_, options_.fps);
+    if (options_.duration_s) {
+      tools::take::checked_size(recorder_->joints(), std::floor(*options_.duration_s * options_.fps)).value();
+    }
   }
 
   const TakeOptions& options_;

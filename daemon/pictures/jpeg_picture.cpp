@@ -20,6 +20,8 @@ struct JpegReading {
   std::jmp_buf on_error{};
   std::array<char, JMSG_LENGTH_MAX> message{};
   bool has_warned = false;
+  jpeg_progress_mgr progress{};
+  bool has_many_scans = false;
 };
 
 JpegReading& reading_of(j_common_ptr decoder) {
@@ -40,9 +42,20 @@ void remember_warning(j_common_ptr decoder, int level) {
   decoder->err->format_message(decoder, reading.message.data());
 }
 
+/// Called by libjpeg again and again as it reads: a progressive file may have any number of scans, and each costs time
+/// as the whole picture does.
+void refuse_many_scans(j_common_ptr decoder) {
+  const int scans = reinterpret_cast<j_decompress_ptr>(decoder)->input_scan_number;
+  if (scans <= kMaxJpegScans) return;
+  JpegReading& reading = reading_of(decoder);
+  reading.has_many_scans = true;
+  std::longjmp(reading.on_error, 1);  // NOLINT(cert-err52-cpp): libjpeg's way
+}
+
 bool read_jpeg_header(JpegReading& reading, const std::uint8_t* bytes, std::size_t size) {
   if (setjmp(reading.on_error) != 0) return false;  // NOLINT(cert-err52-cpp)
   jpeg_create_decompress(&reading.decoder);
+  reading.decoder.progress = &reading.progress;
   jpeg_mem_src(&reading.decoder, bytes, static_cast<unsigned long>(size));
   jpeg_read_header(&reading.decoder, TRUE);
   reading.decoder.out_color_space = JCS_RGB;
@@ -62,6 +75,10 @@ bool read_jpeg_pixels(JpegReading& reading, std::uint8_t* rgb) {
 }
 
 Failure damaged_jpeg(const JpegReading& reading) {
+  if (reading.has_many_scans) {
+    return {.message = "has more than " + std::to_string(kMaxJpegScans) + " scans; save it anew, not progressive",
+            .kind = FailureKind::kBadData};
+  }
   return {.message =
               "is a JPEG file that cannot be read (" + std::string(reading.message.data()) + "); save it anew, in RGB",
           .kind = FailureKind::kBadData};
@@ -79,6 +96,7 @@ Result<look::Image, Failure> decoded_jpeg(std::span<const std::uint8_t> bytes) {
   reading.decoder.client_data = &reading;
   reading.errors.error_exit = leave;
   reading.errors.emit_message = remember_warning;
+  reading.progress.progress_monitor = refuse_many_scans;
   const struct Closed {
     jpeg_decompress_struct* decoder;
     ~Closed() { jpeg_destroy_decompress(decoder); }

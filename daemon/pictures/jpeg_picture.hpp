@@ -8,6 +8,9 @@
 
 namespace yuragi::daemon::pictures {
 
+/// Real progressive files have about 10.
+inline constexpr int kMaxJpegScans = 500;
+
 bool is_jpeg(std::span<const std::uint8_t> bytes);
 
 /// By libjpeg.

@@ -210,12 +210,21 @@ void Reload::begin() {
   task_->read = parts_.read;
   task_->make_scenes = parts_.make_scenes;
   task_->running = running_;
+  seen_at_.reset();
   if (!present_.reads_file) {
     task_->read = [running = running_, configured = configured_, edits = present_.edits] {
       auto next = settings::edited(*running, *configured, edits);
       if (!next) throw settings::ConfigError(next.error().name + ": " + next.error().message);
       return std::move(*next);
     };
+  }
+  std::erase_if(left_behind_, [](const auto& task) { return task.expired(); });
+  if (present_.reads_file && left_behind_.size() >= kMaxLeftBehind) {
+    task_->report = failure(wire::ReloadOutcome::kFailed,
+                            fmt::format("{}: {} earlier attempts to read it have not returned; repair its disk or "
+                                        "network share, or restart the daemon",
+                                        parts_.file, left_behind_.size()));
+    return parts_.post([this] { finish(); });
   }
   try {
     task_->thread = std::thread([task = task_, this] {
@@ -238,9 +247,32 @@ void Reload::finish() {
     if (apply && !task->plan->applied.empty()) apply(*task->plan);
     if (task->adopt) task->adopt();
   }
-  if (done.reads_file) log(task->report, parts_.file);
-  for (const Reply& reply : done.asked) reply(task->report);
+  answer(done, task->report);
+}
+
+/// Then begins what is due.
+void Reload::answer(const Due& done, const wire::ReloadReport& report) {
+  if (done.reads_file) log(report, parts_.file);
+  for (const Reply& reply : done.asked) reply(report);
   go_on();
+}
+
+void Reload::give_up_late(MonoTime now) {
+  if (!task_ || !present_.reads_file) return;
+  if (!seen_at_) seen_at_ = now;
+  if (now - *seen_at_ < kMaxRead) return;
+  {
+    const std::lock_guard lock(task_->mutex);
+    if (task_->has_read || !task_->thread.joinable()) return;  // it posts finish(), or has done so
+    task_->is_given_up = true;
+  }
+  task_->thread.detach();
+  left_behind_.push_back(std::exchange(task_, nullptr));
+  answer(std::exchange(present_, {}),
+         failure(wire::ReloadOutcome::kFailed,
+                 fmt::format("{}: was not read within {:.0f} s; check its disk or network share, and the files that "
+                             "it names, then reload again",
+                             parts_.file, seconds(kMaxRead))));
 }
 
 }  // namespace yuragi::daemon::service

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/parameter_edit.hpp"
 #include "daemon/settings/reload_plan.hpp"
+#include "engine/base/time.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::service {
@@ -48,6 +50,9 @@ struct ReloadParts {
 /// Single values of [look] and of scenes are set in the same way, without the file; the next reload puts them back to
 /// what the file says.
 ///
+/// The file has kMaxRead to be read; then the reload has failed, and the next one begins. Its thread is left behind, at
+/// most kMaxLeftBehind of them.
+///
 /// Requests that come while a reload is under way are answered by one more after it; values that are set meanwhile are
 /// set together, those of [look] without waiting for scenes that fade. Belongs to the I/O thread.
 class Reload {
@@ -56,6 +61,9 @@ class Reload {
 
   /// At most so many clients wait for a reload; further ones are told to try again.
   static constexpr std::size_t kMostWaiting = 64;
+
+  static constexpr Nanoseconds kMaxRead = std::chrono::seconds(20);
+  static constexpr std::size_t kMaxLeftBehind = 4;
 
   /// `running`: the configuration that the daemon began with.
   Reload(const settings::Config& running, ReloadParts parts);
@@ -81,6 +89,10 @@ class Reload {
   /// Begins the reload that waits, if one does. To be called whenever the last one may have been carried out.
   void go_on();
 
+  /// Gives up a file that has been read for longer than kMaxRead, as far as the calls show: to be called about every
+  /// second, with the time.
+  void give_up_late(MonoTime now);
+
   /// Is the file to be read, or being read, or not been dealt with yet?
   bool is_under_way() const noexcept;
 
@@ -101,12 +113,15 @@ class Reload {
   Due& due_edits(bool is_of_look_alone);
   void begin();
   void finish();
+  void answer(const Due& done, const wire::ReloadReport& report);
 
   ReloadParts parts_;
   std::shared_ptr<const settings::Config> running_, configured_;
-  std::shared_ptr<Task> task_;  ///< shared with its thread, which may outlive this
-  Due present_;                 ///< what the task does
-  std::deque<Due> due_;         ///< what is to be done after it, in order
+  std::shared_ptr<Task> task_;                    ///< shared with its thread, which may outlive this
+  std::optional<MonoTime> seen_at_;               ///< when give_up_late() saw the task first
+  std::vector<std::weak_ptr<Task>> left_behind_;  ///< tasks that were given up; expired ones have ended
+  Due present_;                                   ///< what the task does
+  std::deque<Due> due_;                           ///< what is to be done after it, in order
 };
 
 }  // namespace yuragi::daemon::service

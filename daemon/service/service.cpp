@@ -412,6 +412,7 @@ class Service::Io {
   }
 
   void send_status() {
+    contain("giving up a reload", [this] { reload_.give_up_late(clock_.now().mono); });
     contain("the status", [this] {
       const wire::Sensors status = publish_status();
       manager_.say_status(status);

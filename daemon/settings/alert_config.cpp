@@ -52,7 +52,8 @@ const std::array kAlertParameters = {
               .default_value = std::string(),
               .help = "run by /bin/sh at its beginning and at its end, for at most a minute, with YURAGI_ALERT (its "
                       "name), YURAGI_ALERT_STATE (began or ended) and YURAGI_ALERT_MESSAGE (a sentence) in its "
-                      "environment; empty: none"},
+                      "environment; empty: none",
+              .takes_control_characters = true},
     Parameter{.name = "webhook",
               .unit = "",
               .default_value = Secret(),

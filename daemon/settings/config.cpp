@@ -18,6 +18,7 @@
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
 #include "engine/output/output_tables.hpp"
+#include "engine/tables/parse_toml.hpp"
 #include "engine/tables/toml_values.hpp"
 
 namespace yuragi::daemon::settings {
@@ -387,12 +388,7 @@ class ConfigReader {
   }
 
   std::string read_name(const toml::table& entry, const std::string& prefix, std::string otherwise) {
-    const toml::node* node = entry.get(kNameKey);
-    if (node == nullptr) return otherwise;
-    const auto name = node->value<std::string>();
-    if (name && !name->empty() && name->size() <= 64) return *name;
-    mistake(node->source(), prefix + "name", "takes a text of 1 to 64 characters");
-    return otherwise;
+    return tables::read_name(entry, prefix, std::move(otherwise), mistakes_);
   }
 
   tables::TomlMistakes mistakes_;
@@ -458,7 +454,7 @@ Config read_config(std::string_view toml_text, const std::string& source_name,
                    const std::optional<std::filesystem::path>& folder) {
   toml::table root;
   try {
-    root = toml::parse(toml_text, source_name);
+    root = tables::parse_toml(toml_text, source_name);
   } catch (const toml::parse_error& error) {
     std::ostringstream line;
     line << source_name << ':' << error.source().begin.line << ':' << error.source().begin.column
@@ -633,7 +629,7 @@ std::string to_toml(const ParameterValues& values) {
 Result<ParameterValues, Failure> parse_values(std::string_view toml_text, std::span<const Parameter> parameters) {
   try {
     ParameterValues::Map given;
-    for (const auto& [key, node] : toml::parse(toml_text)) {
+    for (const auto& [key, node] : tables::parse_toml(toml_text)) {
       const std::optional<ParameterValue> value = tables::parameter_value_of(node);
       if (!value) return Failure{std::string(key.str()) + ": takes one value: true, a number or a text"};
       given.emplace(key.str(), *value);

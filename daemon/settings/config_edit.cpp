@@ -11,6 +11,7 @@
 #include <toml++/toml.h>
 
 #include "daemon/settings/toml_places.hpp"
+#include "engine/tables/parse_toml.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
@@ -201,7 +202,7 @@ Result<std::string, Failure> edit_sensor(std::string_view toml_text, std::string
     if (std::holds_alternative<Secret>(change.value)) return Failure{change.key + ": a secret is not written"};
   }
   try {
-    toml::table root = toml::parse(toml_text);
+    toml::table root = tables::parse_toml(toml_text);
     toml::table* entry = find_sensor(root, sensor);
     if (entry == nullptr) return Failure{fmt::format("there is no [[sensor]] that is called \"{}\"", sensor)};
 
@@ -211,7 +212,7 @@ Result<std::string, Failure> edit_sensor(std::string_view toml_text, std::string
 
     // Verify: the new text must equal the old one but for the changes.
     if (!apply(*entry, changes)) return by_hand(sensor, "a value stands where a table should be", changes);
-    if (toml::parse(text) != root) return by_hand(sensor, "its layout is unusual", changes);
+    if (tables::parse_toml(text) != root) return by_hand(sensor, "its layout is unusual", changes);
     return {boost::system::in_place_value, std::move(text)};
   } catch (const toml::parse_error& error) {
     return by_hand(sensor, "TOML: " + std::string(error.description()), changes);

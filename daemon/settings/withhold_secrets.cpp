@@ -11,6 +11,7 @@
 #include "daemon/settings/config_edit.hpp"
 #include "daemon/settings/toml_places.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "engine/tables/parse_toml.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
@@ -35,7 +36,7 @@ std::vector<std::string_view> secret_keys_of(std::string_view driver) {
 class SecretWithholder {
  public:
   /// Throws toml::parse_error.
-  explicit SecretWithholder(std::string_view text) : text_(text), places_(text), root_(toml::parse(text)) {}
+  explicit SecretWithholder(std::string_view text) : text_(text), places_(text), root_(tables::parse_toml(text)) {}
 
   toml::table& root() { return root_; }
 
@@ -64,7 +65,7 @@ class SecretWithholder {
  private:
   bool is_root(const std::string& edited) const {
     try {
-      return toml::parse(edited) == root_;
+      return tables::parse_toml(edited) == root_;
     } catch (const toml::parse_error&) {
       return false;
     }
@@ -72,7 +73,9 @@ class SecretWithholder {
   std::string written_root() const {
     std::ostringstream out;
     out << root_ << '\n';
-    return out.str();
+    std::string text = out.str();
+    tables::parse_toml(text);  // throws if escapes have made it too large
+    return text;
   }
 
   std::string_view text_;
@@ -88,7 +91,7 @@ Result<WithheldText, Failure> withhold_in(std::string_view toml_text, const With
     withhold(withholder);
     return withholder.take();
   } catch (const toml::parse_error&) {
-    return Failure{"is no TOML", FailureKind::kBadData};
+    return Failure{"is no TOML, or too large or too deep", FailureKind::kBadData};
   }
 }
 

@@ -11,6 +11,9 @@
 
 #include <toml++/toml.h>
 
+#include "engine/base/printable_text.hpp"
+#include "engine/tables/parse_toml.hpp"
+
 namespace yuragi::drivers::modbus {
 namespace {
 
@@ -28,7 +31,9 @@ class TableReader {
     std::ostringstream out;
     out << file_ << ':' << std::max(at.line, 1U) << ':' << std::max(at.column, 1U) << ": " << path_ << key << ": "
         << what;
-    throw std::runtime_error(out.str());
+    std::string text = out.str();
+    make_printable(text);
+    throw std::runtime_error(text);
   }
 
   bool has(std::string_view key) const { return table_.contains(key); }
@@ -38,6 +43,7 @@ class TableReader {
     if (node == nullptr) return *std::move(fallback);
     const auto* value = node->as_string();
     if (value == nullptr) fail(key, "is not a text; allowed: a text");
+    if (!is_printable(value->get())) fail(key, "has a control character in it; type it anew");
     return value->get();
   }
 
@@ -289,7 +295,7 @@ void read_timing(TableReader reader, ModbusProfile& profile) {
 ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file) {
   toml::table root;
   try {
-    root = toml::parse(text, file);
+    root = tables::parse_toml(text, file);
   } catch (const toml::parse_error& error) {
     std::ostringstream out;
     out << file << ':' << error.source().begin.line << ':' << error.source().begin.column

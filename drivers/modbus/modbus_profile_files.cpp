@@ -2,12 +2,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <vector>
 
 #include "drivers/modbus/modbus_profile.hpp"
+#include "engine/tables/parse_toml.hpp"
 
 namespace yuragi::drivers::modbus {
 namespace {
@@ -51,8 +51,10 @@ std::string known_names(const std::vector<fs::path>& directories) {
 }
 
 ModbusProfile read_profile(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  std::error_code ignored;
+  std::ifstream in;
+  if (fs::is_regular_file(path, ignored)) in.open(path, std::ios::binary);  // a pipe would be waited for
+  const std::string text = tables::toml_text(in);
   if (!in.is_open() || in.bad()) {
     throw std::runtime_error(path.string() + ": the profile cannot be read; check that it is a file and may be read");
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "engine/base/printable_text.hpp"
+
 namespace yuragi {
 namespace {
 
@@ -53,6 +55,10 @@ Result<ParameterValue, ParameterError> convert(const Parameter& parameter, const
   if (given_text != nullptr && holds_credentials(*given_text)) {
     return refuse(
         "has a user's name and password in it, which would be printed and recorded; give them by keys of their own");
+  }
+
+  if (given_text != nullptr && !parameter.takes_control_characters && !is_printable(*given_text)) {
+    return refuse("has a control character in it");
   }
 
   const auto check_range = [&](double number) { return number >= parameter.min && number <= parameter.max; };

@@ -36,6 +36,8 @@ struct Parameter {
   std::string_view left_out = {};
   /// texts only: the path of a file with a secret in it, which other users of the machine are not to read
   bool is_secret_file = false;
+  /// texts only: a script or the bytes for a device, in which control characters and line breaks are allowed
+  bool takes_control_characters = false;
 };
 
 /// What is wrong with a given value; the file and line are the caller's to add.
@@ -55,8 +57,8 @@ class ParameterValues {
   using Map = std::map<std::string, ParameterValue, std::less<>>;
 
   /// Fills what `given` leaves out with defaults. Refuses unknown names, wrong types (an integer passes for a number, a
-  /// text for a secret), numbers out of range or not finite, texts that are not among the choices, and texts with a
-  /// user's name and password in them. No error shows a secret.
+  /// text for a secret), numbers out of range or not finite, texts that are not among the choices, texts with a
+  /// user's name and password in them, and texts with control characters. No error shows a secret.
   static Result<ParameterValues, ParameterError> resolve(std::span<const Parameter> table, const Map& given);
 
   /// Is there a value of this name? What has a default always has one.

@@ -41,7 +41,7 @@ Character first_character(std::string_view text) {
   return {bytes, code};
 }
 
-bool is_printable(std::uint32_t code) {
+bool is_printable_code(std::uint32_t code) {
   const bool is_control = code < 0x20 || (code >= 0x7F && code <= 0x9F);
   const bool is_format =
       code == 0x200E || code == 0x200F || (code >= 0x2028 && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
@@ -54,9 +54,15 @@ void make_printable(std::string& text) {
   for (std::size_t place = 0; place < text.size();) {
     const Character character = first_character(std::string_view(text).substr(place));
     const std::size_t bytes = std::max<std::size_t>(character.bytes, 1);
-    if (character.bytes == 0 || !is_printable(character.code)) text.replace(place, bytes, bytes, '?');
+    if (character.bytes == 0 || !is_printable_code(character.code)) text.replace(place, bytes, bytes, '?');
     place += bytes;
   }
+}
+
+bool is_printable(std::string_view text) {
+  std::string shown(text);
+  make_printable(shown);
+  return shown == text;
 }
 
 bool is_utf8(std::string_view text) {

@@ -11,6 +11,9 @@ namespace yuragi {
 /// are not UTF-8 (RFC 3629) are replaced by a question mark for each byte. The size does not change. Thread-safe: yes.
 void make_printable(std::string& text);
 
+/// Returns true if make_printable() changes nothing. Thread-safe: yes.
+bool is_printable(std::string_view text);
+
 /// Returns true if `text` is valid UTF-8 (RFC 3629), control characters included. Thread-safe: yes.
 bool is_utf8(std::string_view text);
 

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/tables/parse_toml.hpp"
+
 namespace yuragi::output {
 namespace {
 
 constexpr std::string_view kNameKey = "name";
-constexpr std::size_t kLongestName = 64;
 
 /// The tables of a list; a mistake where it is no list of tables, or too long.
 std::vector<const toml::table*> entries_of(const toml::table& around, std::string_view key, const std::string& path,
@@ -41,13 +42,7 @@ Made taken(Result<Made, ParameterError> made, const toml::table& table, const st
 
 OutputTable read_output(const toml::table& entry, tables::TomlMistakes& mistakes) {
   const std::string prefix = std::string(kOutputList) + ".";
-  std::string name = Output().name;
-  if (const toml::node* node = entry.get(kNameKey)) {
-    name = node->value_or(std::string());
-    if (name.empty() || name.size() > kLongestName) {
-      mistakes.add(node->source(), prefix + "name", "takes a text of 1 to 64 characters");
-    }
-  }
+  std::string name = tables::read_name(entry, prefix, Output().name, mistakes);
   OutputTable table;
   table.values = tables::read_values(entry, prefix, output_parameters(), {kNameKey, kWindowList}, mistakes);
   table.output = taken(output_of(std::move(name), table.values), entry, prefix, mistakes);
@@ -89,7 +84,7 @@ Result<std::vector<Output>, Failure> parse_outputs(std::string_view toml_text, c
   tables::TomlMistakes mistakes(source_name);
   std::vector<Output> outputs;
   try {
-    const toml::table root = toml::parse(toml_text, source_name);
+    const toml::table root = tables::parse_toml(toml_text, source_name);
     for (OutputTable& table : read_outputs(root, mistakes)) outputs.push_back(std::move(table.output));
   } catch (const toml::parse_error& error) {
     mistakes.add(error.source(), "TOML", std::string(error.description()));

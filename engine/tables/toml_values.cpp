@@ -1,9 +1,13 @@
 #include "engine/tables/toml_values.hpp"
 
+#include "engine/base/printable_text.hpp"
+
 namespace yuragi::tables {
 
 void TomlMistakes::add(const toml::source_region& where, const std::string& key, const std::string& what) {
-  text_.append(text_.empty() ? "" : "\n").append(place(where)).append(": ").append(key).append(": ").append(what);
+  std::string mistake = key + ": " + what;
+  make_printable(mistake);
+  text_.append(text_.empty() ? "" : "\n").append(place(where)).append(": ").append(mistake);
 }
 
 std::string TomlMistakes::place(const toml::source_region& where) const {
@@ -37,6 +41,23 @@ ParameterValues read_values(const toml::table& table, const std::string& prefix,
     }
   }
   return ParameterValues::resolve(parameters, good).value();
+}
+
+std::string read_name(const toml::table& entry, const std::string& prefix, std::string otherwise,
+                      TomlMistakes& mistakes) {
+  constexpr std::size_t kMaxName_bytes = 64;
+  const toml::node* const node = entry.get("name");
+  if (node == nullptr) return otherwise;
+  const auto name = node->value<std::string>();
+  if (!name || name->empty() || name->size() > kMaxName_bytes) {
+    mistakes.add(node->source(), prefix + "name", "takes a text of 1 to 64 characters");
+    return otherwise;
+  }
+  if (!is_printable(*name)) {
+    mistakes.add(node->source(), prefix + "name", "\"" + *name + "\" has a control character in it; type it anew");
+    return otherwise;
+  }
+  return *name;
 }
 
 }  // namespace yuragi::tables

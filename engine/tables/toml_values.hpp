@@ -13,7 +13,7 @@
 namespace yuragi::tables {
 
 /// Collects what is wrong with a file, a line for each mistake: `file:line:column: key: what is wrong; what is
-/// allowed`.
+/// allowed`. Control characters of the file are shown as question marks.
 class TomlMistakes {
  public:
   /// `source_name`: the file's name in the lines.
@@ -39,5 +39,10 @@ std::optional<ParameterValue> parameter_value_of(const toml::node& node);
 /// wrong goes to `mistakes`, and counts as left out.
 ParameterValues read_values(const toml::table& table, const std::string& prefix, std::span<const Parameter> parameters,
                             const std::set<std::string_view>& aside, TomlMistakes& mistakes);
+
+/// The `name` of an entry of a list: 1 to 64 bytes without control characters. `otherwise` if it is missing, or refused
+/// as a mistake. `prefix` ("scene.") stands before the key in mistakes.
+std::string read_name(const toml::table& entry, const std::string& prefix, std::string otherwise,
+                      TomlMistakes& mistakes);
 
 }  // namespace yuragi::tables

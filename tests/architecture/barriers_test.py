@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""No exception ends the program, and no text from outside does where it becomes JSON.
+"""No exception ends the program, and no text from outside does where it becomes JSON or is read as TOML.
 
 usage: barriers_test.py PROJECT_ROOT
 
 - A source that constructs a thread calls contain() (engine/base/contain.hpp).
 - JSON is written by json_text() alone (engine/base/json_text.hpp), which replaces invalid UTF-8.
+- TOML is parsed by parse_toml() alone (engine/tables/parse_toml.hpp), which has limits.
 """
 import pathlib
 import re
@@ -16,6 +17,7 @@ FOLDERS = "daemon drivers engine simulators viewer".split()
 # `std::thread(...)`, `std::jthread name(...)`, and a member `thread_(...)` or `thread_{...}`.
 THREAD = re.compile(r"\bstd::j?thread\s*(?:\w+\s*)?[({]\s*[\[&\w]|\bthread_[({]\s*\[")
 BARRIER = re.compile(r"\bcontain\(")
+PARSE = re.compile(r"\btoml::parse(?:_file)?\(")
 DUMP = re.compile(r"(?:\.|->)dump\(")
 
 
@@ -26,6 +28,8 @@ def faults_of(path, text):
         faults.append(f"{path}: a thread without contain()")
     if DUMP.search(code) and path != "engine/base/json_text.hpp":
         faults.append(f"{path}: JSON without json_text()")
+    if PARSE.search(code) and path != "engine/tables/parse_toml.cpp":
+        faults.append(f"{path}: TOML without parse_toml()")
     return faults
 
 
@@ -48,12 +52,15 @@ class TheCheck(unittest.TestCase):
         "std::thread([work] { work->go(); }).detach();",
         "std::thread helper(&run);",
         "return json.dump(2);",
+        "toml::table root = toml::parse(text);",
+        "const auto root = toml::parse_file(file);",
         "std::thread([] { run(); });  // contain()",
     ]
     PASSED = [
         "std::jthread thread_;",
         'thread_ = std::jthread([this] { contain("it", [this] { run(); }); });',
         "return json_text(json);",
+        "const toml::table root = tables::parse_toml(text);",
     ]
 
     def test_refuses(self):

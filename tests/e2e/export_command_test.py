@@ -156,6 +156,7 @@ class Take(unittest.TestCase):
     def test_what_is_wrong_is_said_and_leaves_no_file(self):
         for options, code, pattern in ((("--scene", "sea"), 64, "there is no 'sea'; there are: flag, fur"), ((), 64, "flag, fur"),
                                        (("--scene", "flag", "--to", "3"), 64, "--to"),
+                                       (("--scene", "flag", "--duration", "5h", "--every", "1"), 64, "the take is too large"),
                                        (("--scene", "flag", "--from", "900"), 65, "")):
             done = self.take(*options)
             self.assertEqual(done.returncode, code, done.stderr)

@@ -199,6 +199,15 @@ void add_animation(tinygltf::Model& model, GltfBuffer& buffer, const Pictures& p
 
 }  // namespace
 
+Result<void, Failure> checked_size(std::size_t joints, double pictures) {
+  const double most = std::floor(kMaxPlaces / static_cast<double>(joints));
+  if (pictures <= most) return {};
+  return Failure{"the take is too large: with " + std::to_string(joints) + " joints it has room for " +
+                     std::to_string(static_cast<std::size_t>(most)) +
+                     " pictures; take a shorter --duration, fewer --fps, or a larger --every",
+                 FailureKind::kUsage};
+}
+
 TakeRecorder::TakeRecorder(const pose::Skeleton& skeleton, std::string name, std::size_t every, double fps)
     : name_(std::move(name)), fps_(fps), mesh_(take_mesh_of(skeleton, every)), kinematics_(skeleton) {}
 

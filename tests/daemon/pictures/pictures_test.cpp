@@ -22,7 +22,8 @@ using testing::HasSubstr;
 
 constexpr look::Color kBlack{0, 0, 0};
 
-std::vector<std::uint8_t> jpeg_file(std::uint32_t width_px, std::uint32_t height_px, std::uint8_t grey) {
+std::vector<std::uint8_t> jpeg_file(std::uint32_t width_px, std::uint32_t height_px, std::uint8_t grey,
+                                    bool is_progressive = false) {
   jpeg_compress_struct encoder{};
   jpeg_error_mgr errors{};
   encoder.err = jpeg_std_error(&errors);
@@ -35,6 +36,7 @@ std::vector<std::uint8_t> jpeg_file(std::uint32_t width_px, std::uint32_t height
   encoder.input_components = 1;
   encoder.in_color_space = JCS_GRAYSCALE;
   jpeg_set_defaults(&encoder);
+  if (is_progressive) jpeg_simple_progression(&encoder);
   jpeg_start_compress(&encoder, TRUE);
   std::vector<std::uint8_t> row(width_px, grey);
   while (encoder.next_scanline < height_px) {
@@ -45,6 +47,27 @@ std::vector<std::uint8_t> jpeg_file(std::uint32_t width_px, std::uint32_t height
   std::vector<std::uint8_t> file(bytes, bytes + size);
   jpeg_destroy_compress(&encoder);
   std::free(bytes);
+  return file;
+}
+
+/// A valid grey file of so many scans: those of an encoder's file again and again.
+std::vector<std::uint8_t> progressive_jpeg(std::size_t scans) {
+  const std::vector<std::uint8_t> once = jpeg_file(16, 16, 77, true);
+  std::vector<std::size_t> begins;  // of each scan, and the end of the last
+  std::size_t tables = 0;           // before the first scan
+  for (std::size_t at = 0; at + 1 < once.size(); ++at) {
+    if (once[at] != 0xFF) continue;
+    if (once[at + 1] == 0xC4 && tables == 0) tables = at;
+    if (once[at + 1] == 0xDA || once[at + 1] == 0xD9) begins.push_back(at);
+  }
+  begins.at(0) = tables;
+  std::vector<std::uint8_t> file(once.begin(), once.begin() + static_cast<std::ptrdiff_t>(tables));
+  for (std::size_t scan = 0; scan < scans; ++scan) {
+    const std::size_t i = scan % (begins.size() - 1);
+    file.insert(file.end(), once.begin() + static_cast<std::ptrdiff_t>(begins[i]),
+                once.begin() + static_cast<std::ptrdiff_t>(begins[i + 1]));
+  }
+  file.insert(file.end(), {0xFF, 0xD9});
   return file;
 }
 
@@ -72,6 +95,12 @@ TEST(Pictures, AJpegIsReadAlsoAGreyOne) {
   EXPECT_EQ(picture.height_px, 10U);
   ASSERT_EQ(picture.rgb.size(), 600U);
   for (const std::uint8_t value : picture.rgb) EXPECT_NEAR(value, 77, 2);
+}
+
+TEST(Pictures, AProgressiveJpegOfTooManyScansIsRefusedBeforeTheyAreDecoded) {
+  EXPECT_EQ(refused(progressive_jpeg(500)), "is read");
+  EXPECT_EQ(refused(progressive_jpeg(501)), "has more than 500 scans; save it anew, not progressive");
+  EXPECT_THAT(refused(progressive_jpeg(200'000)), HasSubstr("500 scans"));
 }
 
 TEST(Pictures, NoPartOfAFileIsTakenForAPicture) {

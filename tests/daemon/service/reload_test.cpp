@@ -1,7 +1,10 @@
 #include "daemon/service/reload.hpp"
 
+#include <atomic>
+#include <chrono>
 #include <future>
 #include <memory>
+#include <semaphore>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -35,6 +38,25 @@ class ReloadTest : public ::testing::Test {
   Reload::Reply reply() {
     return [this](const wire::ReloadReport& report) { reports_.push_back(report); };
   }
+
+  /// A disk whose reads hang until it answers; owned by those who read.
+  struct HangingDisk {
+    std::atomic<bool> hangs = true;
+    std::counting_semaphore<> asked{0};
+    std::promise<void> answers;
+    std::shared_future<void> answered = answers.get_future().share();
+  };
+  ReloadParts hanging_parts(const std::shared_ptr<HangingDisk>& disk) {
+    ReloadParts hanging = parts();
+    hanging.read = [disk, text = text_] {
+      const bool hangs = disk->hangs;
+      disk->asked.release();
+      if (hangs) std::shared_future(disk->answered).wait();
+      return settings::parse_config(text, "wall.toml");
+    };
+    return hanging;
+  }
+  static constexpr MonoTime kStart{std::chrono::hours(1)};
 
   WorkQueue queue_;
   std::string text_ = "[shaping]\nfloor = 2.0\n";
@@ -194,6 +216,61 @@ TEST_F(ReloadTest, ItsEndDoesNotWaitForADiskThatHangs) {
   const std::weak_ptr<Disk> is_left_with_the_thread = std::exchange(disk, nullptr);
   while (!is_left_with_the_thread.expired()) std::this_thread::yield();
   EXPECT_TRUE(queue_.is_empty()) << "nobody is there who could be told";
+}
+
+TEST_F(ReloadTest, AFileThatIsNotReadInTimeHasFailedAndTheNextRequestIsAnswered) {
+  auto disk = std::make_shared<HangingDisk>();
+  {
+    Reload reload(settings::default_config(), hanging_parts(disk));
+    reload.request({}, reply());
+    disk->asked.acquire();
+    reload.give_up_late(kStart);
+    reload.request({}, reply());
+    reload.give_up_late(kStart + Reload::kMaxRead - Nanoseconds(1));
+    EXPECT_THAT(reports_, IsEmpty());
+    disk->hangs = false;
+    reload.give_up_late(kStart + Reload::kMaxRead);
+    ASSERT_EQ(reports_.size(), 1U);
+    EXPECT_EQ(reports_[0].outcome, wire::ReloadOutcome::kFailed);
+    EXPECT_THAT(reports_[0].mistakes,
+                ElementsAre(HasSubstr("/etc/wall.toml: was not read within 20 s; check its disk")));
+    EXPECT_TRUE(reload.is_under_way());
+    reload.give_up_late(kStart + Reload::kMaxRead);
+    queue_.do_one();
+    ASSERT_EQ(reports_.size(), 2U) << "the second has its own time";
+    EXPECT_EQ(reports_[1].outcome, wire::ReloadOutcome::kDone);
+    EXPECT_FALSE(reload.is_under_way());
+    disk->answers.set_value();
+  }
+  const std::weak_ptr<HangingDisk> is_left_with_the_thread = std::exchange(disk, nullptr);
+  while (!is_left_with_the_thread.expired()) std::this_thread::yield();
+  EXPECT_TRUE(queue_.is_empty()) << "the first comes too late";
+  EXPECT_EQ(applied_.size(), 1U);
+}
+
+TEST_F(ReloadTest, NoMoreThanSomeThreadsAreLeftWithADiskThatHangs) {
+  const auto disk = std::make_shared<HangingDisk>();
+  Reload reload(settings::default_config(), hanging_parts(disk));
+  const auto holders_at_rest = disk.use_count();
+  for (std::size_t i = 0; i < Reload::kMaxLeftBehind; ++i) {
+    reload.request({}, reply());
+    disk->asked.acquire();
+    reload.give_up_late(kStart);
+    reload.give_up_late(kStart + Reload::kMaxRead);
+  }
+  ASSERT_EQ(reports_.size(), Reload::kMaxLeftBehind);
+  reload.request({}, reply());
+  queue_.do_one();
+  EXPECT_EQ(reports_.back().outcome, wire::ReloadOutcome::kFailed);
+  EXPECT_THAT(reports_.back().mistakes, ElementsAre(HasSubstr("4 earlier attempts to read it have not returned")));
+  EXPECT_FALSE(disk->asked.try_acquire());
+
+  disk->hangs = false;
+  disk->answers.set_value();
+  while (disk.use_count() > holders_at_rest) std::this_thread::yield();
+  reload.request({}, reply());
+  queue_.do_one();
+  EXPECT_EQ(reports_.back().outcome, wire::ReloadOutcome::kDone);
 }
 
 TEST_F(ReloadTest, ItsEndWaitsForScenesThatAreBeingMadeAndTellsThemToHurry) {

@@ -24,6 +24,7 @@ using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::MatchesRegex;
 using ::testing::Not;
 using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
@@ -81,6 +82,42 @@ TEST(Config, HasTheColorsAndThePictureOfACloth) {
                   HasSubstr("wall.toml:10:9: scene.color: is \"red\"; allowed"))));
   EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\ncolor = \"#112233\"\n"),
               HasSubstr("color: is not a parameter"));
+}
+
+TEST(Config, RefusesNamesWithControlCharactersAtTheirPlace) {
+  for (const std::string entry :
+       {"[[sensor]]\ndriver = \"synthetic\"\n", "[[scene]]\nkind = \"grass\"\n", "[[camera]]\nfrom = \"06:00\"\n",
+        "[[alert]]\ncommand = \"true\"\n", "[[output]]\nrefreshes = 2\n"}) {
+    for (const std::string hurt : {"\\u001b[2J", "\\n", "\\u007f", "\\u0085", "\\u202E", "\\u2066"}) {
+      EXPECT_THAT(
+          mistakes_of(entry + "name = \"a" + hurt + "\"\n"),
+          MatchesRegex("wall.toml:3:8: [a-z]+.name: \"a\\?+(\\[2J)?\" has a control character in it; type it anew"))
+          << entry << hurt;
+    }
+    EXPECT_THAT(mistakes_of(entry + "name = \"M\u00fcller \u98a8\"\n"), Not(HasSubstr("control"))) << entry;
+  }
+}
+
+TEST(Config, RefusesTextsAndShowsKeysWithControlCharacters) {
+  EXPECT_EQ(
+      mistakes_of("[[output]]\n[[output.window]]\nmonitor = \"HDMI\\u001b\"\n"),
+      "wall.toml:3:11: output.window.monitor: has a control character in it; allowed: text; left out: the primary "
+      "one");
+  EXPECT_THAT(mistakes_of("\"a\\u001bb\" = 1\n"), HasSubstr("wall.toml:1:1: a?b: is not known here"));
+  const Config config = parse_config(
+      "[[sensor]]\ndriver = \"line\"\nspeed_unit = \"m/s\"\nrequest = \"?\\r\\n\"\n"
+      "[[alert]]\nname = \"storm\"\nwhen = \"wind_above\"\ncommand = \"\"\"\necho a\necho b\"\"\"\n",
+      "wall.toml");
+  EXPECT_EQ(config.sensors.at(0).values.text("request"), "?\r\n") << "bytes for a device";
+  EXPECT_EQ(config.alerts.at(0).command, "echo a\necho b") << "a script";
+}
+
+TEST(Config, RefusesAKeyOfThousandsOfParts) {
+  std::string key = "a";
+  for (int i = 0; i < 50'000; ++i) key += ".a";
+  EXPECT_THAT(mistakes_of(key + " = 1\n"), StartsWith("wall.toml:1:1: TOML: nested too deeply"));
+  EXPECT_THAT(mistakes_of("[[sensor]]\ndriver = \"synthetic\"\n" + key + " = 1\n"),
+              StartsWith("wall.toml:3:1: TOML: nested too deeply"));
 }
 
 TEST(Config, HasThePictureOfTheGround) {

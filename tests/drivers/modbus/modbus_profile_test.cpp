@@ -6,8 +6,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/places.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::drivers::modbus {
 namespace {
@@ -197,6 +199,20 @@ TEST(ModbusProfile, CannotLeaveOutWhoConfirmsIt) {
   EXPECT_THAT(error_of(name + "confirmed_by = []\nunconfirmed = \"\"\n" + speed),
               StartsWith("device.toml:4:15: unconfirmed: is empty, and nobody confirms the profile"));
   EXPECT_EQ(error_of(name + "confirmed_by = []\nunconfirmed = \"all\"\n" + speed), "no error");
+}
+
+TEST(ModbusProfile, ThatIsAPipeIsRefusedWithoutWaiting) {
+  const test::TemporaryFolder folder;
+  const std::string pipe = (folder.path() / "device.toml").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THAT([&] { load_modbus_profile(pipe, ""); },
+              testing::ThrowsMessage<std::runtime_error>(
+                  pipe + ": the profile cannot be read; check that it is a file and may be read"));
+}
+
+TEST(ModbusProfile, HasNoControlCharacters) {
+  EXPECT_EQ(error_of("name = \"a\\u001b[2J\"\n"), "device.toml:1:8: name: has a control character in it; type it anew");
+  EXPECT_THAT(error_of(minimal("", "[quantities.\"a\\u001b\"]\n")), HasSubstr("quantities.a?: is not known here"));
 }
 
 TEST(ModbusProfile, KnowsNoOtherQuantitiesThanRecordings) {

@@ -16,6 +16,14 @@ TEST(PrintableText, WhatCanBeShownStaysAsItIs) {
   EXPECT_EQ(printable(""), "");
 }
 
+TEST(PrintableText, KnowsWhatIsPrintable) {
+  EXPECT_TRUE(is_printable(""));
+  EXPECT_TRUE(is_printable("caf\xC3\xA9?"));
+  EXPECT_FALSE(is_printable("a\n"));
+  EXPECT_FALSE(is_printable("a\xE2\x80\xAE"));
+  EXPECT_FALSE(is_printable("\xFF"));
+}
+
 TEST(PrintableText, KnowsWhatIsUtf8) {
   EXPECT_TRUE(is_utf8(""));
   EXPECT_TRUE(is_utf8(std::string_view("a\0\x1b\xC3\xA9\xF0\x9F\x8C\xAC", 9)));

@@ -145,5 +145,16 @@ TEST(TakeRecorder, AStillSceneHasNoAnimation_AndATakeOfNothingIsNone) {
   EXPECT_FALSE(take.write_glb(out)) << "a full disk";
 }
 
+TEST(TakeRecorder, IsRefusedBeforeItsWorkIfItsFileWouldBeTooLarge) {
+  EXPECT_TRUE(checked_size(kMostJoints, 1220.0));
+  const auto large = checked_size(kMostJoints, 1221.0);
+  ASSERT_FALSE(large);
+  EXPECT_EQ(large.error().message,
+            "the take is too large: with 65535 joints it has room for 1220 pictures; take a shorter --duration, fewer "
+            "--fps, or a larger --every");
+  EXPECT_EQ(large.error().kind, FailureKind::kUsage);
+  EXPECT_FALSE(checked_size(1, 1e300));
+}
+
 }  // namespace
 }  // namespace yuragi::daemon::tools::take
