@@ -12,6 +12,7 @@
 
 #include "engine/base/compass.hpp"
 #include "engine/base/units.hpp"
+#include "engine/wire/sensor_trouble.hpp"
 #include "viewer/keys.hpp"
 #include "viewer/panel_view.hpp"
 #include "viewer/quality.hpp"
@@ -141,15 +142,15 @@ void write_wind(const OverlayFacts& facts, float scale) {
 
 /// A line for a sensor, and under it what is wrong and what to do about it.
 void write_sensor(const wire::SensorStatus& sensor) {
-  const bool is_well = is_believed(sensor.state);
+  const std::string trouble = trouble_of(sensor);
   std::string text = fmt::format("{} ({}): {}", sensor.name, sensor.driver, name_of(sensor.state));
   if (sensor.speed_m_s) text += fmt::format(", {:.1f} m/s", *sensor.speed_m_s);
   if (sensor.direction_deg) text += fmt::format(" from {:.0f}\u00b0", *sensor.direction_deg);
   if (sensor.replayed && sensor.state != wind::judging::SensorState::kReplayed) text += ", REPLAY";
-  write(sensor.state == wind::judging::SensorState::kReplayed || !is_well ? kWarn : kGood, text);
-  if (is_well || sensor.state_reason.empty()) return;
+  write(sensor.state == wind::judging::SensorState::kReplayed || !trouble.empty() ? kWarn : kGood, text);
+  if (trouble.empty()) return;
   ImGui::PushTextWrapPos(kReasonWidthInLetters * ImGui::GetFontSize());
-  write(kQuiet, sensor.state_reason);
+  write(kQuiet, trouble);
   ImGui::PopTextWrapPos();
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "daemon/settings/duration_text.hpp"
+#include "engine/wire/sensor_trouble.hpp"
 
 namespace yuragi::daemon::alerts {
 namespace {
@@ -16,11 +17,6 @@ using settings::AlertConfig;
 
 constexpr double kMegabyte = 1e6;
 constexpr Nanoseconds kMaxAge = std::chrono::hours(10 * 365 * 24);
-
-std::string reason_of(const wire::SensorStatus& sensor) {
-  const std::string& why = sensor.state_reason.empty() ? sensor.detail : sensor.state_reason;
-  return why.empty() ? std::string() : ": " + why;
-}
 
 }  // namespace
 
@@ -65,11 +61,11 @@ std::vector<AlertJudge::Subject> AlertJudge::subjects_of(const AlertConfig& aler
       std::vector<Subject> subjects;
       for (const wire::SensorStatus& sensor : status.sensors) {
         if (!alert.sensor.empty() && sensor.name != alert.sensor) continue;
-        const std::string_view state = name_of(sensor.state);
+        const std::string trouble = trouble_of(sensor);
         subjects.push_back({.name = sensor.name,
-                            .holds = !is_believed(sensor.state),
-                            .begins = fmt::format("sensor {} is {}{}", sensor.name, state, reason_of(sensor)),
-                            .ends = fmt::format("sensor {} is {} again", sensor.name, state)});
+                            .holds = !trouble.empty(),
+                            .begins = fmt::format("sensor {} {}", sensor.name, trouble),
+                            .ends = fmt::format("sensor {} is {} again", sensor.name, name_of(sensor.state))});
       }
       return subjects;
     }

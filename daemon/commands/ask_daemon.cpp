@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "daemon/settings/own_token.hpp"
 #include "daemon/stream/stream_client.hpp"
 
 namespace yuragi::daemon::commands {
@@ -48,7 +49,8 @@ Result<tools::sensors::DaemonStatus, Failure> ask_daemon(const std::string& addr
   auto stream = stream::StreamClient::connect(address, kAskConnectTimeout);
   if (!stream) return Failure{stream.error().message + ". Is `yuragi run` running?", FailureKind::kUnavailable};
   // Where the daemon has closed the connection, its Hello, which is still to be read, says why.
-  if (stream->subscribe({.poses = false, .sensors = true, .client = client})) {
+  if (stream->subscribe(
+          {.poses = false, .sensors = true, .client = client, .token = settings::own_token(address).token})) {
     stream->send(wire::Control{});
     stream->send(wire::Control{.scene = "", .player = wire::PlayerCommand{}});
   }

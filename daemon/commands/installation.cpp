@@ -5,13 +5,14 @@
 
 #include "daemon/commands/ask_daemon.hpp"
 #include "daemon/service/config_check.hpp"
+#include "daemon/settings/own_token.hpp"
 
 namespace yuragi::daemon::commands {
 
 void add_installation_config(CLI::App& command, std::optional<std::filesystem::path>& file) {
   command
       .add_option("--config,-c", file,
-                  fmt::format("the configuration (TOML); default: {}, else the built-in one", kServiceConfig))
+                  fmt::format("the configuration (TOML); default: {}, else the built-in one", settings::kServiceConfig))
       ->type_name("FILE");
 }
 
@@ -22,7 +23,7 @@ void add_daemon_address(CLI::App& command, std::optional<std::string>& address) 
 
 std::optional<std::filesystem::path> installed_config(const std::optional<std::filesystem::path>& given) {
   if (given) return given;
-  if (access(kServiceConfig, R_OK) == 0) return kServiceConfig;
+  if (access(settings::kServiceConfig, R_OK) == 0) return settings::kServiceConfig;
   return std::nullopt;
 }
 

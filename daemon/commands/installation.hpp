@@ -11,9 +11,6 @@
 
 namespace yuragi::daemon::commands {
 
-/// Where the package puts the configuration of the service.
-inline constexpr const char* kServiceConfig = "/etc/yuragi/yuragi.toml";
-
 /// Adds --config, of which `installed_config()` makes the file.
 void add_installation_config(CLI::App& command, std::optional<std::filesystem::path>& file);
 

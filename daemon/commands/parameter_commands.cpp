@@ -10,8 +10,8 @@
 
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
+#include "daemon/commands/send_control.hpp"
 #include "daemon/settings/config_edit.hpp"
-#include "daemon/stream/control_client.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -35,7 +35,7 @@ wire::ControlReply carry_out(const ParameterOptions& options, wire::ParameterCom
       wire::encode(control).size() > wire::kMaxClientMessageBytes) {
     throw ExitError(kExitUsage, "these are too many values at once: set them by several commands");
   }
-  auto reply = stream::ask(options.connect, options.of_scenes ? "scene" : "look", control, kParameterTimeout).value();
+  auto reply = send_control(options.connect, options.of_scenes ? "scene" : "look", control, kParameterTimeout);
   if (!reply.parameters) {
     throw ExitError(kExitUnavailable, "the daemon at " + options.connect +
                                           " is of an older version, which cannot list or set values while it runs");

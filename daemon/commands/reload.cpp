@@ -13,6 +13,7 @@
 #include "daemon/commands/run_options.hpp"
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/config_file.hpp"
+#include "daemon/settings/own_token.hpp"
 #include "daemon/stream/control_client.hpp"
 
 namespace yuragi::daemon::commands {
@@ -64,7 +65,11 @@ void reload(const ReloadOptions& options) {
     address = settings::load_config(*options.config_file).stream.listen;
     file = settings::absolute_path(*options.config_file);
   }
-  const wire::ReloadReport report = stream::ask_to_reload(options.connect.value_or(address), file).value();
+  address = options.connect.value_or(address);
+  const settings::OwnToken own =
+      options.config_file ? settings::own_token(address, *options.config_file) : settings::own_token(address);
+  wire::ReloadReport report = stream::ask_to_reload(address, file, own.token).value();
+  if (report.outcome == wire::ReloadOutcome::kNotAllowed && !own.hint.empty()) report.mistakes.push_back(own.hint);
   if (options.as_json) {
     print_json({{"outcome", kOutcomeNames.at(static_cast<std::size_t>(report.outcome))},
                 {"applied", report.applied},

@@ -1,16 +1,16 @@
 #include "daemon/commands/send_control.hpp"
 
+#include "daemon/settings/own_token.hpp"
 #include "daemon/stream/control_client.hpp"
 
 namespace yuragi::daemon::commands {
-namespace {
 
-constexpr auto kReplyTimeout = std::chrono::seconds(5);
-
-}  // namespace
-
-wire::ControlReply send_control(const std::string& address, const std::string& client, const wire::Control& control) {
-  return stream::ask(address, client, control, kReplyTimeout).value();
+wire::ControlReply send_control(const std::string& address, const std::string& client, const wire::Control& control,
+                                Nanoseconds timeout) {
+  const settings::OwnToken own = settings::own_token(address);
+  wire::ControlReply reply = stream::ask(address, client, control, timeout, own.token).value();
+  if (!reply.done && !own.hint.empty()) reply.message += "; " + own.hint;
+  return reply;
 }
 
 }  // namespace yuragi::daemon::commands

@@ -2,12 +2,15 @@
 
 #include <string>
 
+#include "engine/base/time.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::commands {
 
-/// Sends a Control to a running daemon and waits for the reply. `client`: the name of the command in the daemon's log.
-/// Throws FailureError where no daemon replies, or it refuses the connection or has another protocol.
-wire::ControlReply send_control(const std::string& address, const std::string& client, const wire::Control& control);
+/// Sends a Control to a running daemon, with this installation's token (settings::own_token()), and waits for the
+/// reply. `client`: the name of the command in the daemon's log. A refusal says, too, if the token cannot be read.
+/// Throws FailureError if no daemon replies, or if it refuses the connection or has another protocol.
+wire::ControlReply send_control(const std::string& address, const std::string& client, const wire::Control& control,
+                                Nanoseconds timeout = std::chrono::seconds(5));
 
 }  // namespace yuragi::daemon::commands

@@ -16,6 +16,7 @@
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/sensing/system_clock.hpp"
 #include "daemon/service/daemon_log.hpp"
+#include "daemon/settings/own_token.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/state/sensor_json.hpp"
@@ -134,7 +135,9 @@ class RawScreen final : public Screen {
 
 void watch_daemon(stream::StreamClient client, const std::string& address, const Deadline& deadline, Screen& screen) {
   const std::string source = "daemon at " + address;
-  client.subscribe(screen.subscription());
+  wire::Subscribe subscription = screen.subscription();
+  subscription.token = settings::own_token(address).token;
+  client.subscribe(subscription);
   while (!deadline.is_over()) {
     const auto message = client.receive(kSilenceTimeout);
     if (!message) throw FailureError(stream::connection_lost(address, message.error()));

@@ -72,6 +72,20 @@ Result<settings::Config, Failure> configuration_of(const WindlogReader& reader, 
   }
 }
 
+/// A recording does not decide where this machine listens, who controls it, or what it runs.
+void leave_out_what_acts_outside(settings::Config& config, std::vector<std::string>& remarks) {
+  const settings::Config own = settings::default_config();
+  if (config.stream.listen != own.stream.listen || config.stream.control != own.stream.control) {
+    remarks.push_back("its [stream] listen and control are not used: it listens at " + own.stream.listen +
+                      "; --listen HOST:PORT changes that");
+  }
+  if (!config.http.listen.empty()) remarks.push_back("its [http] is not used: no page is served");
+  if (!config.alerts.empty()) remarks.push_back("its alerts are not used");
+  config.stream = own.stream;
+  config.http = own.http;
+  config.alerts.clear();
+}
+
 /// Has this sensor a reading from a log time on?
 Result<bool, Failure> speaks_after(WindlogReader& reader, const std::string& sensor, Nanoseconds begin) {
   std::vector<bool> is_it;
@@ -125,6 +139,7 @@ Result<RecordedInstallation, Failure> recorded_installation(const std::filesyste
       .config = std::move(*config), .begin = session->first.utc + (*begin - session->log_begin), .remarks = {}};
   installation.config.wind.fallback.reset();
   installation.config.shaping.site_file.clear();
+  leave_out_what_acts_outside(installation.config, installation.remarks);
 
   bool is_any_played = false;
   for (settings::SensorConfig& sensor : installation.config.sensors) {

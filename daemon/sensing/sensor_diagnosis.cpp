@@ -75,7 +75,25 @@ std::string implausible_text(const SensorEvidence& evidence) {
       evidence.mean_m_s, *evidence.others_m_s);
 }
 
+std::string_view text_of(DirectionStandIn stand_in) {
+  switch (stand_in) {
+    case DirectionStandIn::kOtherSensor:
+      return "the direction of another sensor is used";
+    case DirectionStandIn::kLast:
+      return "the last one is kept";
+    case DirectionStandIn::kConfigured:
+      break;
+  }
+  return "the default of the configuration is used";
+}
+
 }  // namespace
+
+std::string missing_text(wind::judging::Quantity quantity, std::optional<double> age_s, DirectionStandIn stand_in) {
+  const std::string since = age_s ? "none for " + settings::duration_text(*age_s) : "none has come yet";
+  if (quantity == wind::judging::Quantity::kGust) return since + "; gusts are taken from the speeds. Check the station";
+  return fmt::format("{}; {}. Check the vane, its cable and its address", since, text_of(stand_in));
+}
 
 wind::judging::SensorState state_of(const SensorEvidence& evidence) {
   const bool is_connected = evidence.link == wind::LinkState::kConnected;

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "drivers/sensor/sensor.hpp"
+#include "engine/wind/judging/quantity_watch.hpp"
 #include "engine/wind/judging/reading_judge.hpp"
 #include "engine/wind/judging/sensor_state.hpp"
 #include "engine/wind/judging/sensor_vote.hpp"
@@ -29,6 +31,17 @@ struct SensorEvidence {
   double mean_m_s = 0.0;  ///< mean over some minutes; likewise others_m_s
   std::optional<double> others_m_s{};
 };
+
+/// What stands in for a direction that does not come.
+enum class DirectionStandIn : std::uint8_t {
+  kOtherSensor,  ///< another sensor's
+  kLast,         ///< the last one of this sensor
+  kConfigured,   ///< the default of the configuration
+};
+
+/// Why a quantity is missing for a person: since when, what stands in for it, and what to do. `age_s`: of the last one;
+/// nullopt: it has never come. Pure.
+std::string missing_text(wind::judging::Quantity quantity, std::optional<double> age_s, DirectionStandIn stand_in);
 
 /// The state. While readings arrive, a fault takes precedence over the kind of source (simulated, replayed). Once they
 /// are stale, a lost link takes precedence over faults, and only implausible readings count as one. A station that has

@@ -16,6 +16,9 @@
 namespace yuragi::daemon::sensing {
 namespace {
 
+using wind::judging::Quantity;
+using wind::judging::QuantityWatch;
+
 /// Is it used although others differ?
 bool is_disputed(wind::judging::SensorState state, wind::judging::Vote vote) {
   return is_believed(state) && vote == wind::judging::Vote::kDisputed;
@@ -43,6 +46,10 @@ bool is_trouble(wind::judging::SensorState state) {
 std::string passed_over_text(const ChangeGate& gate) {
   if (gate.passed_over() == 0) return {};
   return fmt::format("; {} short changes in between", gate.passed_over());
+}
+
+bool has(const wind::WindReading& reading, Quantity quantity) {
+  return quantity == Quantity::kDirection ? reading.direction_deg.has_value() : reading.gust_m_s.has_value();
 }
 
 /// Is it compared with other sensors? One whose scale is unknown is not.
@@ -117,6 +124,10 @@ SensorHub::SensorHub(const settings::Config& config, const drivers::sensor::Cloc
     channel.judge = wind::judging::ReadingJudge(judged_by.value_or(wind::judging::JudgeSettings{}));
     channel.is_compared = is_compared(channel.config);
     channel.record = wind::blend::SourceRecord(channel.config.blend.unchanged_for_s);
+    if (const auto promises = channel.config.driver->promises) {
+      const drivers::sensor::PromisedQuantities promised = promises(channel.config.values);
+      channel.quantities = {QuantityWatch(promised.direction), QuantityWatch(promised.gust)};
+    }
     channel.runner = std::make_unique<SensorRunner>(std::move(sensors[index]), clock_, thread);
     channels_.push_back(std::move(channel));
   }
@@ -158,6 +169,8 @@ const wind::WindState& SensorHub::advance() {
       if (!reading.is_held) {
         ++channel.readings;
         channel.last_raw = reading;
+        for (std::size_t i = 0; i < channel.quantities.size(); ++i)
+          channel.quantities[i].take(reading.time.mono, reading.speed_m_s, has(reading, static_cast<Quantity>(i)));
         if (listener_) listener_(index, reading);
       }
       take(index, reading);
@@ -291,12 +304,32 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
                       .driver = channel.config.driver->name,
                       .evidence = evidence_of(index, now),
                       .last_raw = channel.last_raw,
-                      .counts = counts_of(channel)};
+                      .counts = counts_of(channel),
+                      .quantities = quantities_of(index, now)};
     facts.evidence.link = link.state;
     facts.evidence.link_detail = link.detail;
     all.push_back(sensor_status(facts));
   }
   if (auto status = fallback_.status(estimator_.report(channels_.size()))) all.push_back(std::move(*status));
+  return all;
+}
+
+std::vector<wire::QuantityStatus> SensorHub::quantities_of(std::size_t index, MonoTime now) const {
+  std::vector<wire::QuantityStatus> all;
+  const Channel& channel = channels_[index];
+  for (std::size_t i = 0; i < channel.quantities.size(); ++i) {
+    const QuantityWatch& watch = channel.quantities[i];
+    if (!watch.is_expected()) continue;
+    wire::QuantityStatus status{.quantity = static_cast<Quantity>(i), .is_missing = watch.is_missing()};
+    if (watch.last()) status.age_s = std::max(seconds(now - *watch.last()), 0.0);
+    if (status.is_missing) {
+      const DirectionStandIn stand_in = estimator_.is_direction_live(index) ? DirectionStandIn::kOtherSensor
+                                        : watch.last()                      ? DirectionStandIn::kLast
+                                                                            : DirectionStandIn::kConfigured;
+      status.reason = missing_text(status.quantity, status.age_s, stand_in);
+    }
+    all.push_back(std::move(status));
+  }
   return all;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 #include "engine/wind/blend/source_record.hpp"
+#include "engine/wind/judging/quantity_watch.hpp"
 #include "engine/wind/judging/reading_judge.hpp"
 #include "engine/wind/judging/sensor_vote.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
@@ -103,7 +105,8 @@ class SensorHub {
     std::uint64_t link_reports = 0;
     ChangeGate link_gate{kNothingReported};
     ChangeGate state_gate{static_cast<std::uint32_t>(wind::judging::SensorState::kConnecting)};
-    std::optional<wind::WindReading> last_raw;  ///< before calibration
+    std::optional<wind::WindReading> last_raw;                                                  ///< before calibration
+    std::array<wind::judging::QuantityWatch, wind::judging::kQuantityNames.size()> quantities;  ///< by Quantity
   };
 
   void change(std::size_t index, const settings::SensorConfig& config);
@@ -112,6 +115,7 @@ class SensorHub {
   void judge_refusals(Channel& channel) const;
   void compare(MonoTime now);
   SensorEvidence evidence_of(std::size_t index, MonoTime now) const;
+  std::vector<wire::QuantityStatus> quantities_of(std::size_t index, MonoTime now) const;
   void log_link(Channel& channel, MonoTime now) const;
   void log_state(std::size_t index, MonoTime now);
 

@@ -49,6 +49,7 @@ wire::SensorStatus sensor_status(const SensorFacts& facts) {
   status.replayed = evidence.is_replay;
   status.state = state_of(evidence);
   status.state_reason = reason_of(status.state, evidence);
+  status.quantities = facts.quantities;
   return status;
 }
 

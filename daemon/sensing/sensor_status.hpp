@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "daemon/sensing/sensor_diagnosis.hpp"
 #include "daemon/sensing/sensor_runner.hpp"
@@ -30,6 +31,7 @@ struct SensorFacts {
   SensorEvidence evidence;
   std::optional<wind::WindReading> last_raw{};  ///< before calibration
   SensorCounts counts{};
+  std::vector<wire::QuantityStatus> quantities{};
 };
 
 /// The same as a message of the stream. Pure.

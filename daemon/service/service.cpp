@@ -53,6 +53,8 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
+/// What could not be opened at the start is tried again so often.
+constexpr auto kTryAgainAfter = std::chrono::seconds(5);
 
 static_assert(settings::kMostSensors + 1 <= wire::kMaxSensors && settings::kMostScenes <= wire::kMaxScenes);
 
@@ -91,6 +93,7 @@ class Service::Io {
   Io(const settings::Config& config, const ServiceOptions& options)
       : options_(options),
         rate_hz_(config.animation.rate_hz),
+        http_(config.http),
         gusts_(sensing::make_gust_noise(config)),
         animation_(options.with_scenes ? std::make_unique<animation::Animation>(config, gusts_) : nullptr),
         director_(config, [this](const animation::SceneCue& cue) { return loop_ && loop_->cue(cue); }),
@@ -114,7 +117,9 @@ class Service::Io {
       frame_ready_.assign(fcntl(loop_->frame_ready_fd(), F_DUPFD_CLOEXEC, 0));
     }
     if (options.record) history_ = make_history(*options.record);
-    if (!config.http.listen.empty()) web_ = std::make_unique<web::WebServer>(web_settings(config));
+    read_token();
+    open_page();
+    for (const std::string& trouble : troubles()) spdlog::warn("{}; it is tried again", trouble);
     // What is replayed has happened already.
     if (!options.recorded_from) {
       alerts_.emplace(config.alerts, asio::ip::host_name(), alerts::alert_record_file(options.config_file),
@@ -150,6 +155,7 @@ class Service::Io {
     next_wind_ = asio::steady_timer::clock_type::now();
     step_wind();
     send_status();
+    try_again_later();
     if (loop_) {
       wait_for_frame();
       loop_->start();
@@ -187,18 +193,23 @@ class Service::Io {
     settings.raw_refusal = [this](bool is_local) {
       return daemon::settings::control_refusal(control_, is_local, "raw messages cannot be watched");
     };
-    if (const Secret token = token_of(config.http); !token.is_empty()) {
-      settings.is_token = [access = web::Access(token)](const std::string& given) { return access.is_token(given); };
+    settings.trusts_this_machine = !takes_token_;
+    if (takes_token_) {
+      settings.is_token = [this](const std::string& given) {
+        return !token_.is_empty() && web::Access(token_).is_token(given);
+      };
     }
     settings.admission = admission_of(config.stream);
     return settings;
   }
 
-  web::WebSettings web_settings(const settings::Config& config) {
-    web::WebSettings settings{.listen = config.http.listen,
-                              .hosts = config.http.hosts,
-                              .token = token_of(config.http),
-                              .reading_takes_token = config.http.reading_takes_token,
+  web::WebSettings web_settings() {
+    web::WebSettings settings{.listen = http_.listen,
+                              .hosts = http_.hosts,
+                              .takes_token = takes_token_,
+                              .token = token_,
+                              .reading_takes_token = http_.reading_takes_token,
+                              .proxies = http_.proxies,
                               .software = with_version("yuragi"),
                               .tick_rate_hz = rate_hz_};
     settings.hosts.push_back(asio::ip::host_name());
@@ -224,14 +235,61 @@ class Service::Io {
         });
   }
 
-  static Secret token_of(const settings::HttpConfig& http) {
-    if (http.token_file.empty()) return {};
-    auto token = drivers::sensor::secret_in_file(http.token_file);
+  // ---- the token and the page: what does not work at the start is tried again ----
+
+  /// Reads the token, unless it is known. Returns true if it was not known before.
+  bool read_token() {
+    token_trouble_.clear();
+    if (!takes_token_ || !token_.is_empty()) return false;
+    auto token = drivers::sensor::secret_in_file(http_.token_file);
     std::string why = token ? "" : token.error().message;
-    if (token && token->reveal().size() < web::Access::kShortestToken) why = "\"" + http.token_file + "\" is too short";
-    if (why.empty()) return *token;
-    throw FailureError(
-        {"[http] token_file: " + why + "; `yuragi token --new` makes a token", FailureKind::kUnavailable});
+    if (token && token->reveal().size() < web::Access::kShortestToken)
+      why = "\"" + http_.token_file + "\" is too short";
+    if (why.empty()) {
+      token_ = std::move(*token);
+      return true;
+    }
+    token_trouble_ = "[http] token_file: " + why +
+                     "; until it can be read nobody changes anything. `yuragi token --new` makes a token";
+    return false;
+  }
+
+  void open_page() {
+    page_trouble_.clear();
+    if (http_.listen.empty()) return;
+    try {
+      web_ = std::make_unique<web::WebServer>(web_settings());
+    } catch (const FailureError& error) {
+      page_trouble_ = "the page and HTTP are not served: " + std::string(error.what());
+    }
+  }
+
+  std::vector<std::string> troubles() const {
+    std::vector<std::string> all;
+    for (const std::string* const trouble : {&token_trouble_, &page_trouble_}) {
+      if (!trouble->empty()) all.push_back(*trouble);
+    }
+    return all;
+  }
+
+  void try_again_later() {
+    if (troubles().empty()) return;
+    again_timer_.expires_after(kTryAgainAfter);
+    again_timer_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      contain("opening the page", [this] { try_again(); });
+      try_again_later();
+    });
+  }
+
+  void try_again() {
+    if (read_token()) {
+      spdlog::info("the token in {} is used from now on", http_.token_file);
+      if (web_) web_->set_token(token_);
+    }
+    if (page_trouble_.empty()) return;
+    open_page();
+    if (web_) spdlog::info("answering at http://{}", web_->local_endpoint());
   }
 
   static stream::AdmissionLimits admission_of(const settings::StreamConfig& stream) {
@@ -458,9 +516,10 @@ class Service::Io {
       status.animation = animation_status();
     }
     if (recorder_) status.recorder = to_wire(recorder_->status());
+    status.troubles = troubles();
     const auto here = std::make_shared<const wire::Bytes>(wire::encode(status));
     stream::SharedBytes elsewhere;
-    if (stream_.has_remote_clients() || (web_ && web_->has_remote_clients())) {
+    if (stream_.has_untrusted_clients() || (web_ && web_->has_untrusted_clients())) {
       wire::Sensors told = status;
       folders_.remove_from(told);
       elsewhere = std::make_shared<const wire::Bytes>(wire::encode(told));
@@ -504,6 +563,7 @@ class Service::Io {
     end_timer_.cancel();
     wind_timer_.cancel();
     status_timer_.cancel();
+    again_timer_.cancel();
     frame_ready_.close();
     io_.stop();
   }
@@ -516,7 +576,7 @@ class Service::Io {
   asio::signal_set signals_{io_};
   Hangups hangups_{io_};
   Terminal terminal_;
-  asio::steady_timer end_timer_{io_}, wind_timer_{io_}, status_timer_{io_};
+  asio::steady_timer end_timer_{io_}, wind_timer_{io_}, status_timer_{io_}, again_timer_{io_};
   asio::steady_timer::time_point next_wind_;
   animation::DurationHistogram io_lateness_;  ///< of each step of the wind
   animation::RecentLateness recent_io_lateness_{io_lateness_};
@@ -525,6 +585,11 @@ class Service::Io {
   asio::posix::stream_descriptor frame_ready_{io_};
   std::uint64_t frames_made_ = 0;
   std::optional<std::string> failure_;  ///< why it ends although nobody asked it to
+
+  settings::HttpConfig http_;
+  const bool takes_token_ = !http_.token_file.empty();
+  Secret token_;                              ///< empty: there is none, or it cannot be read
+  std::string token_trouble_, page_trouble_;  ///< empty: none
 
   // In this order, so that a second daemon fails at the address in use before it touches a sensor. The recording is
   // opened last, once nothing else can fail: a start that fails writes nothing into it.

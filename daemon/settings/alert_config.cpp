@@ -49,7 +49,7 @@ const std::array kAlertParameters = {
               .help = "it ends when it has no longer been so for this long"},
     Parameter{.name = "command",
               .unit = "",
-              .default_value = std::string(),
+              .default_value = Secret(),  // it may hold a password
               .help = "run by /bin/sh at its beginning and at its end, for at most a minute, with YURAGI_ALERT (its "
                       "name), YURAGI_ALERT_STATE (began or ended) and YURAGI_ALERT_MESSAGE (a sentence) in its "
                       "environment; empty: none",
@@ -80,8 +80,9 @@ Result<AlertConfig, ParameterError> alert_config_of(std::string name, const Para
   const bool is_wind = alert.when == AlertCondition::kWindAbove;
   alert.after_s = values.has("after") ? values.number("after") : is_wind ? 0.0 : kDefaultAfter_s;
   alert.end_after_s = values.number("end_after");
-  alert.command = values.text("command");
   // What was recorded or printed has only a word in its place, and can tell nobody.
+  const Secret& command = std::get<Secret>(values.all().find("command")->second);
+  if (!command.is_withheld()) alert.command = command.reveal();
   const Secret& webhook = std::get<Secret>(values.all().find("webhook")->second);
   if (!webhook.is_withheld()) alert.webhook = webhook;
 
@@ -90,7 +91,7 @@ Result<AlertConfig, ParameterError> alert_config_of(std::string name, const Para
   const std::string& url = alert.webhook.reveal();
   if (!url.empty() && !url.starts_with("http://") && !url.starts_with("https://"))
     return ParameterError{"webhook", "takes an URL that begins with http:// or https://"};
-  if (alert.command.empty() && webhook.is_empty())
+  if (command.is_empty() && webhook.is_empty())
     return ParameterError{"command", "tells nobody; give it a command or a webhook"};
   return alert;
 }

@@ -54,14 +54,11 @@ const std::array kStreamParameters = {
 constexpr std::array<std::string_view, 2> kReaders = {"anyone", "token"};
 
 const std::array kHttpParameters = {
-    Parameter{
-        .name = "listen",
-        .unit = "",
-        .default_value = std::string(),
-        .help =
-            "address and port that browsers, scripts and Prometheus ask: 127.0.0.1:7480, or 0.0.0.0:7480 for "
-            "other machines, too; empty: none. What may be changed by this machine, [stream] control says; by others, "
-            "token_file"},
+    Parameter{.name = "listen",
+              .unit = "",
+              .default_value = std::string(),
+              .help = "address and port that browsers, scripts and Prometheus ask: 127.0.0.1:7480, or 0.0.0.0:7480 for "
+                      "other machines, too; empty: none. Who may change something: token_file and [stream] control"},
     Parameter{.name = "hosts",
               .unit = "",
               .default_value = std::string(),
@@ -71,14 +68,21 @@ const std::array kHttpParameters = {
         .name = "token_file",
         .unit = "",
         .default_value = std::string(),
-        .help = "a file with the token, which `yuragi token --new` makes; clients of other machines that show it, and "
-                "browsers that were paired with `yuragi token`, may change what this machine may; empty: they "
-                "change nothing",
+        .help = "a file with the token, which `yuragi token --new` makes; then only clients of the page and the stream "
+                "that show it, and browsers that were paired with `yuragi token`, change something, whatever their "
+                "address; empty: only this machine does. Behind a reverse proxy a token is required",
         .is_secret_file = true},
+    Parameter{
+        .name = "proxies",
+        .unit = "",
+        .default_value = std::string(),
+        .help = "addresses, with blanks between them, of reverse proxies whose X-Forwarded-For is believed: 127.0.0.1; "
+                "for the log and the limit of attempts to pair"},
     Parameter{.name = "readers",
               .unit = "",
               .default_value = std::string("anyone"),
-              .help = "who may read from other machines: anyone who reaches the port, or only those with the token",
+              .help = "who may read over HTTP: anyone who reaches the port, or only those with the token; this machine "
+                      "always reads /healthz",
               .choices = kReaders},
 };
 

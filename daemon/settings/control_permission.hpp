@@ -26,7 +26,9 @@ constexpr ControlPermission control_permission_named(std::string_view name) noex
 inline std::optional<std::string> control_refusal(ControlPermission allowed, bool is_local, const std::string& what) {
   if (allowed == ControlPermission::kNobody) return what + ": the configuration has [stream] control = \"nobody\"";
   if (allowed == ControlPermission::kLoopback && !is_local) {
-    return what + " from another machine: the configuration has [stream] control = \"loopback\"";
+    return what +
+           " from here: [stream] control = \"loopback\" allows it to this machine or, if there is an [http] "
+           "token_file, to whoever shows the token (YURAGI_TOKEN_FILE=FILE)";
   }
   return std::nullopt;
 }

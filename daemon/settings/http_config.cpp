@@ -2,6 +2,8 @@
 
 #include <sstream>
 
+#include <arpa/inet.h>
+
 #include "engine/base/address.hpp"
 
 namespace yuragi::daemon::settings {
@@ -10,7 +12,8 @@ Result<HttpConfig, ParameterError> http_config_of(const ParameterValues& values)
   HttpConfig config{.listen = values.text("listen"),
                     .hosts = {},
                     .token_file = values.text("token_file"),
-                    .reading_takes_token = values.text("readers") == "token"};
+                    .reading_takes_token = values.text("readers") == "token",
+                    .proxies = {}};
   if (config.reading_takes_token && config.token_file.empty())
     return ParameterError{"readers", "\"token\" takes a token_file; `yuragi token --new` makes one"};
   if (!config.listen.empty()) {
@@ -24,6 +27,15 @@ Result<HttpConfig, ParameterError> http_config_of(const ParameterValues& values)
                                          "\" is no name; allowed: names with blanks between them, such as "
                                          "\"wall.example.org wall\""};
     config.hosts.push_back(name);
+  }
+  std::istringstream proxies(values.text("proxies"));
+  for (std::string address; proxies >> address;) {
+    in6_addr parsed{};
+    if (inet_pton(AF_INET, address.c_str(), &parsed) != 1 && inet_pton(AF_INET6, address.c_str(), &parsed) != 1)
+      return ParameterError{"proxies", "\"" + address +
+                                           "\" is no address; allowed: addresses with blanks between them, such as "
+                                           "\"127.0.0.1 ::1\""};
+    config.proxies.push_back(address);
   }
   return config;
 }

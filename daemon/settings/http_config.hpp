@@ -12,8 +12,9 @@ namespace yuragi::daemon::settings {
 struct HttpConfig {
   std::string listen;              ///< HOST:PORT, see parse_address(); empty: nowhere
   std::vector<std::string> hosts;  ///< further names by which this machine is called
-  std::string token_file;          ///< empty: there is no token
+  std::string token_file;          ///< if there is one, rights come from its token only; empty: from the address
   bool reading_takes_token = false;
+  std::vector<std::string> proxies;  ///< addresses whose X-Forwarded-For is believed
 };
 
 /// From the values of http_parameters(). An error names the key.

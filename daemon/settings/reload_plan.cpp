@@ -33,6 +33,7 @@ constexpr std::array kKeyRules = {
     KeyRule{"http", "listen", kTakesRestart},
     KeyRule{"http", "hosts", kTakesRestart},
     KeyRule{"http", "token_file", kTakesRestart},
+    KeyRule{"http", "proxies", kTakesRestart},
     KeyRule{"http", "readers", kTakesRestart},
 
     KeyRule{"recording", "file", kTakesRestart},

@@ -1,6 +1,7 @@
 #include "daemon/settings/withhold_secrets.hpp"
 
 #include <algorithm>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -8,6 +9,7 @@
 
 #include <toml++/toml.h>
 
+#include "daemon/settings/alert_config.hpp"
 #include "daemon/settings/config_edit.hpp"
 #include "daemon/settings/toml_places.hpp"
 #include "drivers/sensor/driver.hpp"
@@ -16,20 +18,32 @@
 namespace yuragi::daemon::settings {
 namespace {
 
-/// The names of a driver's secrets; of all secrets where there is no such driver.
-std::vector<std::string_view> secret_keys_of(std::string_view driver) {
-  std::vector<std::string_view> keys;
-  std::vector<std::string_view> keys_of_all;
+using Keys = std::vector<std::string_view>;
+
+void add_secret_keys(std::span<const Parameter> parameters, Keys& keys) {
+  for (const Parameter& parameter : parameters) {
+    if (std::holds_alternative<Secret>(parameter.default_value)) keys.push_back(parameter.name);
+  }
+}
+
+/// Returns the names of a driver's secrets; of all drivers' if there is no such driver.
+Keys secret_keys_of(std::string_view driver) {
+  Keys keys;
+  Keys keys_of_all;
   bool is_known = false;
   for (const drivers::sensor::DriverDescription* description : drivers::sensor::driver_table()) {
-    is_known = is_known || description->name == driver;
-    for (const Parameter& parameter : description->parameters) {
-      if (!std::holds_alternative<Secret>(parameter.default_value)) continue;
-      keys_of_all.push_back(parameter.name);
-      if (description->name == driver) keys.push_back(parameter.name);
-    }
+    add_secret_keys(description->parameters, keys_of_all);
+    if (description->name != driver) continue;
+    is_known = true;
+    add_secret_keys(description->parameters, keys);
   }
   return is_known ? keys : keys_of_all;
+}
+
+Keys secret_keys_of_alerts() {
+  Keys keys;
+  add_secret_keys(alert_parameters(), keys);
+  return keys;
 }
 
 /// Withholds values of one text.
@@ -40,9 +54,9 @@ class SecretWithholder {
 
   toml::table& root() { return root_; }
 
-  /// The secrets among the values of a sensor's table.
-  void withhold(toml::table& table, std::string_view driver) {
-    for (const std::string_view key : secret_keys_of(driver)) {
+  /// The values of these keys of a table.
+  void withhold(toml::table& table, const Keys& secret_keys) {
+    for (const std::string_view key : secret_keys) {
       const toml::node* node = table.get(key);
       if (node == nullptr) continue;
       const std::string* held = node->is_string() ? &node->as_string()->get() : nullptr;
@@ -99,17 +113,22 @@ Result<WithheldText, Failure> withhold_in(std::string_view toml_text, const With
 
 Result<WithheldText, Failure> withhold_in_configuration(std::string_view toml_text) {
   return withhold_in(toml_text, [](SecretWithholder& withholder) {
-    toml::array* const sensors = withholder.root()["sensor"].as_array();
-    if (sensors == nullptr) return;
-    for (toml::node& element : *sensors) {
-      toml::table* const sensor = element.as_table();
-      if (sensor != nullptr) withholder.withhold(*sensor, (*sensor)["driver"].value_or(std::string()));
-    }
+    const auto withhold_of_each = [&](const char* list, const auto& keys_of) {
+      toml::array* const tables = withholder.root()[list].as_array();
+      if (tables == nullptr) return;
+      for (toml::node& element : *tables) {
+        if (toml::table* const table = element.as_table()) withholder.withhold(*table, keys_of(*table));
+      }
+    };
+    withhold_of_each(
+        "sensor", [](const toml::table& sensor) { return secret_keys_of(sensor["driver"].value_or(std::string())); });
+    withhold_of_each("alert", [](const toml::table&) { return secret_keys_of_alerts(); });
   });
 }
 
 Result<WithheldText, Failure> withhold_in_options(std::string_view toml_text, std::string_view driver) {
-  return withhold_in(toml_text, [&](SecretWithholder& withholder) { withholder.withhold(withholder.root(), driver); });
+  return withhold_in(
+      toml_text, [&](SecretWithholder& withholder) { withholder.withhold(withholder.root(), secret_keys_of(driver)); });
 }
 
 }  // namespace yuragi::daemon::settings

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/count_text.hpp"
+#include "engine/wire/sensor_trouble.hpp"
 
 namespace yuragi::daemon::state {
 namespace {
@@ -27,9 +28,8 @@ std::string stutter_of(const wire::Sensors& sensors) {
   const auto skipped = static_cast<double>(sensors.recent_skipped_ticks);
   if (ticks < kMinJudgedTicks || skipped < kMaxSkippedShare * ticks) return {};
   return fmt::format(
-      "the animation stutters: {:.1f} % of the ticks of the last 10 minutes were skipped ({} of {}); the machine has "
-      "too "
-      "much to do: end other programs, or make scenes smaller (`yuragi status` shows what each takes)",
+      "the animation stutters: {:.1f} % of the ticks of the last 10 minutes were skipped ({} of {}). The machine has "
+      "too much to do: end other programs, or make scenes smaller (`yuragi status` shows what each takes)",
       100.0 * skipped / ticks, sensors.recent_skipped_ticks, sensors.recent_ticks);
 }
 
@@ -38,10 +38,10 @@ std::string stutter_of(const wire::Sensors& sensors) {
 std::vector<std::string> needs_attention(const wire::Sensors& sensors) {
   std::vector<std::string> all;
   for (const wire::SensorStatus& sensor : sensors.sensors) {
-    if (is_believed(sensor.state)) continue;
-    const std::string& why = sensor.state_reason.empty() ? sensor.detail : sensor.state_reason;
-    all.push_back(fmt::format("sensor {} is {}{}{}", sensor.name, name_of(sensor.state), why.empty() ? "" : ": ", why));
+    if (const std::string trouble = trouble_of(sensor); !trouble.empty())
+      all.push_back(fmt::format("sensor {} {}", sensor.name, trouble));
   }
+  all.insert(all.end(), sensors.troubles.begin(), sensors.troubles.end());
   if (sensors.recorder) add_recorder_attention(all, *sensors.recorder);
   if (const std::string stutter = stutter_of(sensors); !stutter.empty()) all.push_back(stutter);
   if (sensors.io_lateness && sensors.io_lateness->p99_s > kLateIo_s) {

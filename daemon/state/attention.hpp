@@ -17,8 +17,8 @@ inline constexpr double kMinJudgedTicks = 600.0;
 inline constexpr double kLateIo_s = 0.1;
 
 /// What of a running daemon needs a person's attention, a sentence for each thing: a sensor whose readings are not
-/// used, a recorder that cannot write, that has dropped readings or whose disk is nearly full, and steps that are
-/// skipped or late. Empty: all is well. Pure.
+/// used or lack what they should have, a recorder that cannot write, that has dropped readings or whose disk is nearly
+/// full, and steps that are skipped or late. Empty: all is well. Pure.
 std::vector<std::string> needs_attention(const wire::Sensors& sensors);
 
 }  // namespace yuragi::daemon::state

@@ -40,6 +40,17 @@ ordered_json json_of_wind(const wind::WindState& wind) {
           {"is_place_configured", wind.is_place_configured}};
 }
 
+ordered_json json_of_quantities(const wire::SensorStatus& sensor) {
+  ordered_json all = ordered_json::array();
+  for (const wire::QuantityStatus& quantity : sensor.quantities) {
+    all.push_back({{"name", name_of(quantity.quantity)},
+                   {"age_s", json_or_null(quantity.age_s)},
+                   {"is_missing", quantity.is_missing},
+                   {"reason", quantity.reason}});
+  }
+  return all;
+}
+
 ordered_json json_of_sensor(const wire::SensorStatus& sensor) {
   ordered_json refused = ordered_json::object();
   for (const auto& [reason, count] : sensor.refused) refused[reason] = count;
@@ -52,6 +63,7 @@ ordered_json json_of_sensor(const wire::SensorStatus& sensor) {
           {"speed_m_s", json_or_null(sensor.speed_m_s)},
           {"direction_deg", json_or_null(sensor.direction_deg)},
           {"gust_m_s", json_or_null(sensor.gust_m_s)},
+          {"quantities", json_of_quantities(sensor)},
           {"raw_speed_m_s", json_or_null(sensor.raw_speed_m_s)},
           {"raw_direction_deg", json_or_null(sensor.raw_direction_deg)},
           {"age_s", sensor.readings > 0 ? ordered_json(sensor.age_s) : ordered_json(nullptr)},

@@ -11,11 +11,11 @@ constexpr auto kReloadTimeout = std::chrono::seconds(60);
 }  // namespace
 
 Result<wire::ControlReply, Failure> ask(const std::string& address, std::string_view client,
-                                        const wire::Control& control, Nanoseconds timeout) {
+                                        const wire::Control& control, Nanoseconds timeout, const Secret& token) {
   auto stream = StreamClient::connect(address, kControlConnectTimeout);
   if (!stream) return Failure{stream.error().message + ". Is `yuragi run` running?", FailureKind::kUnavailable};
   // Where this fails the daemon has closed the connection: its Hello, which is still to be read, says why.
-  if (stream->subscribe({.poses = false, .client = std::string(client)})) stream->send(control);
+  if (stream->subscribe({.poses = false, .client = std::string(client), .token = token})) stream->send(control);
   while (true) {
     auto message = stream->receive(timeout);
     if (!message) return connection_lost(address, message.error());
@@ -24,8 +24,9 @@ Result<wire::ControlReply, Failure> ask(const std::string& address, std::string_
   }
 }
 
-Result<wire::ReloadReport, Failure> ask_to_reload(const std::string& address, const std::string& file) {
-  auto reply = ask(address, "reload", {.scene = "", .reload = wire::ReloadCommand{file}}, kReloadTimeout);
+Result<wire::ReloadReport, Failure> ask_to_reload(const std::string& address, const std::string& file,
+                                                  const Secret& token) {
+  auto reply = ask(address, "reload", {.scene = "", .reload = wire::ReloadCommand{file}}, kReloadTimeout, token);
   if (!reply) return reply.error();
   if (reply->reload) return std::move(*reply->reload);
   return Failure{

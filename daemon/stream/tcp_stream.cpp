@@ -76,7 +76,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         limits_(limits_of(peer, feed_->settings.limits)),
         queue_(limits_, feed_->hello, feed_->settings.now()),
         peer_(std::move(peer)),
-        is_trusted_(peer_.is_local) {
+        is_trusted_(peer_.is_local && feed_->settings.trusts_this_machine) {
     error_code ignored;
     endpoint_ = text_of(socket_.remote_endpoint(ignored));
     socket_.set_option(tcp::no_delay(true), ignored);
@@ -86,6 +86,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   bool is_open() const { return socket_.is_open(); }
   const Peer& peer() const { return peer_; }
+  bool is_trusted() const { return is_trusted_; }
 
   void start() {
     feed_->log->info("client {} connected", endpoint_);
@@ -350,8 +351,8 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
         std::count_if(connections_.begin(), connections_.end(), [](const auto& c) { return c->is_open(); }));
   }
 
-  bool has_remote_clients() const {
-    return std::ranges::any_of(connections_, [](const auto& c) { return c->is_open() && !c->peer().is_local; });
+  bool has_untrusted_clients() const {
+    return std::ranges::any_of(connections_, [](const auto& c) { return c->is_open() && !c->is_trusted(); });
   }
 
   void publish(SharedBytes frame) {
@@ -517,8 +518,8 @@ void TcpStream::publish_scenes(SharedBytes scenes) {
 void TcpStream::publish_sensors(SharedBytes here, SharedBytes elsewhere) {
   server_->publish_sensors(std::move(here), std::move(elsewhere));
 }
-bool TcpStream::has_remote_clients() const {
-  return server_->has_remote_clients();
+bool TcpStream::has_untrusted_clients() const {
+  return server_->has_untrusted_clients();
 }
 std::size_t TcpStream::client_count() const {
   return server_->client_count();

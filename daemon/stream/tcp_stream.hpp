@@ -35,10 +35,11 @@ struct TcpStreamSettings {
       on_parameters = {};
   /// Why a client may not have raw messages, if so; then the connection ends with that reason. Empty: everybody may.
   std::function<std::optional<std::string>(bool is_local)> raw_refusal = {};
-  /// Is this the installation's token? A client of another machine that shows it in its Subscribe is then treated as
-  /// one of this machine, wherever `is_local` is asked about above; one that shows a wrong token is let go. Empty:
-  /// there is no token.
+  /// Is this the installation's token? A client that shows it in its Subscribe is trusted, wherever `is_local` is asked
+  /// about above; one that shows a wrong token is disconnected. Empty: there is no token.
   std::function<bool(const std::string& token)> is_token = {};
+  /// Are clients of this machine trusted without a token?
+  bool trusts_this_machine = true;
   ClientLimits limits = {};
   LogAllowance::Settings log = {};                           ///< how many lines clients may cause in the log
   Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are checked
@@ -86,7 +87,7 @@ class TcpStream final : public Transport {
   void publish_scenes(SharedBytes scenes) override;
   void publish_sensors(SharedBytes here, SharedBytes elsewhere) override;
   std::size_t client_count() const override;
-  bool has_remote_clients() const override;
+  bool has_untrusted_clients() const override;
 
   /// Has any client subscribed to the raw messages of this sensor's device?
   bool wants_trace(std::string_view sensor) const;

@@ -32,13 +32,13 @@ class Transport {
   virtual void publish_scenes(SharedBytes scenes) = 0;
 
   /// The newest state of the sensors (an encoded wire::Sensors): one message for clients of this machine, and one for
-  /// those of others, which are told less. `elsewhere` may be null while has_remote_clients() is false; a client that
-  /// would need it waits for the next one.
+  /// those of others, which are told less. `elsewhere` may be null while has_untrusted_clients() is false; a client
+  /// that would need it waits for the next one.
   virtual void publish_sensors(SharedBytes here, SharedBytes elsewhere) = 0;
 
   /// Clients connected now; and is any of them on another machine?
   virtual std::size_t client_count() const = 0;
-  virtual bool has_remote_clients() const = 0;
+  virtual bool has_untrusted_clients() const = 0;
 
   /// Closes all connections and accepts no more. A second call does nothing.
   virtual void close() = 0;

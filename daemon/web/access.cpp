@@ -107,12 +107,14 @@ std::string Access::pairing_code(double utc_s) const {
   return code;
 }
 
-bool Access::is_pairing_code(std::string_view given, double utc_s) const {
+std::optional<std::int64_t> Access::pairing_step_of(std::string_view given, double utc_s) const {
   const std::string typed = typed_code(given);
-  const std::int64_t step = step_at(utc_s);
-  const bool is_of_now = are_same(typed, code_of(token_, step));
-  const bool is_of_before = are_same(typed, code_of(token_, step - 1));
-  return is_of_now || is_of_before;
+  const std::int64_t now = step_at(utc_s);
+  std::optional<std::int64_t> found;
+  for (std::int64_t step = now - kCodeSteps + 1; step <= now; ++step) {
+    if (are_same(typed, code_of(token_, step))) found = step;
+  }
+  return found;
 }
 
 std::string Access::new_session(double utc_s) const {
@@ -126,14 +128,6 @@ bool Access::is_session(std::string_view given, double utc_s) const {
   // One that seems to be of the future was made before the clock was set.
   if (utc_s - static_cast<double>(made_utc_s) > kSession_s) return false;
   return are_same(given, session_of(token_, made_utc_s));
-}
-
-bool PairingTries::take(double now_s) {
-  left_ = std::min(kBurst, left_ + std::max(0.0, now_s - at_s_));
-  at_s_ = now_s;
-  if (left_ < 1.0) return false;
-  left_ -= 1.0;
-  return true;
 }
 
 }  // namespace yuragi::daemon::web

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,12 +13,13 @@ namespace yuragi::daemon::web {
 /// made of it. Nothing but the token is kept: another token ends all sessions, and they outlive a restart.
 ///
 /// A pairing code is a one-time password of the time (D. M'Raihi and others, RFC 6238, 2011) with SHA-256, 40 bits and
-/// steps of kCodeStep_s. What is compared is compared in constant time. Pure but for construction; thread-safe.
-/// Times are seconds since 1970.
+/// steps of kCodeStep_s. All comparisons take constant time. Pure except for construction; thread-safe. Times are
+/// seconds since 1970.
 class Access {
  public:
-  /// So long a code is shown; it is taken for as long again.
-  static constexpr double kCodeStep_s = 600.0;
+  /// There is a new code each kCodeStep_s. It is valid for kCodeSteps of them, 10 minutes.
+  static constexpr double kCodeStep_s = 30.0;
+  static constexpr std::int64_t kCodeSteps = 20;
   static constexpr double kSession_s = 365.0 * 86400.0;
   /// Fewer characters can be guessed.
   static constexpr std::size_t kShortestToken = 16;
@@ -30,8 +33,9 @@ class Access {
 
   /// For a person to type: "K7QM-2XPD".
   std::string pairing_code(double utc_s) const;
-  /// Small letters, and O, I and L for 0 and 1, count as well.
-  bool is_pairing_code(std::string_view given, double utc_s) const;
+  /// Returns the step whose code this is, so that each can be used once; nullopt: it is not valid at `utc_s`. Small
+  /// letters, and O, I and L for 0 and 1, are accepted.
+  std::optional<std::int64_t> pairing_step_of(std::string_view given, double utc_s) const;
 
   /// For a paired browser to keep: when it was made, and proof of that.
   std::string new_session(double utc_s) const;
@@ -39,19 +43,6 @@ class Access {
 
  private:
   Secret token_;
-};
-
-/// At most so many tries to pair: kBurst at once, then one a second. Time is a parameter. Thread-safe: no.
-class PairingTries {
- public:
-  static constexpr double kBurst = 10.0;
-
-  /// Is there one at `now_s`, of a clock that is never set? Then it is used up.
-  bool take(double now_s);
-
- private:
-  double left_ = kBurst;
-  double at_s_ = 0.0;
 };
 
 }  // namespace yuragi::daemon::web

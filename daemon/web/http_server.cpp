@@ -107,6 +107,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
         .cookie = field(http::field::cookie),
         .if_none_match = field(http::field::if_none_match),
         .body = message.body(),
+        .forwarded_for = text_of(message["X-Forwarded-For"]),
         .is_forwarded = message.count("Forwarded") + message.count("X-Forwarded-For") + message.count("X-Real-IP") > 0,
         .is_https = text_of(message["X-Forwarded-Proto"]) == "https",
         .client = client_};

@@ -30,8 +30,9 @@ struct HttpRequest {
   std::string cookie = {};
   std::string if_none_match = {};
   std::string body = {};
-  bool is_forwarded = false;  ///< a proxy says that it sends it for another
-  bool is_https = false;      ///< a proxy says that it came to it by HTTPS
+  std::string forwarded_for = {};  ///< X-Forwarded-For: for whom a proxy sends it
+  bool is_forwarded = false;       ///< a proxy says that it sends it for another
+  bool is_https = false;           ///< a proxy says that it came to it by HTTPS
   stream::Peer client = {};
 };
 

@@ -64,6 +64,7 @@ void add_sensors(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
   Family direction = gauge("yuragi_sensor_direction_degrees", "Its direction, clockwise from north");
   Family age = gauge("yuragi_sensor_age_seconds", "Time since the last reading");
   Family believed = gauge("yuragi_sensor_believed", "1 where its readings are used for the wind");
+  Family missing = gauge("yuragi_sensor_quantity_missing", "1 where readings come without what they should have");
   Family state = gauge("yuragi_sensor_state", "1 for the state that the sensor is in");
   Family readings = counter("yuragi_sensor_readings_total", "Readings since the daemon began");
   Family messages = counter("yuragi_sensor_messages_total", "Messages of its device, of use or not");
@@ -80,6 +81,8 @@ void add_sensors(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
     if (sensor.direction_deg) direction.add(*sensor.direction_deg, labels);
     if (sensor.readings > 0) age.add(sensor.age_s, labels);
     believed.add(is_believed(sensor.state) ? 1.0 : 0.0, labels);
+    for (const wire::QuantityStatus& quantity : sensor.quantities)
+      missing.add(quantity.is_missing ? 1.0 : 0.0, with("quantity", name_of(quantity.quantity)));
     for (const std::string_view each : wind::judging::kSensorStateNames)
       state.add(each == name_of(sensor.state) ? 1.0 : 0.0, with("state", each));
     readings.add(sensor.readings, labels);
@@ -87,12 +90,13 @@ void add_sensors(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
     for (const auto& [reason, count] : sensor.refused) refused.add(count, with("reason", reason));
     reconnects.add(sensor.reconnects, labels);
   }
-  for (Family* family : {&speed, &direction, &age, &believed, &state, &readings, &messages, &refused, &reconnects})
+  for (Family* family :
+       {&speed, &direction, &age, &believed, &missing, &state, &readings, &messages, &refused, &reconnects})
     all.push_back(family->take());
 }
 
 void add_lateness(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
-  Family lateness = gauge("yuragi_lateness_seconds", "How late steps were since the daemon began, by thread");
+  Family lateness = gauge("yuragi_lateness_seconds", "How late the steps of the last 10 minutes were, by thread");
   const auto add = [&lateness](const char* thread, const std::optional<wire::Lateness>& of) {
     if (!of) return;
     lateness.add(of->p50_s, {{"thread", thread}, {"quantile", "0.5"}});
@@ -125,6 +129,17 @@ void add_clients(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
                     .take());
 }
 
+void add_web(std::vector<MetricFamily>& all, const WebCounts& counts) {
+  all.push_back(counter("yuragi_http_pairings_total", "Attempts of browsers to pair, by result")
+                    .add(counts.pairings, {{"result", "paired"}})
+                    .add(counts.failed_pairings, {{"result", "refused"}})
+                    .take());
+  all.push_back(counter("yuragi_http_refused_tokens_total", "Requests with a token or session that is not valid")
+                    .add(counts.refused_tokens)
+                    .take());
+  all.push_back(counter("yuragi_http_changes_total", "Requests that changed something").add(counts.changes).take());
+}
+
 void add_recorder(std::vector<MetricFamily>& all, const wire::RecorderStatus& recorder) {
   all.push_back(gauge("yuragi_recorder_writing", "1 where the recording can be written")
                     .add(recorder.state == wire::RecorderState::kWriting ? 1.0 : 0.0)
@@ -138,7 +153,7 @@ void add_recorder(std::vector<MetricFamily>& all, const wire::RecorderStatus& re
 
 }  // namespace
 
-std::string metrics_text(const wire::Sensors& sensors, const std::string& software) {
+std::string metrics_text(const wire::Sensors& sensors, const std::string& software, const WebCounts& counts) {
   std::vector<MetricFamily> all;
   all.push_back(gauge("yuragi_build_info", "The program").add(1.0, {{"software", software}}).take());
   add_wind(all, sensors);
@@ -146,6 +161,7 @@ std::string metrics_text(const wire::Sensors& sensors, const std::string& softwa
   add_lateness(all, sensors);
   if (sensors.animation) add_animation(all, *sensors.animation);
   add_clients(all, sensors);
+  add_web(all, counts);
   if (sensors.recorder) add_recorder(all, *sensors.recorder);
   return prometheus::TextSerializer().prometheus::Serializer::Serialize(all);
 }

@@ -2,12 +2,13 @@
 
 #include <string>
 
+#include "daemon/web/web_counts.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::web {
 
 /// The state of the daemon in the text format of Prometheus 0.0.4. Names have their unit at the end, in base units.
 /// Pure.
-std::string metrics_text(const wire::Sensors& sensors, const std::string& software);
+std::string metrics_text(const wire::Sensors& sensors, const std::string& software, const WebCounts& counts = {});
 
 }  // namespace yuragi::daemon::web

@@ -1,5 +1,6 @@
 #include "daemon/web/permission.hpp"
 
+#include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -7,11 +8,14 @@
 
 #include "daemon/web/problem.hpp"
 #include "engine/base/json_text.hpp"
+#include "engine/base/printable_text.hpp"
 
 namespace yuragi::daemon::web {
 namespace {
 
 constexpr std::string_view kBearer = "Bearer ";
+/// Of an IPv6 address with its zone; what is longer is no address.
+constexpr std::size_t kMaxAddressCharacters = 64;
 
 /// The value of a cookie (A. Barth, RFC 6265, 2011, 5.4); empty where it is not there.
 std::string_view cookie_named(std::string_view name, std::string_view cookies) {
@@ -28,8 +32,9 @@ std::string_view cookie_named(std::string_view name, std::string_view cookies) {
 
 }  // namespace
 
-bool is_trusted(const HttpRequest& request, const Access* access, double utc_s) {
-  if (request.client.is_local && !request.is_forwarded) return true;
+bool is_trusted(const HttpRequest& request, const Trust& trust, double utc_s) {
+  if (!trust.takes_token) return request.client.is_local && !request.is_forwarded;
+  const Access* const access = trust.access;
   if (access == nullptr) return false;
   if (request.authorization.starts_with(kBearer) &&
       access->is_token(std::string_view(request.authorization).substr(kBearer.size())))
@@ -38,35 +43,64 @@ bool is_trusted(const HttpRequest& request, const Access* access, double utc_s) 
   return !session.empty() && access->is_session(session, utc_s);
 }
 
-std::optional<HttpResponse> permission_refusal(const HttpRequest& request, bool is_trusted, bool has_token,
+bool shows_credentials(const HttpRequest& request) {
+  return !request.authorization.empty() || !cookie_named(kSessionCookie, request.cookie).empty();
+}
+
+std::optional<HttpResponse> permission_refusal(const HttpRequest& request, bool is_trusted, const Trust& trust,
                                                bool reading_takes_token) {
   const bool only_reads = request.method == "GET" || request.method == "HEAD";
   if (is_trusted || (only_reads && !reading_takes_token)) return std::nullopt;
-  HttpResponse refusal = problem(
-      401, "Not allowed from here",
-      has_token
-          ? "from other machines this takes the token (Authorization: Bearer TOKEN), or a browser that was paired: "
-            "`yuragi token` shows a code"
-          : "only this machine itself may do this: the configuration has no [http] token_file");
+  const char* const why =
+      !trust.takes_token ? "only this machine itself may do this: the configuration has no [http] token_file"
+      : trust.access == nullptr
+          ? "the token of this installation cannot be read, so that nobody may do this: the daemon's log says why"
+          : "this takes the token (Authorization: Bearer TOKEN), or a browser that was paired: `yuragi token` shows a "
+            "code";
+  HttpResponse refusal = problem(401, "Not allowed", why);
   refusal.fields.push_back({"WWW-Authenticate", "Bearer realm=\"yuragi\""});
   return refusal;
 }
 
-HttpResponse pairing_answer(const std::string& code, const HttpRequest& request, const Access* access,
-                            PairingTries& tries, double utc_s, double now_s) {
-  if (access == nullptr) return problem(409, "Not done", "the configuration has no [http] token_file");
-  if (!tries.take(now_s)) {
+HttpResponse pairing_answer(const std::string& code, const HttpRequest& request, const std::string& address,
+                            const Trust& trust, PairingLimits& limits, double utc_s, double now_s) {
+  if (!trust.takes_token) return problem(409, "Not done", "the configuration has no [http] token_file");
+  if (trust.access == nullptr) return problem(409, "Not done", "the token of this installation cannot be read");
+  const Access* const access = trust.access;
+  if (!limits.take(address, now_s)) {
     HttpResponse refusal = problem(429, "Too many tries", "wait some seconds, and try again");
     refusal.fields.push_back({"Retry-After", "10"});
     return refusal;
   }
-  if (!access->is_pairing_code(code, utc_s))
-    return problem(403, "Not the code", "this is not the code that `yuragi token` shows now");
+  const auto step = access->pairing_step_of(code, utc_s);
+  if (!step)
+    return problem(403, "Not the code",
+                   "this is not the code that `yuragi token` shows, or it is older than 10 minutes");
+  if (!limits.use(*step)) return problem(403, "Used", "this code has been used: `yuragi token` shows another one");
   HttpResponse response{.body = json_text(nlohmann::json({{"message", "paired"}})) + "\n"};
   response.fields.push_back(
       {"Set-Cookie", fmt::format("{}={}; Path=/; Max-Age={:.0f}; HttpOnly; SameSite=Strict{}", kSessionCookie,
                                  access->new_session(utc_s), Access::kSession_s, request.is_https ? "; Secure" : "")});
   return response;
+}
+
+std::string client_address(const HttpRequest& request, std::span<const std::string> proxies) {
+  const auto is_proxy = [proxies](std::string_view address) {
+    return std::ranges::find(proxies, address) != proxies.end();
+  };
+  std::string address = request.client.address;
+  std::string_view list = request.forwarded_for;
+  while (is_proxy(address) && !list.empty()) {
+    const std::size_t comma = list.rfind(',');
+    std::string_view last = comma == std::string_view::npos ? list : list.substr(comma + 1);
+    list = comma == std::string_view::npos ? std::string_view() : list.substr(0, comma);
+    while (last.starts_with(' ')) last.remove_prefix(1);
+    while (last.ends_with(' ')) last.remove_suffix(1);
+    if (last.empty() || last.size() > kMaxAddressCharacters) break;
+    address = last;
+  }
+  make_printable(address);
+  return address;
 }
 
 }  // namespace yuragi::daemon::web

@@ -1,26 +1,41 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "daemon/web/access.hpp"
 #include "daemon/web/http_server.hpp"
+#include "daemon/web/pairing_limits.hpp"
 
 namespace yuragi::daemon::web {
 
 inline constexpr const char* kSessionCookie = "yuragi_session";
 
-/// What a client has to show before it is answered. A client of this machine has to show nothing, unless a proxy sends
-/// it for somebody else. `access`: null where there is no token; then no other client can show it. `utc_s`: now,
-/// seconds since 1970. Pure.
-bool is_trusted(const HttpRequest& request, const Access* access, double utc_s);
+/// By what a client is trusted.
+struct Trust {
+  bool takes_token = false;        ///< by the token only, whatever its address; false: by being on this machine
+  const Access* access = nullptr;  ///< of the token; nullptr: there is none, or it cannot be read: nobody can show it
+};
 
-/// Why the request is refused, where it is. Changing something takes trust, reading only where `reading_takes_token`.
-std::optional<HttpResponse> permission_refusal(const HttpRequest& request, bool is_trusted, bool has_token,
+/// Returns true if the client may change something: it shows the token or a session, or, where that is not configured,
+/// it is on this machine and no proxy sends it for another. `utc_s`: now, seconds since 1970. Pure.
+bool is_trusted(const HttpRequest& request, const Trust& trust, double utc_s);
+
+/// Returns true if the request shows a token or a session, right or wrong. Pure.
+bool shows_credentials(const HttpRequest& request);
+
+/// Returns the answer that refuses the request, or nullopt. Changing something takes trust, reading only if
+/// `reading_takes_token`. Pure.
+std::optional<HttpResponse> permission_refusal(const HttpRequest& request, bool is_trusted, const Trust& trust,
                                                bool reading_takes_token);
 
-/// The answer to one that has typed a pairing code: the session as a cookie, or a refusal.
-HttpResponse pairing_answer(const std::string& code, const HttpRequest& request, const Access* access,
-                            PairingTries& tries, double utc_s, double now_s);
+/// Returns the answer to a pairing code: the session as a cookie, or a refusal. `address`: of the client.
+HttpResponse pairing_answer(const std::string& code, const HttpRequest& request, const std::string& address,
+                            const Trust& trust, PairingLimits& limits, double utc_s, double now_s);
+
+/// Returns the address that a request comes from: that of the connection, or, if this is one of `proxies`, the last
+/// one that X-Forwarded-For names and that is none of them. Pure.
+std::string client_address(const HttpRequest& request, std::span<const std::string> proxies);
 
 }  // namespace yuragi::daemon::web

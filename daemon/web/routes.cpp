@@ -52,7 +52,7 @@ Answer health(const HttpRequest& /*request*/, const Facts& facts) {
 Answer metrics(const HttpRequest& /*request*/, const Facts& facts) {
   if (const auto why = silence_of(facts)) return no_news(*why);
   return HttpResponse{.content_type = "text/plain; version=0.0.4; charset=utf-8",
-                      .body = metrics_text(*facts.sensors, facts.software)};
+                      .body = metrics_text(*facts.sensors, facts.software, facts.counts)};
 }
 
 Answer status(const HttpRequest& /*request*/, const Facts& facts) {
@@ -144,24 +144,39 @@ constexpr std::array kRoutes = {
     Route{"POST", kPairPath, pair},
 };
 
+std::string_view method_of(const HttpRequest& request) {
+  return request.method == "HEAD" ? std::string_view("GET") : request.method;
+}
+
 }  // namespace
 
 std::span<const Route> routes() {
   return kRoutes;
 }
 
-Answer answer_to(const HttpRequest& request, const Facts& facts) {
-  const std::string_view method = request.method == "HEAD" ? std::string_view("GET") : request.method;
+std::optional<HttpResponse> method_refusal(const HttpRequest& request) {
+  const std::string_view method = method_of(request);
   std::string allowed;
   for (const Route& route : kRoutes) {
     if (route.path != request.path) continue;
-    if (route.method == method) return route.answer(request, facts);
+    if (route.method == method) return std::nullopt;
     allowed += (allowed.empty() ? "" : ", ") + std::string(route.method);
   }
-  if (allowed.empty()) return problem(404, "Not here", request.path + " is not known; /api/v1/openapi.json lists all");
+  if (allowed.empty()) {  // of the page, or not known
+    if (method == "GET") return std::nullopt;
+    allowed = "GET";
+  }
   HttpResponse refusal = problem(405, "Not so", request.path + " takes " + allowed);
   refusal.fields.push_back({"Allow", allowed});
   return refusal;
+}
+
+Answer answer_to(const HttpRequest& request, const Facts& facts) {
+  if (auto refusal = method_refusal(request)) return std::move(*refusal);
+  const auto route = std::ranges::find_if(
+      kRoutes, [&](const Route& each) { return each.path == request.path && each.method == method_of(request); });
+  if (route != kRoutes.end()) return route->answer(request, facts);
+  return problem(404, "Not here", request.path + " is not known; /api/v1/openapi.json lists all");
 }
 
 }  // namespace yuragi::daemon::web

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 #include "daemon/web/http_server.hpp"
 #include "daemon/web/log_line.hpp"
 #include "daemon/web/request_body.hpp"
+#include "daemon/web/web_counts.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::web {
@@ -22,6 +24,7 @@ struct Facts {
   double age_s = 0.0;                      ///< of them
   double patience_s = 5.0;                 ///< news that are older are no news
   LogTail log = {};
+  WebCounts counts = {};
 };
 
 /// A request that the daemon has to carry out, and the answer that its reply becomes.
@@ -40,8 +43,11 @@ using Answer = std::variant<HttpResponse, Question, Pairing, HistoryQuestion>;
 /// What those may do, too, who are let in nowhere else yet.
 inline constexpr std::string_view kPairPath = "/api/v1/pair";
 
-/// What takes the token from other machines in any case: the log names files and addresses.
+/// What only those who may change something can read: the log names files and addresses.
 inline constexpr std::string_view kLogPath = "/api/v1/log";
+
+/// What this machine can always read: service managers and monitors ask it.
+inline constexpr std::string_view kHealthPath = "/healthz";
 
 /// One thing that can be asked for.
 struct Route {
@@ -51,6 +57,9 @@ struct Route {
 
 /// All of them; openapi.json, which is served at /api/v1/openapi.json, describes each.
 std::span<const Route> routes();
+
+/// Returns the refusal (405) of a method that a path does not take, or nullopt. HEAD counts as GET. Pure.
+std::optional<HttpResponse> method_refusal(const HttpRequest& request);
 
 /// Answers a request that is_known_host() and, where it changes something, is_same_origin() has let through. Pure.
 Answer answer_to(const HttpRequest& request, const Facts& facts);

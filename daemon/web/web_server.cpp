@@ -10,6 +10,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <fmt/format.h>
 
+#include "daemon/stream/client_log.hpp"
 #include "daemon/web/http_server.hpp"
 #include "daemon/web/page.hpp"
 #include "daemon/web/permission.hpp"
@@ -106,6 +107,10 @@ class WebServer::Thread {
     });
   }
 
+  void set_token(const Secret& token) {
+    asio::post(*io_, [this, token] { access_.emplace(token); });
+  }
+
   void close() {
     if (!thread_.joinable()) return;
     asio::post(*io_, [this] {
@@ -129,6 +134,7 @@ class WebServer::Thread {
                                "\" is no name of this machine: call it by its address, or add that "
                                "name to [http] hosts"));
     }
+    if (auto refusal = method_refusal(request)) return reply(std::move(*refusal));
     // Before who asks is looked at: those who are to be paired need it.
     if (auto page = page_answer(request)) return reply(std::move(*page));
     const bool only_reads = request.method == "GET" || request.method == "HEAD";
@@ -139,10 +145,17 @@ class WebServer::Thread {
       return reply(problem(415, "Not JSON", "the body is to be JSON: Content-Type: application/json"));
 
     const double utc_s = seconds(std::chrono::system_clock::now().time_since_epoch());
-    const bool trusted = is_trusted(request, access_ ? &*access_ : nullptr, utc_s);
-    if (request.path != kPairPath) {
+    const Trust trust{.takes_token = settings_.takes_token, .access = access_ ? &*access_ : nullptr};
+    const bool trusted = is_trusted(request, trust, utc_s);
+    const std::string address = client_address(request, settings_.proxies);
+    if (trust.takes_token && !trusted && shows_credentials(request)) {
+      ++counts_.refused_tokens;
+      log_.warn("http: {} shows a token or session that is not valid", address);
+    }
+    const bool is_own_health = request.path == kHealthPath && request.client.is_local && !request.is_forwarded;
+    if (request.path != kPairPath && !(is_own_health && only_reads)) {
       const bool takes_token = settings_.reading_takes_token || request.path == kLogPath;
-      auto refusal = permission_refusal(request, trusted, access_.has_value(), takes_token);
+      auto refusal = permission_refusal(request, trusted, trust, takes_token);
       if (refusal) return reply(std::move(*refusal));
     }
 
@@ -153,16 +166,37 @@ class WebServer::Thread {
                       .sensors = news ? &news->sensors : nullptr,
                       .age_s = news ? seconds(steady_clock::now() - news->at) : 0.0,
                       .patience_s = seconds(settings_.patience),
-                      .log = settings_.log};
+                      .log = settings_.log,
+                      .counts = counts_};
     Answer answer = answer_to(request, facts);
     if (auto* const response = std::get_if<HttpResponse>(&answer)) return reply(std::move(*response));
     if (const auto* const pairing = std::get_if<Pairing>(&answer)) {
-      const double now_s = seconds(steady_clock::now().time_since_epoch());
-      return reply(pairing_answer(pairing->code, request, access_ ? &*access_ : nullptr, pairing_tries_, utc_s, now_s));
+      return reply(pair(pairing->code, request, address, trust, utc_s));
     }
     if (const auto* const question = std::get_if<HistoryQuestion>(&answer))
       return read_history(question->hours, trusted, std::move(reply));
+    if (!only_reads) {
+      reply = [this, address, path = request.path, to_client = std::move(reply)](HttpResponse response) {
+        if (response.status < 300) ++counts_.changes;
+        log_.info("http: {} changes {}: {}", address, path, response.status < 300 ? "done" : "refused");
+        to_client(std::move(response));
+      };
+    }
     ask(std::get<Question>(std::move(answer)), trusted, std::move(reply));
+  }
+
+  HttpResponse pair(const std::string& code, const HttpRequest& request, const std::string& address, const Trust& trust,
+                    double utc_s) {
+    const double now_s = seconds(steady_clock::now().time_since_epoch());
+    HttpResponse response = pairing_answer(code, request, address, trust, pairing_limits_, utc_s, now_s);
+    const bool is_paired = response.status == 200;
+    ++(is_paired ? counts_.pairings : counts_.failed_pairings);
+    if (is_paired) {
+      log_.info("http: a browser at {} was paired", address);
+    } else {
+      log_.warn("http: a browser at {} was not paired ({})", address, response.status);
+    }
+    return response;
   }
 
   void ask(Question question, bool is_local, HttpReply reply) {
@@ -206,8 +240,10 @@ class WebServer::Thread {
   }
 
   WebSettings settings_;
-  const std::optional<Access> access_;
-  PairingTries pairing_tries_;
+  std::optional<Access> access_;  ///< of the thread
+  PairingLimits pairing_limits_;
+  WebCounts counts_;
+  stream::ClientLog log_{{}, [] { return MonoTime(steady_clock::now()); }};
   std::shared_ptr<asio::io_context> io_ = std::make_shared<asio::io_context>(1);
   asio::executor_work_guard<asio::io_context::executor_type> work_{io_->get_executor()};
   std::optional<News> here_, elsewhere_;
@@ -231,8 +267,11 @@ void WebServer::publish_sensors(stream::SharedBytes here, stream::SharedBytes el
 std::size_t WebServer::client_count() const {
   return thread_->client_count();
 }
-bool WebServer::has_remote_clients() const {
+bool WebServer::has_untrusted_clients() const {
   return true;
+}
+void WebServer::set_token(const Secret& token) {
+  thread_->set_token(token);
 }
 void WebServer::close() {
   thread_->close();

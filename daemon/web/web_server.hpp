@@ -20,9 +20,11 @@ namespace yuragi::daemon::web {
 struct WebSettings {
   std::string listen = {};  ///< "HOST:PORT"; port 0 takes any free one
   std::vector<std::string> hosts =
-      {};             ///< names by which clients may call this machine, besides its own (is_known_host())
-  Secret token = {};  ///< of clients of other machines; empty: they only read
-  bool reading_takes_token = false;  ///< then they do not read without it, either
+      {};                    ///< names by which clients may call this machine, besides its own (is_known_host())
+  bool takes_token = false;  ///< only who shows the token changes something; false: only this machine does
+  Secret token = {};         ///< empty: there is none, or it cannot be read
+  bool reading_takes_token = false;       ///< nobody reads without it, either; but this machine reads kHealthPath
+  std::vector<std::string> proxies = {};  ///< addresses whose X-Forwarded-For is believed, for the log and limits
   stream::AdmissionLimits clients = {};
   std::string software = {};  ///< "yuragi 0.2.0"
   double tick_rate_hz = 0.0;
@@ -54,13 +56,16 @@ class WebServer final : public stream::Transport {
   /// Where it listens: "127.0.0.1:7480".
   std::string local_endpoint() const;
 
+  /// Trusts whoever shows this token from now on.
+  void set_token(const Secret& token);
+
   std::string name() const override { return "http " + local_endpoint(); }
   void publish(stream::SharedBytes frame) override;
   void publish_scenes(stream::SharedBytes scenes) override;
   void publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) override;
   std::size_t client_count() const override;
   /// Those who ask from elsewhere are told less, and may ask at any time.
-  bool has_remote_clients() const override;
+  bool has_untrusted_clients() const override;
   void close() override;
 
  private:

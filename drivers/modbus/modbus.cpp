@@ -212,6 +212,11 @@ std::vector<sensor::FoundDevice> find_modbus() {
   return sensor::find_behind_serial_ports("transport = \"rtu\"\n");
 }
 
+sensor::PromisedQuantities modbus_promises(const ParameterValues& values) {
+  const ModbusProfile profile = profile_of(values);
+  return {.direction = profile.direction.has_value(), .gust = profile.gust.has_value()};
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kModbusDriver;
@@ -222,6 +227,7 @@ const sensor::DriverDescription kModbusDriver{
     .open = open_modbus,
     .find = find_modbus,
     .claims = modbus_claims,
-    .known_devices = known_modbus_devices};
+    .known_devices = known_modbus_devices,
+    .promises = modbus_promises};
 
 }  // namespace yuragi::drivers::modbus

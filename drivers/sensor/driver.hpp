@@ -29,6 +29,12 @@ struct KnownDevice {
   std::string unconfirmed = {};  ///< what nobody confirms; empty: nothing
 };
 
+/// What a device measures besides the speed, by its data sheet.
+struct PromisedQuantities {
+  bool direction = false;
+  bool gust = false;
+};
+
 /// A family of sensors: one constant `kXDriver` in its own file, listed in drivers/CMakeLists.txt.
 struct DriverDescription {
   std::string_view name;
@@ -51,6 +57,9 @@ struct DriverDescription {
   /// A sensor of these values speaks on change only: for how long, s, its silence says that nothing has changed; 0, or
   /// nullptr: it does not. A longer silence is one.
   double (*unchanged_for_s)(const ParameterValues& values) = nullptr;
+  /// What the readings of a sensor of these values should have, of values that open() takes: if it does not come, that
+  /// is a fault. nullptr: only what has come is expected.
+  PromisedQuantities (*promises)(const ParameterValues& values) = nullptr;
   /// What a person sets at the device itself: lines of text; empty: nothing.
   std::string_view device_setup = {};
   /// It plays a recording: never to be taken for the live wind.

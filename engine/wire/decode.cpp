@@ -113,6 +113,22 @@ bool read(const flatbuffers::Optional<double>& from, std::optional<double>& to) 
   return std::isfinite(*from);
 }
 
+/// One of a newer server that this build does not know is left out.
+bool read_quantities(const fb::Sensor& from, SensorStatus& to) {
+  const std::size_t count = from.quantities() == nullptr ? 0 : from.quantities()->size();
+  if (count > kMaxQuantities) return false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto* quantity = from.quantities()->Get(static_cast<flatbuffers::uoffset_t>(i));
+    if (quantity->quantity() > fb::Quantity_MAX) continue;
+    QuantityStatus& into = to.quantities.emplace_back();
+    into.quantity = static_cast<wind::judging::Quantity>(quantity->quantity());
+    into.is_missing = quantity->is_missing();
+    if (!read(quantity->age_s(), into.age_s) || !read_text(quantity->reason(), into.reason)) return false;
+    if (into.age_s && !is_within(*into.age_s, 0.0, kMaxDuration_s)) return false;
+  }
+  return true;
+}
+
 bool read(const fb::Sensor& from, SensorStatus& to) {
   if (from.link() > fb::LinkState_MAX || from.health() > fb::SensorHealth_MAX || from.state() > fb::SensorState_MAX) {
     return false;
@@ -140,7 +156,7 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
          read_text(from.detail(), to.detail) && read_text(from.state_reason(), to.state_reason) &&
          read(from.speed_m_s(), to.speed_m_s) && read(from.direction_deg(), to.direction_deg) &&
          read(from.gust_m_s(), to.gust_m_s) && read(from.raw_speed_m_s(), to.raw_speed_m_s) &&
-         read(from.raw_direction_deg(), to.raw_direction_deg);
+         read(from.raw_direction_deg(), to.raw_direction_deg) && read_quantities(from, to);
 }
 
 /// A server that does not know of it sends none: then nothing is at work.
@@ -261,6 +277,12 @@ bool read(const fb::Sensors& from, Sensors& to) {
   to.parameters_revision = from.parameters_revision();
   to.recent_ticks = from.recent_ticks();
   to.recent_skipped_ticks = std::min(from.recent_skipped_ticks(), to.recent_ticks);
+  const std::size_t troubles = from.troubles() == nullptr ? 0 : from.troubles()->size();
+  if (troubles > kMaxTroubles) return false;
+  for (std::size_t i = 0; i < troubles; ++i) {
+    if (!read_text(from.troubles()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.troubles.emplace_back()))
+      return false;
+  }
   return read_cameras(from, to) && read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
          read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder) &&
          read(from.animation(), to.animation);

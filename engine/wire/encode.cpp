@@ -120,6 +120,16 @@ static_assert(fb::FoliageColor_MAX + 1 == pose::kFoliageColorNames.size(), "thos
 static_assert(fb::LinkState_MAX + 1 == wind::kLinkStateNames.size(), "those of link_state.hpp");
 static_assert(fb::SensorHealth_MAX + 1 == wind::kSourceHealthCount, "those of source_report.hpp");
 
+flatbuffers::Offset<fb::QuantityStatus> add_quantity(Builder& builder, const QuantityStatus& quantity) {
+  const auto reason = add_text(builder, quantity.reason);
+  fb::QuantityStatusBuilder table(builder);
+  table.add_quantity(static_cast<fb::Quantity>(quantity.quantity));
+  if (quantity.age_s) table.add_age_s(*quantity.age_s);
+  table.add_is_missing(quantity.is_missing);
+  table.add_reason(reason);
+  return table.Finish();
+}
+
 flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus& sensor) {
   std::vector<flatbuffers::Offset<fb::Counter>> refused;
   refused.reserve(sensor.refused.size());
@@ -130,6 +140,9 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   const auto driver = add_text(builder, sensor.driver);
   const auto detail = add_text(builder, sensor.detail);
   const auto state_reason = add_text(builder, sensor.state_reason);
+  std::vector<flatbuffers::Offset<fb::QuantityStatus>> quantities;
+  for (const QuantityStatus& quantity : sensor.quantities) quantities.push_back(add_quantity(builder, quantity));
+  const auto quantity_list = builder.CreateVector(quantities);
 
   fb::SensorBuilder table(builder);
   table.add_name(name);
@@ -152,6 +165,7 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   table.add_state_reason(state_reason);
   if (sensor.raw_speed_m_s) table.add_raw_speed_m_s(*sensor.raw_speed_m_s);
   if (sensor.raw_direction_deg) table.add_raw_direction_deg(*sensor.raw_direction_deg);
+  table.add_quantities(quantity_list);
   return table.Finish();
 }
 
@@ -372,6 +386,10 @@ Bytes encode(const Sensors& sensors) {
   const auto camera_list = builder.CreateVector(cameras);
   const auto animation =
       sensors.animation ? add_animation(builder, *sensors.animation) : flatbuffers::Offset<fb::Animation>();
+  std::vector<flatbuffers::Offset<flatbuffers::String>> troubles;
+  for (std::size_t i = 0; i < std::min(sensors.troubles.size(), kMaxTroubles); ++i)
+    troubles.push_back(add_text(builder, sensors.troubles[i]));
+  const auto trouble_list = builder.CreateVector(troubles);
   fb::SensorsBuilder table(builder);
   table.add_sensors(vector);
   table.add_wind(&wind);
@@ -392,6 +410,7 @@ Bytes encode(const Sensors& sensors) {
   if (sensors.animation) table.add_animation(animation);
   table.add_recent_ticks(sensors.recent_ticks);
   table.add_recent_skipped_ticks(sensors.recent_skipped_ticks);
+  table.add_troubles(trouble_list);
   return finish(builder, fb::Body_Sensors, table.Finish());
 }
 

@@ -19,6 +19,7 @@
 #include "engine/look/cloth_look.hpp"
 #include "engine/look/look.hpp"
 #include "engine/pose/skeleton.hpp"
+#include "engine/wind/judging/quantity_watch.hpp"
 #include "engine/wind/judging/sensor_state.hpp"
 #include "engine/wind/link_state.hpp"
 #include "engine/wind/source_report.hpp"
@@ -49,6 +50,8 @@ inline constexpr std::size_t kMaxSensors = 256;
 inline constexpr std::uint32_t kMaxEvery = 65536;
 inline constexpr double kMaxRate_hz = 1000.0;
 inline constexpr std::size_t kMaxRefusalReasons = 64;
+inline constexpr std::size_t kMaxQuantities = 16;  ///< of a sensor
+inline constexpr std::size_t kMaxTroubles = 16;
 inline constexpr double kMaxFade_s = 3600.0;
 inline constexpr std::size_t kMaxReloadItems = 1024;  ///< of each kind in a ReloadReport; encoders leave out more
 inline constexpr std::uint32_t kMaxSteps = 1'000'000;
@@ -118,6 +121,14 @@ struct Frame {
   std::vector<float> opacities;   ///< one a scene, 0 (hidden) to 1; in between while it fades in or out
 };
 
+/// What a sensor's readings may have besides the speed, and whether they still have it.
+struct QuantityStatus {
+  wind::judging::Quantity quantity = wind::judging::Quantity::kDirection;
+  std::optional<double> age_s = std::nullopt;  ///< of the last one; nullopt: it has never come
+  bool is_missing = false;                     ///< readings come without it that should have it
+  std::string reason = {};  ///< of is_missing: since when, what is used instead, and what to do about it
+};
+
 struct SensorStatus {
   std::string name;
   std::string driver;
@@ -139,6 +150,7 @@ struct SensorStatus {
   std::string state_reason;             ///< why, and what to do about it
   std::optional<double> raw_speed_m_s;  ///< the last reading before calibration
   std::optional<double> raw_direction_deg;
+  std::vector<QuantityStatus> quantities = {};  ///< those that it has sent, or that its profile promises
 };
 
 /// What makes the wind that moves the scenes another than the real one (engine/wind/shaping/wind_shaping.hpp).
@@ -212,6 +224,7 @@ struct Sensors {
   std::optional<AnimationStatus> animation = std::nullopt;  ///< nothing: not known, or it has no scenes
   std::uint64_t recent_ticks = 0;          ///< of the last 10 minutes, with those that were skipped; 0: not known
   std::uint64_t recent_skipped_ticks = 0;  ///< those of them that were skipped
+  std::vector<std::string> troubles = {};  ///< what else does not work at present and is tried again, for a person
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };

@@ -150,6 +150,42 @@ class Attack:
                 self.done["messages"] += 1
             client.close()
 
+    HOSTILE_BYTES = (b"\xff", b"\x80\xc3", b"\xc0\xaf", b"\xed\xa0\x80", b"\x00", b"\r", b"\r\r", b"\x1b[2J", b"a" * 20_000)
+    HTTP_PARTS = ("method", "target", "version", "host", "field name", "field", "length", "body")
+
+    def http_bytes(self):
+        """Requests of which one part has bytes that no text has, or is overlong; each on a connection of its own."""
+        while self.is_on():
+            part = self.random.choice(self.HTTP_PARTS)
+            hostile = self.random.choice((*self.HOSTILE_BYTES, self.random.randbytes(self.random.randrange(1, 40))))
+            def at(name, usual):
+                return usual[:len(usual) // 2] + hostile + usual[len(usual) // 2:] if name == part else usual
+            body = at("body", b'{"scene": "meadow"}')
+            request = b"\r\n".join((
+                at("method", self.random.choice((b"GET", b"POST"))) + b" "
+                + at("target", self.random.choice((b"/", b"/api/v1/scenes", b"/api/v1/pair", b"/data/report/?windspeedmph=1")))
+                + b" " + at("version", b"HTTP/1.1"),
+                b"Host: " + at("host", b"127.0.0.1"),
+                at("field name", b"Authorization") + b": Bearer " + at("field", b"abc"),
+                b"Content-Type: application/json",
+                b"Content-Length: " + at("length", str(len(body)).encode()),
+                b"", body))
+            client = self.connect()
+            if client is None:
+                continue
+            self.send(client, request)
+            answer = b""
+            try:
+                client.shutdown(socket.SHUT_WR)
+                while block := client.recv(65536):
+                    answer += block
+            except OSError:
+                pass  # it was closed while the request was still on its way
+            client.close()
+            self.done["requests"] += 1
+            self.done["faults (500)"] += answer.startswith(b"HTTP/1.1 500")
+            self.done["answers"] += answer.startswith(b"HTTP/1.1 ")
+
     def mutation(self, message):
         bytes_ = bytearray(message)
         for _ in range(self.random.randrange(1, 6)):

@@ -5,8 +5,9 @@ import shutil
 import subprocess
 import sys
 import time
+import urllib.request
 
-from bench import HANG_S, HERE, NotHere, Sampler, Witness, row
+from bench import HANG_S, HERE, NotHere, Sampler, Witness, free_port, row
 
 CONTROL_S = (4.0, 2.0)  # a quiet time to compare with: of the long and of the short form
 
@@ -79,6 +80,28 @@ def hostile_messages(bench):
     daemon, done = attack_beside_witness(bench, [("mutated", 0), ("random_bytes", 0), ("oversized", 0)], bench.choose(60.0, 2.0))
     for kind, counts in done.items():
         bench.expect(counts.get("messages", 0) >= 20, f"hardly any message was {kind}")
+    bench.expect_ends(daemon)
+
+
+@row("requests with bytes that are no text in each of their parts, to the page and to a sensor that is pushed to")
+def http_bytes(bench):
+    push_port = free_port()
+    daemon = bench.start_daemon('[http]\nlisten = "127.0.0.1:0"\n[[sensor]]\nname = "roof"\ndriver = "ecowitt-push"\n'
+                                f"port = {push_port}\n")
+    page = re.search(r"answering at http://(\S+)", daemon.wait_for(r"answering at http://\S+").group(0)).group(1)
+    seconds = bench.choose(60.0, 2.0)
+    attackers = [bench.attack("http_bytes", address, seconds) for address in (page, f"127.0.0.1:{push_port}")]
+    for attacker, where in zip(attackers, ("page", "pushes"), strict=True):
+        counts = bench.end_of_attack(attacker)
+        bench.expect(counts.get("requests", 0) >= 20, f"hardly any request ({where})")
+        bench.expect(counts.get("answers", 0) >= counts["requests"] // 4, f"hardly any answer ({where})")
+        bench.expect(counts["faults (500)"] == 0, f"{counts['faults (500)']} answers with 500 ({where})")
+        bench.count(counts["requests"], f"requests ({where})")
+    bench.expect_alive(daemon)
+    with urllib.request.urlopen(f"http://{page}/api/v1/status", timeout=HANG_S) as answer:
+        bench.expect(answer.status == 200, "the page does not answer any more")
+    bench.expect("\x1b" not in daemon.text(), "control characters of a request are in the log")
+    bench.expect("fault of the program" not in daemon.text(), "an exception was contained: see the log")
     bench.expect_ends(daemon)
 
 

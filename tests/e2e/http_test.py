@@ -6,6 +6,7 @@ usage: http_test.py FOLDER_OF_PROGRAMS
 import json
 import os
 import re
+import socket
 import subprocess
 import sys
 import tempfile
@@ -32,7 +33,9 @@ class Http(unittest.TestCase):
 
     def start_daemon_with(self, file):
         daemon = self.enterContext(Program(YURAGI, "run", "--config", file, "--listen", "127.0.0.1:0"))
+        self.stream = daemon.wait_for(r"listening on (\S+)").group(1)
         self.base = daemon.wait_for(r"answering at (http://\S+)").group(1)
+        return daemon
 
     def ask(self, path, body=None, **fields):
         """Status and text of the answer; its cookies are in self.cookies."""
@@ -91,7 +94,7 @@ class Http(unittest.TestCase):
         self.wait_for("/healthz", 503, "roof.*127.0.0.1")
         self.wait_for("/metrics", 200, r'yuragi_sensor_believed{sensor="roof",driver="nmea"} 0\n')
 
-    def test_another_machine_changes_something_once_it_is_paired_or_has_the_token(self):
+    def test_rights_come_from_the_token_whatever_the_address(self):
         folder = self.enterContext(tempfile.TemporaryDirectory())
         token_file = os.path.join(folder, "token")
         http = f'[http]\nlisten = "127.0.0.1:0"\ntoken_file = "{token_file}"\nreaders = "token"\n'
@@ -107,9 +110,18 @@ class Http(unittest.TestCase):
 
         from_elsewhere = {"X_Forwarded_For": "192.0.2.7"}
         hide = {"scene": "meadow", "shown": False, "over_s": 0}
-        self.assertEqual(self.ask("/api/v1/scenes", **from_elsewhere)[0], 401)
-        self.assertEqual(self.ask("/api/v1/scenes", hide, **from_elsewhere)[0], 401)
-        self.assertEqual(self.ask("/api/v1/scenes")[0], 200, "this machine needs no token")
+        for address in (from_elsewhere, {}):
+            self.assertEqual(self.ask("/api/v1/scenes", **address)[0], 401)
+            self.assertEqual(self.ask("/api/v1/scenes", hide, **address)[0], 401)
+        self.wait_for("/healthz", 200, "all is well")  # this machine always reads it
+        self.assertEqual(self.ask("/healthz", **from_elsewhere)[0], 401)
+
+        # The stream, and the commands, which read the file that they are told of.
+        switch = [YURAGI, "scene", "hide", "meadow", "--connect", self.stream]
+        refused = subprocess.run(switch, capture_output=True, text=True)
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertIn("token", refused.stderr)
+        subprocess.run(switch, env={**os.environ, "YURAGI_TOKEN_FILE": token_file}, capture_output=True, check=True)
         self.assertEqual(self.ask("/api/v1/scenes", hide, **from_elsewhere, Authorization="Bearer " + secret)[0], 200)
 
         code = json.loads(subprocess.run([*token, "--json"], capture_output=True, check=True).stdout)["pairing_code"]
@@ -119,6 +131,30 @@ class Http(unittest.TestCase):
         session = self.cookies.split(";")[0]
         self.assertEqual(self.ask("/api/v1/scenes", **from_elsewhere, Cookie=session)[0], 200)
         self.assertEqual(self.ask("/api/v1/scenes", hide, **from_elsewhere, Cookie=session)[0], 200)
+
+    def test_what_cannot_be_opened_at_the_start_is_tried_again(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        token_file = os.path.join(folder, "token")
+        with socket.create_server(("127.0.0.1", 0)) as other:
+            address = "127.0.0.1:%d" % other.getsockname()[1]
+            http = f'[http]\nlisten = "{address}"\ntoken_file = "{token_file}"\n'
+            file = self.write_config(http + '[[sensor]]\nname = "roof"\ndriver = "synthetic"\n' + SMALL_MEADOW)
+            daemon = self.enterContext(Program(YURAGI, "run", "--config", file, "--listen", "127.0.0.1:0"))
+            daemon.wait_for(r"token_file: .* nobody changes anything.* it is tried again")
+            daemon.wait_for(r"the page and HTTP are not served: .*; it is tried again")
+            stream = daemon.wait_for(r"listening on (\S+)").group(1)
+            status = subprocess.run([YURAGI, "status", "--connect", stream], capture_output=True, text=True)
+            self.assertEqual(status.returncode, 1, status.stdout + status.stderr)
+            self.assertRegex(status.stdout, r"(?s)token_file: .*the page and HTTP are not served: ")
+        self.base = daemon.wait_for(r"answering at (http://\S+)").group(1)
+        hide = {"scene": "meadow", "shown": False, "over_s": 0}
+        self.assertEqual(self.ask("/api/v1/scenes", hide)[0], 401, "nobody has the token")
+        subprocess.run([YURAGI, "token", "--config", file, "--new"], capture_output=True, check=True)
+        daemon.wait_for(r"the token in .* is used from now on")
+        self.wait_for("/healthz", 200, "all is well")
+        with open(token_file, encoding="ascii") as secret_file:
+            bearer = "Bearer " + secret_file.read().strip()
+        self.assertEqual(self.ask("/api/v1/scenes", hide, Authorization=bearer)[0], 200)
 
 
 if __name__ == "__main__":

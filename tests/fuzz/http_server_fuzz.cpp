@@ -26,6 +26,7 @@ void require(bool holds) {
 daemon::web::WebSettings settings() {
   return {.listen = "127.0.0.1:0",
           .hosts = {"roof"},
+          .takes_token = true,
           .token = Secret("correct horse battery staple"),
           .software = "yuragi 0.0.0",
           .ask = [](const wire::Control& control, bool,

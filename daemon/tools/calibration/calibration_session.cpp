@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "daemon/settings/config_file.hpp"
+#include "daemon/settings/own_token.hpp"
 #include "daemon/stream/control_client.hpp"
 #include "engine/base/count_text.hpp"
 
@@ -213,7 +214,8 @@ void CalibrationSession::finish(std::vector<settings::ConfigChange> wanted, cons
 /// Has the daemon that was started with this file, if it runs, read it again; says what came of it.
 void CalibrationSession::apply_in_daemon() {
   const std::string address = request_.connect.value_or(config_.stream.listen);
-  const auto report = stream::ask_to_reload(address, settings::absolute_path(request_.config_file));
+  const auto report = stream::ask_to_reload(address, settings::absolute_path(request_.config_file),
+                                            settings::own_token(address, request_.config_file).token);
   if (!report) {
     dialog_.print(fmt::format("Restart a running daemon to apply it: {}.", report.error().message));
   } else if (report->outcome == wire::ReloadOutcome::kDone) {

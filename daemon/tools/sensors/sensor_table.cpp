@@ -144,6 +144,9 @@ std::string sensor_table(const wire::Sensors& sensors) {
     if (!sensor.state_reason.empty()) {
       table += wrapped(fmt::format("{}: {}", name_of(sensor.state), sensor.state_reason));
     }
+    for (const wire::QuantityStatus& quantity : sensor.quantities) {
+      if (quantity.is_missing) table += wrapped(fmt::format("no {}: {}", name_of(quantity.quantity), quantity.reason));
+    }
     if (!sensor.detail.empty() && sensor.detail != sensor.state_reason) {
       table += wrapped(fmt::format("{}: {}", name_of(sensor.link), sensor.detail));
     }

@@ -116,6 +116,11 @@ std::vector<std::string> known_secrets(const settings::Config& config) {
     if (secret) secrets.push_back(secret->reveal());
   };
   if (!config.http.token_file.empty()) add(drivers::sensor::secret_in_file(config.http.token_file));
+  for (const settings::AlertConfig& alert : config.alerts) {
+    for (const std::string& secret : {alert.command, alert.webhook.reveal()}) {
+      if (!secret.empty()) secrets.push_back(secret);
+    }
+  }
   for (const settings::SensorConfig& sensor : config.sensors) {
     for (const auto& [name, value] : sensor.values.all()) {
       const auto* secret = std::get_if<Secret>(&value);

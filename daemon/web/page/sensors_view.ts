@@ -29,6 +29,11 @@ function reading_text(sensor: Sensor): string {
   return is_believed(sensor) ? wind : "Last: " + wind;
 }
 
+function reason_text(sensor: Sensor): string {
+  const missing = sensor.quantities.filter((quantity) => quantity.is_missing);
+  return [sensor.state_reason, ...missing.map((quantity) => `No ${quantity.name}: ${quantity.reason}`)].join(". ");
+}
+
 export class SensorsView {
   private readonly rows: Rows<Row>;
   private status: Status | undefined;
@@ -49,7 +54,7 @@ export class SensorsView {
       row.wind.className = is_believed(sensor) ? "strong" : "age";
       set_text(row.wind, reading_text(sensor));
       set_text(row.age, age_s === null ? sensor.driver : `${sensor.driver} · ${duration_text(age_s)} old`);
-      set_text(row.reason, sensor.state_reason);
+      set_text(row.reason, reason_text(sensor));
     });
   }
 

@@ -7,11 +7,19 @@ export interface Wind {
   live_weight: number;
 }
 
+export interface Quantity {
+  name: string;
+  age_s: number | null;
+  is_missing: boolean;
+  reason: string;
+}
+
 export interface Sensor {
   name: string;
   driver: string;
   state: string;
   state_reason: string;
+  quantities: Quantity[];
   speed_m_s: number | null;
   direction_deg: number | null;
   gust_m_s: number | null;

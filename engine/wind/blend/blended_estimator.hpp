@@ -78,6 +78,9 @@ class BlendedEstimator {
   /// How `source` does, as of the last advance(). One that is not there is silent.
   SourceReport report(std::size_t source) const noexcept;
 
+  /// Does another source than `besides` measure the direction of the wind that is shown? As of the last advance().
+  bool is_direction_live(std::size_t besides) const noexcept;
+
   /// The turbulence that is fitted at the moment, along the wind.
   turbulence::Turbulence turbulence() const noexcept;
 
@@ -121,7 +124,6 @@ class BlendedEstimator {
     double given = 0.0;
   };
 
-  bool is_direction_live(std::size_t besides) const noexcept;
   void share_out(double dt_s) noexcept;
   void share_mean(double dt_s) noexcept;
   void share_bands() noexcept;

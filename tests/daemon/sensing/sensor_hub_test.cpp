@@ -122,6 +122,28 @@ TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
   EXPECT_NEAR(status[0].age_s, 10.0, 1e-3);
 }
 
+TEST_F(SensorHubTest, AVaneThatFallsSilentIsMissedWhileTheCupTurns) {
+  script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
+    sink.link(wind::LinkState::kConnected, "here");
+    for (int second = 0; second < 240; ++second) {
+      wind::WindReading reading = reading_at(clock, 4.0 + 0.01 * second);
+      reading.time.mono -= std::chrono::seconds(240 - second);
+      if (second > 60) reading.direction_deg.reset();
+      sink.reading(reading);
+    }
+  };
+  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  script_.polled.get_future().wait();
+  hub.advance();
+  const wire::SensorStatus status = hub.status().at(0);
+  EXPECT_EQ(status.state, wind::judging::SensorState::kLive);
+  ASSERT_EQ(status.quantities.size(), 1U) << "a gust has never come";
+  EXPECT_TRUE(status.quantities[0].is_missing);
+  EXPECT_NEAR(status.quantities[0].age_s.value(), 180.0, 1e-6);
+  EXPECT_EQ(status.quantities[0].reason,
+            "none for 3 min; the last one is kept. Check the vane, its cable and its address");
+}
+
 /// Says one reading, and then ten times a second that it still holds.
 class HoldingSensor final : public drivers::sensor::Sensor {
  public:

@@ -79,7 +79,7 @@ TEST_F(ParameterTest, EveryParameterIsListedAsItsTableDescribesIt) {
   director_.handle({.describe = true, .number = 9}, false, [&reply](const auto& made) { reply = made; });
   ASSERT_TRUE(reply.done && reply.parameters);
   EXPECT_EQ(reply.parameters->number, 9U);
-  EXPECT_THAT(reply.parameters->refusal, HasSubstr("values cannot be set from another machine"));
+  EXPECT_THAT(reply.parameters->refusal, HasSubstr("values cannot be set from here"));
   ASSERT_EQ(reply.parameters->groups.size(), 3U);
   EXPECT_EQ(reply.parameters->groups[0].parameters.size(), look::look_parameters().size());
   EXPECT_EQ(reply.parameters->groups[1].scene, "banner");

@@ -123,8 +123,8 @@ TEST(ReloadPlan, AppliesAlerts) {
       "[[alert]]\nname = \"a\"\ncommand = \"mail\"\nwebhook = \"http://s3cret/\"\n"
       "[[alert]]\nname = \"b\"\nwhen = \"no_frame\"\ncommand = \"page\"\n");
   const ReloadPlan plan = plan_reload(running, wanted, true);
-  EXPECT_THAT(plan.applied, ElementsAre("alert a: command: \"page\" -> \"mail\"", "alert a: webhook: '' -> '(secret)'",
-                                        "alert b: is new"));
+  EXPECT_THAT(plan.applied, ElementsAre("alert a: command: '(secret)' -> '(secret)'",
+                                        "alert a: webhook: '' -> '(secret)'", "alert b: is new"));
   ASSERT_EQ(plan.next.alerts.size(), 2U);
   EXPECT_EQ(plan.next.alerts[0].command, "mail");
 }

@@ -47,6 +47,16 @@ TEST(WithholdSecrets, FindsThemHoweverTheTableIsWritten) {
   }
 }
 
+TEST(WithholdSecrets, AnAlertsCommandAndWebhookAreSecrets) {
+  const auto withheld = withhold_in_configuration(
+      "[[alert]]\nname = 'storm'\ncommand = 'curl -u anna:hunter2 https://example.org'\nafter = 1\n"
+      "[[alert]]\nname = 'b'\nwebhook = 'https://example.org/hunter2'\n");
+  EXPECT_EQ(withheld->text,
+            "[[alert]]\nname = 'storm'\ncommand = \"(secret)\"\nafter = 1\n"
+            "[[alert]]\nname = 'b'\nwebhook = \"(secret)\"\n");
+  EXPECT_EQ(withheld->secrets, 2U);
+}
+
 TEST(WithholdSecrets, KnowsWhichDriversHaveThem) {
   EXPECT_EQ(withhold_in_options("password = 'hunter2'\nuser = 'garden'", "mqtt")->text,
             "password = \"(secret)\"\nuser = 'garden'");

@@ -58,6 +58,17 @@ TEST(Attention, TellsWhatHappenedToTheLinkWhereNoReasonIsKnown) {
               ElementsAre("sensor roof is connecting: /dev/ttyUSB0: No such file or directory"));
 }
 
+TEST(Attention, IsNeededByASensorWhoseVaneIsSilent) {
+  wire::Sensors sensors = well();
+  sensors.sensors[0].quantities = {{.quantity = wind::judging::Quantity::kDirection, .age_s = 1.0}};
+  EXPECT_THAT(needs_attention(sensors), IsEmpty());
+  sensors.sensors[0].quantities[0] = {.is_missing = true, .reason = "none for 3 min; the last one is kept"};
+  EXPECT_THAT(needs_attention(sensors),
+              ElementsAre("sensor roof sends no direction: none for 3 min; the last one is kept"));
+  sensors.sensors[0].state = SensorState::kStale;
+  EXPECT_THAT(needs_attention(sensors), ElementsAre(HasSubstr("sensor roof is stale"))) << "one trouble at a time";
+}
+
 TEST(Attention, IsNeededByARecorderThatCannotWrite) {
   wire::Sensors sensors = well();
   sensors.recorder->state = wire::RecorderState::kRetrying;

@@ -894,7 +894,7 @@ TEST_F(TcpStreamTest, OtherMachinesGetAStateOfTheSensorsOfTheirOwn) {
   local.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = ""}));
   stream_.publish_sensors(sensors_with("here"), nullptr);
   ASSERT_TRUE(turn_until([&] { return local.sensors.size() == 1; }));
-  EXPECT_FALSE(stream_.has_remote_clients());
+  EXPECT_FALSE(stream_.has_untrusted_clients());
 
   // Who comes from there waits for the first that is made for it.
   {
@@ -902,7 +902,7 @@ TEST_F(TcpStreamTest, OtherMachinesGetAStateOfTheSensorsOfTheirOwn) {
     remote.send(wire::encode(wire::Subscribe{.poses = false, .sensors = true, .client = ""}));
     remote.send(wire::encode(wire::Control{}));
     ASSERT_TRUE(turn_until([&] { return remote.replies.size() == 1; }));
-    EXPECT_TRUE(stream_.has_remote_clients());
+    EXPECT_TRUE(stream_.has_untrusted_clients());
     EXPECT_TRUE(remote.sensors.empty());
     EXPECT_FALSE(all_were_local_);
     stream_.publish_sensors(sensors_with("here"), sensors_with("elsewhere"));
@@ -914,7 +914,7 @@ TEST_F(TcpStreamTest, OtherMachinesGetAStateOfTheSensorsOfTheirOwn) {
     EXPECT_EQ(late.sensors[0].sensors[0].detail, "elsewhere");
   }
   for (const wire::Sensors& sensors : local.sensors) EXPECT_EQ(sensors.sensors[0].detail, "here");
-  EXPECT_TRUE(turn_until([&] { return !stream_.has_remote_clients(); }));
+  EXPECT_TRUE(turn_until([&] { return !stream_.has_untrusted_clients(); }));
 }
 
 TEST_F(TcpStreamTest, OnlyLoopbackIsThisMachine) {

@@ -1,6 +1,8 @@
 // The token of other machines' clients, and what is made of it.
 #include "daemon/web/access.hpp"
 
+#include <array>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,16 +31,16 @@ TEST(Access, TheTokenAndNothingElse) {
        {"", "correct horse battery stapl", "correct horse battery stapleX", "Correct horse battery staple"})
     EXPECT_FALSE(access.is_token(other)) << other;
 }
-TEST(Access, APairingCodeIsTakenForTenMinutesAtLeastAndTwentyAtMost) {
+TEST(Access, APairingCodeIsValidForNearlyTenMinutes) {
   const Access access(kToken);
   const std::string code = access.pairing_code(kNow_s);
   EXPECT_THAT(code, MatchesRegex("[0-9A-HJKMNP-TV-Z]{4}-[0-9A-HJKMNP-TV-Z]{4}"));
-  EXPECT_TRUE(access.is_pairing_code(code, kNow_s));
-  EXPECT_TRUE(access.is_pairing_code(code, kNow_s + 600.0));
-  EXPECT_FALSE(access.is_pairing_code(code, kNow_s + 1200.0));
-  EXPECT_FALSE(access.is_pairing_code(code, kNow_s - 600.0)) << "one of the future";
-  EXPECT_FALSE(Access(Secret("another token entirely")).is_pairing_code(code, kNow_s));
-  EXPECT_NE(code, access.pairing_code(kNow_s + 600.0));
+  EXPECT_TRUE(access.pairing_step_of(code, kNow_s));
+  EXPECT_TRUE(access.pairing_step_of(code, kNow_s + 569.0));
+  EXPECT_FALSE(access.pairing_step_of(code, kNow_s + 600.0));
+  EXPECT_FALSE(access.pairing_step_of(code, kNow_s - 30.0)) << "one of the future";
+  EXPECT_FALSE(Access(Secret("another token entirely")).pairing_step_of(code, kNow_s));
+  EXPECT_NE(code, access.pairing_code(kNow_s + 30.0)) << "for another browser";
 }
 TEST(Access, APairingCodeMayBeTypedAsPeopleDo) {
   const Access access(kToken);
@@ -46,10 +48,10 @@ TEST(Access, APairingCodeMayBeTypedAsPeopleDo) {
     const double at_s = kNow_s + step * Access::kCodeStep_s;
     std::string typed = access.pairing_code(at_s);
     for (char& c : typed) c = c == '-' ? ' ' : c == '0' ? 'o' : c == '1' ? 'l' : static_cast<char>(std::tolower(c));
-    EXPECT_TRUE(access.is_pairing_code(" " + typed, at_s)) << typed;
+    EXPECT_TRUE(access.pairing_step_of(" " + typed, at_s)) << typed;
   }
   for (const std::string& other : {std::string(), std::string("--------"), std::string("K7QM"), std::string(5000, 'A')})
-    EXPECT_FALSE(access.is_pairing_code(other, kNow_s));
+    EXPECT_FALSE(access.pairing_step_of(other, kNow_s));
 }
 TEST(Access, ASessionLastsAYearAndEndsWithItsToken) {
   const Access access(kToken);
@@ -73,81 +75,132 @@ TEST(Access, ASessionCannotBeMadeUpOrProlonged) {
   for (const char* other : {"", ".", "x", "-1.", "99999999999999999999.00", "1800000000", "1800000000."})
     EXPECT_FALSE(access.is_session(other, kNow_s)) << other;
 }
-TEST(PairingTries, TenAtOnceThenOneASecond) {
-  PairingTries tries;
-  for (int i = 0; i < 10; ++i) EXPECT_TRUE(tries.take(1000.0)) << i;
-  EXPECT_FALSE(tries.take(1000.0));
-  EXPECT_FALSE(tries.take(1000.9));
-  EXPECT_TRUE(tries.take(1001.1));
-  EXPECT_FALSE(tries.take(1001.2));
+TEST(PairingLimits, TenAtOnceOfAnAddressThenOneASecond) {
+  PairingLimits limits;
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(limits.take("10.0.0.1", 1000.0)) << i;
+  EXPECT_FALSE(limits.take("10.0.0.1", 1000.0));
+  EXPECT_FALSE(limits.take("10.0.0.1", 1000.9));
+  EXPECT_TRUE(limits.take("10.0.0.2", 1000.9)) << "the owner is not locked out";
+  EXPECT_TRUE(limits.take("10.0.0.1", 1001.1));
+  EXPECT_FALSE(limits.take("10.0.0.1", 1001.2));
+}
+TEST(PairingLimits, AnyNumberOfAddressesTakesBoundedMemory) {
+  PairingLimits limits;
+  int allowed = 0;
+  for (int i = 0; i < 100'000; ++i) allowed += limits.take("fd00::" + std::to_string(i), 1000.0) ? 1 : 0;
+  EXPECT_EQ(allowed, static_cast<int>(PairingLimits::kMaxAddresses + PairingLimits::kBurst));
+  EXPECT_TRUE(limits.take("10.0.0.1", 1020.0)) << "later";
+}
+TEST(PairingLimits, ACodeWorksOnce) {
+  PairingLimits limits;
+  EXPECT_TRUE(limits.use(7));
+  EXPECT_FALSE(limits.use(7));
+  EXPECT_TRUE(limits.use(6));
+  EXPECT_TRUE(limits.use(7 + Access::kCodeSteps));
+  EXPECT_FALSE(limits.use(7 + Access::kCodeSteps));
 }
 
 HttpRequest from_elsewhere() {
   return {.method = "POST", .path = "/api/v1/scenes", .client = {.address = "192.168.1.30", .is_local = false}};
 }
 
-TEST(Permission, ThisMachineIsTrustedUnlessAProxySendsItForAnother) {
-  const Access access(kToken);
+TEST(Permission, WithoutATokenFileThisMachineIsTrustedUnlessAProxySendsItForAnother) {
   HttpRequest request{.client = {.address = "127.0.0.1", .is_local = true}};
-  EXPECT_TRUE(is_trusted(request, nullptr, kNow_s));
+  EXPECT_TRUE(is_trusted(request, {}, kNow_s));
   request.is_forwarded = true;
-  EXPECT_FALSE(is_trusted(request, nullptr, kNow_s));
-  EXPECT_FALSE(is_trusted(request, &access, kNow_s));
-  request.authorization = "Bearer " + kToken.reveal();
-  EXPECT_TRUE(is_trusted(request, &access, kNow_s));
+  EXPECT_FALSE(is_trusted(request, {}, kNow_s));
+  EXPECT_FALSE(is_trusted(from_elsewhere(), {}, kNow_s));
+}
+TEST(Permission, WithATokenFileRightsComeFromTheTokenAloneWhateverTheAddress) {
+  const Access access(kToken);
+  const Trust trust{.takes_token = true, .access = &access};
+  for (const bool is_local : {true, false}) {
+    HttpRequest request{.client = {.address = "127.0.0.1", .is_local = is_local}};
+    EXPECT_FALSE(is_trusted(request, trust, kNow_s)) << "a plain proxy_pass looks like this machine";
+    request.authorization = "Bearer " + kToken.reveal();
+    EXPECT_TRUE(is_trusted(request, trust, kNow_s));
+    EXPECT_FALSE(is_trusted(request, {.takes_token = true}, kNow_s)) << "the token cannot be read: nobody";
+  }
 }
 TEST(Permission, OthersShowTheTokenOrASession) {
   const Access access(kToken);
+  const Trust trust{.takes_token = true, .access = &access};
   HttpRequest request = from_elsewhere();
-  EXPECT_FALSE(is_trusted(request, &access, kNow_s));
+  EXPECT_FALSE(is_trusted(request, trust, kNow_s));
   request.authorization = "Bearer " + kToken.reveal();
-  EXPECT_TRUE(is_trusted(request, &access, kNow_s));
-  EXPECT_FALSE(is_trusted(request, nullptr, kNow_s)) << "no token is configured";
+  EXPECT_TRUE(is_trusted(request, trust, kNow_s));
+  EXPECT_FALSE(is_trusted(request, {}, kNow_s)) << "no token is configured";
   for (const std::string& other : {std::string("Bearer "), "Basic " + kToken.reveal(), kToken.reveal()}) {
     request.authorization = other;
-    EXPECT_FALSE(is_trusted(request, &access, kNow_s)) << other;
+    EXPECT_FALSE(is_trusted(request, trust, kNow_s)) << other;
   }
   const std::string session = access.new_session(kNow_s);
   for (const std::string& cookies : {"yuragi_session=" + session, "a=b; yuragi_session=" + session + "; c"}) {
     request.cookie = cookies;
-    EXPECT_TRUE(is_trusted(request, &access, kNow_s)) << cookies;
+    EXPECT_TRUE(is_trusted(request, trust, kNow_s)) << cookies;
   }
   for (const std::string& cookies :
        {"session=" + session, "xyuragi_session=" + session, std::string("yuragi_session"), std::string(";;=;")}) {
     request.cookie = cookies;
-    EXPECT_FALSE(is_trusted(request, &access, kNow_s)) << cookies;
+    EXPECT_FALSE(is_trusted(request, trust, kNow_s)) << cookies;
   }
 }
 TEST(Permission, ReadingIsFreeUnlessItTakesTheToken) {
+  const Access access(kToken);
+  const Trust trust{.takes_token = true, .access = &access};
   HttpRequest request = from_elsewhere();
-  EXPECT_EQ(permission_refusal(request, false, true, false)->status, 401U);
-  EXPECT_THAT(permission_refusal(request, false, true, false)->body, HasSubstr("yuragi token"));
-  EXPECT_THAT(permission_refusal(request, false, false, false)->body, HasSubstr("token_file"));
-  EXPECT_FALSE(permission_refusal(request, true, true, true));
+  EXPECT_EQ(permission_refusal(request, false, trust, false)->status, 401U);
+  EXPECT_THAT(permission_refusal(request, false, trust, false)->body, HasSubstr("yuragi token"));
+  EXPECT_THAT(permission_refusal(request, false, {}, false)->body, HasSubstr("no [http] token_file"));
+  EXPECT_THAT(permission_refusal(request, false, {.takes_token = true}, false)->body, HasSubstr("cannot be read"));
+  EXPECT_FALSE(permission_refusal(request, true, trust, true));
   for (const char* method : {"GET", "HEAD"}) {
     request.method = method;
-    EXPECT_FALSE(permission_refusal(request, false, true, false));
-    EXPECT_EQ(permission_refusal(request, false, true, true)->status, 401U);
+    EXPECT_FALSE(permission_refusal(request, false, trust, false));
+    EXPECT_EQ(permission_refusal(request, false, trust, true)->status, 401U);
   }
 }
 TEST(Permission, APairedBrowserIsLetInByItsCookieAlone) {
   const Access access(kToken);
-  PairingTries tries;
+  const Trust trust{.takes_token = true, .access = &access};
+  PairingLimits limits;
   HttpRequest request = from_elsewhere();
-  EXPECT_EQ(pairing_answer("0000-0000", request, &access, tries, kNow_s, 0.0).status, 403U);
-  EXPECT_EQ(pairing_answer("0000-0000", request, nullptr, tries, kNow_s, 0.0).status, 409U);
+  const auto answer_to_code = [&](const std::string& code, const Trust& by = {}) {
+    return pairing_answer(code, request, request.client.address, by, limits, kNow_s, 0.0);
+  };
+  EXPECT_EQ(answer_to_code("0000-0000", trust).status, 403U);
+  EXPECT_EQ(answer_to_code("0000-0000").status, 409U);
+  EXPECT_EQ(answer_to_code("0000-0000", {.takes_token = true}).status, 409U);
   request.is_https = true;
-  const HttpResponse paired = pairing_answer(access.pairing_code(kNow_s), request, &access, tries, kNow_s, 0.0);
+  const HttpResponse paired = answer_to_code(access.pairing_code(kNow_s), trust);
   ASSERT_EQ(paired.status, 200U);
   ASSERT_EQ(paired.fields.size(), 1U);
   const std::string& cookie = paired.fields[0].second;
   EXPECT_THAT(cookie, HasSubstr("; HttpOnly; SameSite=Strict; Secure"));
-  request.cookie = cookie.substr(0, cookie.find(';'));
-  EXPECT_TRUE(is_trusted(request, &access, kNow_s + 3600.0));
-  while (pairing_answer("0000-0000", request, &access, tries, kNow_s, 0.0).status == 403U) {
+  EXPECT_THAT(answer_to_code(access.pairing_code(kNow_s), trust).body, HasSubstr("has been used"));
+  while (answer_to_code("0000-0000", trust).status == 403U) {
   }
-  EXPECT_EQ(pairing_answer(access.pairing_code(kNow_s), request, &access, tries, kNow_s, 0.0).status, 429U)
-      << "who guesses does not come far";
+  EXPECT_EQ(answer_to_code(access.pairing_code(kNow_s), trust).status, 429U) << "a guesser does not get far";
+  request.client.address = "192.168.1.31";
+  EXPECT_EQ(answer_to_code(access.pairing_code(kNow_s - 30.0), trust).status, 200U) << "and locks nobody out";
+  request.cookie = cookie.substr(0, cookie.find(';'));
+  EXPECT_TRUE(is_trusted(request, trust, kNow_s + 3600.0));
+}
+TEST(Permission, OnlyProxiesAreBelievedForWhomTheySpeak) {
+  const std::array<std::string, 2> proxies = {"127.0.0.1", "10.0.0.7"};
+  HttpRequest request{.forwarded_for = "1.2.3.4, 192.168.1.30", .client = {.address = "127.0.0.1", .is_local = true}};
+  EXPECT_EQ(client_address(request, {}), "127.0.0.1");
+  EXPECT_EQ(client_address(request, proxies), "192.168.1.30") << "what stands before it anybody may have written";
+  request.forwarded_for = "192.168.1.30,10.0.0.7";
+  EXPECT_EQ(client_address(request, proxies), "192.168.1.30");
+  for (const char* const none : {"", ",", " , "}) {
+    request.forwarded_for = none;
+    EXPECT_EQ(client_address(request, proxies), "127.0.0.1") << none;
+  }
+  request.forwarded_for = std::string(5000, 'x');
+  EXPECT_EQ(client_address(request, proxies), "127.0.0.1");
+  request.forwarded_for = "a\x1b[2J\xff";
+  EXPECT_EQ(client_address(request, proxies), "a?[2J?");
 }
 
 }  // namespace

@@ -369,6 +369,14 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_FALSE(sensors.sensors[1].replayed);
   EXPECT_EQ(gauge.raw_speed_m_s, 0.5);
   EXPECT_EQ(gauge.raw_direction_deg, 349.5);
+  ASSERT_EQ(sensors.sensors[0].quantities.size(), 2U);
+  EXPECT_EQ(sensors.sensors[0].quantities[0].quantity, wind::judging::Quantity::kDirection);
+  EXPECT_EQ(sensors.sensors[0].quantities[0].age_s, 180.5);
+  EXPECT_TRUE(sensors.sensors[0].quantities[0].is_missing);
+  EXPECT_EQ(sensors.sensors[0].quantities[0].reason, "none for 3 min");
+  EXPECT_EQ(sensors.sensors[0].quantities[1].quantity, wind::judging::Quantity::kGust);
+  EXPECT_EQ(sensors.sensors[0].quantities[1].age_s, std::nullopt);
+  EXPECT_FALSE(sensors.sensors[0].quantities[1].is_missing);
   EXPECT_EQ(sensors.sensors[1].raw_speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.sensors[1].speed_m_s, std::nullopt);
   EXPECT_EQ(sensors.wind.wind.u_m_s, 3.25);
@@ -394,6 +402,7 @@ TEST(WireRoundTrip, HowTheDaemonDoesComesBack) {
   EXPECT_EQ(sensors.tick_lateness->max_s, 2.5);
   EXPECT_EQ(sensors.recent_ticks, 36'000U);
   EXPECT_EQ(sensors.recent_skipped_ticks, 40U);
+  EXPECT_EQ(sensors.troubles, std::vector<std::string>{"the page cannot be served"});
   ASSERT_TRUE(sensors.recorder);
   EXPECT_EQ(sensors.recorder->state, RecorderState::kRetrying);
   EXPECT_EQ(sensors.recorder->written, 9U);

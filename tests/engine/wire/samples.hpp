@@ -343,6 +343,9 @@ inline wire::Sensors sensors() {
   gauge.state_reason = "the same 3.42 m/s 61 times";
   gauge.raw_speed_m_s = 0.5;
   gauge.raw_direction_deg = 349.5;
+  gauge.quantities = {
+      {.quantity = wind::judging::Quantity::kDirection, .age_s = 180.5, .is_missing = true, .reason = "none for 3 min"},
+      {.quantity = wind::judging::Quantity::kGust}};
   const wire::Shaping shaping{.site_gain = 1.75,
                               .floor_gain = 2.5,
                               .breeze_m_s = 0.25,
@@ -411,7 +414,8 @@ inline wire::Sensors sensors() {
                                              .tick_s = 0.00390625,
                                              .scenes = {{"grass", 0.001953125}, {"fire", 0.0009765625}}},
           .recent_ticks = 36'000,
-          .recent_skipped_ticks = 40};
+          .recent_skipped_ticks = 40,
+          .troubles = {"the page cannot be served"}};
 }
 
 inline wire::RawTrace raw_trace() {

@@ -64,6 +64,21 @@ TEST_F(AsRecorded, EachSensorPlaysByItsNameWithItsCalibration) {
   EXPECT_NEAR(result.wind_mean_m_s, 5.4, 0.3);
 }
 
+TEST_F(AsRecorded, TheRecordingDecidesNeitherWhereItListensNorWhatItRuns) {
+  record(
+      "[stream]\nlisten = \"0.0.0.0:7410\"\ncontrol = \"anywhere\"\n[http]\nlisten = \"0.0.0.0:7480\"\n"
+      "token_file = \"/etc/shadow\"\n[[alert]]\nname = \"a\"\ncommand = \"touch /tmp/alerted\"\n" +
+      installation_text());
+  const sensing::RecordedInstallation installation = installation_in(file_);
+  EXPECT_EQ(installation.config.stream.listen, "127.0.0.1:7410");
+  EXPECT_EQ(installation.config.stream.control, settings::ControlPermission::kLoopback);
+  EXPECT_EQ(installation.config.http.listen, "");
+  EXPECT_EQ(installation.config.http.token_file, "");
+  EXPECT_THAT(installation.config.alerts, IsEmpty());
+  EXPECT_THAT(installation.remarks, ElementsAre(HasSubstr("[stream] listen and control are not used"),
+                                                HasSubstr("[http] is not used"), HasSubstr("alerts are not used")));
+}
+
 TEST_F(AsRecorded, TheRecordedClockOpensAndCloses) {
   record(installation_text("hours = \"10:00-15:00\"\nzone = \"Europe/Berlin\"\nfade = 5\n"));
   EXPECT_GT(replay(file_).wind_mean_m_s, 4.0) << "14:00 in Berlin";

@@ -1,0 +1,60 @@
+#include "daemon/settings/own_token.hpp"
+
+#include <cstdlib>
+#include <exception>
+
+#include <fmt/format.h>
+#include <grp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "daemon/settings/config.hpp"
+#include "drivers/sensor/secret_source.hpp"
+#include "engine/base/address.hpp"
+
+namespace yuragi::daemon::settings {
+namespace {
+
+constexpr const char* kVariable = "YURAGI_TOKEN_FILE";
+
+bool is_of_this_machine(const std::string& address) {
+  const auto parsed = parse_address(address);
+  return parsed && (parsed->host == "localhost" || parsed->host == "::1" || parsed->host.starts_with("127."));
+}
+
+/// [http] token_file of a configuration; empty if it has none or cannot be read: then the command goes on without.
+std::string token_file_of(const std::filesystem::path& config) {
+  if (access(config.c_str(), R_OK) != 0) return {};
+  try {
+    return load_config(config).http.token_file;
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+std::string group_hint(const std::string& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return {};
+  const group* const members = getgrgid(status.st_gid);
+  if (members == nullptr || (status.st_mode & S_IRGRP) == 0) return {};
+  return fmt::format("you may not read {}: its group \"{}\" may (`sudo adduser YOUR-NAME {}`, then log in again)", file,
+                     members->gr_name, members->gr_name);
+}
+
+}  // namespace
+
+OwnToken own_token(const std::string& address, const std::filesystem::path& config) {
+  if (const char* const file = std::getenv(kVariable); file != nullptr && *file != '\0') {
+    auto token = drivers::sensor::secret_in_file(file);
+    if (!token) throw FailureError({std::string(kVariable) + ": " + token.error().message, FailureKind::kNoInput});
+    return {.token = std::move(*token), .hint = {}};
+  }
+  if (!is_of_this_machine(address)) return {};
+  const std::string file = token_file_of(config);
+  if (file.empty()) return {};
+  if (access(file.c_str(), R_OK) != 0) return {.token = {}, .hint = group_hint(file)};
+  auto token = drivers::sensor::secret_in_file(file);
+  return token ? OwnToken{.token = std::move(*token), .hint = {}} : OwnToken{};
+}
+
+}  // namespace yuragi::daemon::settings

@@ -1,0 +1,27 @@
+#include "daemon/web/pairing_limits.hpp"
+
+#include <algorithm>
+
+#include "daemon/web/access.hpp"
+
+namespace yuragi::daemon::web {
+
+bool PairingLimits::take(const std::string& address, double now_s) {
+  const auto left_now = [now_s](const Allowance& allowance) {
+    return std::min(kBurst, allowance.left + std::max(0.0, now_s - allowance.at_s));
+  };
+  const auto is_full = [&] { return of_address_.size() >= kMaxAddresses && !of_address_.contains(address); };
+  if (is_full()) std::erase_if(of_address_, [&](const auto& one) { return left_now(one.second) >= kBurst; });
+  Allowance& allowance = of_address_.try_emplace(is_full() ? std::string() : address).first->second;
+  const double left = left_now(allowance);
+  const bool is_allowed = left >= 1.0;
+  allowance = {.left = is_allowed ? left - 1.0 : left, .at_s = now_s};
+  return is_allowed;
+}
+
+bool PairingLimits::use(std::int64_t step) {
+  std::erase_if(used_, [step](std::int64_t used) { return used <= step - Access::kCodeSteps; });
+  return used_.insert(step).second;
+}
+
+}  // namespace yuragi::daemon::web
