@@ -24,4 +24,7 @@ bool is_blank_file(const std::filesystem::path& file);
 /// Opens a file of any version of the format that this one reads. As WindlogReader::open().
 Result<StoredFile, Failure> open_stored_file(const std::filesystem::path& file, const std::stop_token& stop);
 
+/// The same; everything that is read from it then is as of one moment, whatever its writer does.
+Result<StoredFile, Failure> open_stored_snapshot(const std::filesystem::path& file);
+
 }  // namespace yuragi::drivers::windlog
