@@ -106,10 +106,8 @@ bool is_blank_file(const std::filesystem::path& file) {
   return format && format->is_blank();
 }
 
-namespace {
-
-Result<StoredFile, Failure> open_shared_or_frozen(const std::filesystem::path& file, const std::stop_token& stop,
-                                                  bool is_snapshot) {
+Result<StoredFile, Failure> open_stored_file(const std::filesystem::path& file, const std::stop_token& stop,
+                                             bool is_snapshot) {
   if (const auto checked = check_is_file(file); !checked) return checked.error();
 
   auto opened = open_as(file, sqlite::Access::kReadOnly, stop, is_snapshot);
@@ -127,16 +125,6 @@ Result<StoredFile, Failure> open_shared_or_frozen(const std::filesystem::path& f
     }
   }
   return Failure{opened.error().message, FailureKind::kBadData};
-}
-
-}  // namespace
-
-Result<StoredFile, Failure> open_stored_file(const std::filesystem::path& file, const std::stop_token& stop) {
-  return open_shared_or_frozen(file, stop, false);
-}
-
-Result<StoredFile, Failure> open_stored_snapshot(const std::filesystem::path& file) {
-  return open_shared_or_frozen(file, {}, true);
 }
 
 }  // namespace yuragi::drivers::windlog

@@ -104,7 +104,7 @@ class FileCheck {
     std::vector<LoggedReading> block;
     for (const auto& stream : *streams) {
       while (true) {
-        if (const auto read = stream->read(block, skipped_); !read) return read;
+        if (auto read = stream->read(block, skipped_); !read) return read;
         if (block.empty()) break;
         for (const LoggedReading& logged : block) {
           const LoggedSensor& sensor = stored_.sensors[logged.sensor];
@@ -124,15 +124,13 @@ class FileCheck {
   /// All rows of all tables of readings must have been read, and be readings.
   Result<void, Failure> check_rows() {
     auto tables = database_.prepare(
-        "SELECT name FROM sqlite_schema WHERE type = 'table' AND (name = 'reading' OR name GLOB 'reading_[1-9]*')");
+        "SELECT name FROM sqlite_schema WHERE type = 'table' AND "
+        "(name = 'reading' OR name GLOB 'reading_[1-9]*') AND name NOT GLOB 'reading_*[^0-9]*'");
     if (!tables) return tables.error();
     std::uint64_t rows = 0;
     Statement::Step step = tables->step();
     for (; step == Statement::Step::kRow; step = tables->step()) {
-      std::string name = tables->text(0);
-      for (std::size_t at = name.find('"'); at != std::string::npos; at = name.find('"', at + 2))
-        name.insert(at, 1, '"');
-      const auto count = database_.integer("SELECT count(*) FROM \"" + name + "\"");
+      const auto count = database_.integer("SELECT count(*) FROM " + tables->text(0));
       if (!count) return count.error();
       rows += static_cast<std::uint64_t>(*count);
     }
@@ -205,7 +203,7 @@ bool verify_file(const std::filesystem::path& file, Verification& verification, 
   seen.files.push_back(*identity);
   VerifiedFile& result = verification.files.emplace_back();
   result.file = file;
-  auto opened = open_stored_snapshot(file);
+  auto opened = open_stored_file(file, {}, true);
   if (!opened) {
     if (!is_blank_file(file)) result.damage.push_back(opened.error().message);
     return true;

@@ -106,8 +106,9 @@ class OneWriter(unittest.TestCase):
         status = run("status", "--connect", second.address())
         self.assertEqual(status.returncode, 1)
         self.assertIn(reason, status.stdout)
-        refused = run("clean-secrets", self.wall)
-        self.assertEqual((refused.returncode, reason in refused.stderr), (69, True), refused.stderr)
+        for command in (["clean-secrets", self.wall], ["import", self.config, "-o", self.wall, "--force"]):
+            refused = run(*command)
+            self.assertEqual((refused.returncode, reason in refused.stderr), (69, True), refused.stderr)
 
         first.end(signal.SIGKILL)
         self.wait_for_recorder(second, lambda recorder: recorder["state"] == "writing" and recorder["written"] > 100)
