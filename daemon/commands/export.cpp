@@ -11,6 +11,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/export_take.hpp"
+#include "daemon/commands/lock_recording.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_export.hpp"
@@ -175,6 +176,7 @@ void run_export(const ExportOptions& options) {
           "--from, --to, --since, --until, --resample and --quantities are for CSV output; a copy is always "
           "of the whole recording");
     }
+    const auto lock = lock_recording(options.output);
     if (const auto copied = reader->copy_to(output.working_path()); !copied) {
       throw ExitError(kExitCannotCreate, options.output + ": cannot be written: " + copied.error().message);
     }

@@ -15,6 +15,7 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/lock_recording.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_import.hpp"
 #include "daemon/tools/csv/line_log_import.hpp"
@@ -240,6 +241,7 @@ void run_import(const ImportOptions& options) {
     if (!file) throw ExitError(kExitNoInput, options.input + ": cannot be read; does it exist?");
   }
 
+  const auto lock = lock_recording(options.output);
   settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   Target target(output.working_path(), fmt::format("# imported from {}\n", options.input));
   const auto report =

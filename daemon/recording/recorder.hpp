@@ -27,8 +27,9 @@ class Recorder {
 
   /// Opens the recording, or creates it so that others cannot read it (mode 0640), and begins its session; a recording
   /// of an older format is renamed first (set_older_recording_aside). `report` is called on the recorder's thread, in
-  /// the constructor, or in close(). Throws FailureError (kCannotCreate) where it cannot. `rules`: when a new file is
-  /// begun, and what is deleted; its `file` is not looked at. `synchronized_file`: for is_synchronized(). While the
+  /// the constructor, or in close(). Throws FailureError (kCannotCreate) where it cannot, but not if another program
+  /// records to it (SeriesLock): then it retries, and takes over when that program has ended. `rules`: when a new file
+  /// is begun, and what is deleted; its `file` is not looked at. `synchronized_file`: for is_synchronized(). While the
   /// date of what is pushed is doubted (ClockJudge) age deletes nothing, and FILE-clock exists.
   Recorder(const std::filesystem::path& file, RecordingInfo info, RecorderReport report = {},
            const RecorderLimits& limits = {}, const settings::RecordingConfig& rules = {},

@@ -82,13 +82,38 @@ RecorderWorker::RecorderWorker(const std::filesystem::path& file, const settings
       ring_(kRingCapacity),
       quantities_ring_(kQuantitiesCapacity),
       report_(std::move(report)) {
-  auto opened = open_session(info_.started);
+  const auto begun = begin_recording(info_.started);
+  if (begun) return;
+  if (begun.error().kind != FailureKind::kUnavailable) {
+    throw FailureError({"cannot record: " + begun.error().message, FailureKind::kCannotCreate});
+  }
+  fail(begun.error());
+}
+
+/// Takes the lock of the series and opens the recording for the first time.
+Result<void, Failure> RecorderWorker::begin_recording(Instant started) {
+  if (auto held = hold_lock(); !held) return held;
+  if (auto opened = open_session(started); !opened) return opened;
   const auto newest = newest_time();
-  if (opened) opened = commit();
-  if (!opened) throw FailureError({"cannot record: " + opened.error().message, FailureKind::kCannotCreate});
-  clock_ = ClockJudge(newest, read_clock_doubt(clock_doubt_file(file_)));
+  if (auto committed = commit(); !committed) return committed;
+  clock_.emplace(newest, read_clock_doubt(clock_doubt_file(file_)));
   save_doubt();
   measure_free_space();
+  return {};
+}
+
+/// Takes the lock of the series, if it is not held or no longer that of the file's name. Fails with kUnavailable while
+/// another program has it.
+Result<void, Failure> RecorderWorker::hold_lock() {
+  if (lock_ && lock_->is_of(file_)) return {};
+  lock_.reset();
+  auto taken = drivers::windlog::SeriesLock::take(file_);
+  if (!taken) return taken.error();
+  lock_.emplace(std::move(*taken));
+  if (!lock_->is_effective() && !std::exchange(has_reported_no_locks_, true)) {
+    report(file_.string() + ": this file system has no locks: make sure that no other program records to it");
+  }
+  return {};
 }
 
 bool RecorderWorker::push(std::size_t sensor, const wind::WindReading& reading) noexcept {
@@ -201,7 +226,8 @@ void RecorderWorker::finish() {
     const auto closed = writer_->close();
     if (!closed) set_status(closed.error().message);
   }
-  if (clock_.doubt()) write_clock_doubt(clock_doubt_file(file_), clock_.doubt());
+  if (clock_ && clock_->doubt()) write_clock_doubt(clock_doubt_file(file_), clock_->doubt());
+  lock_.reset();
   ring_.drain([this](const Entry& entry) { pending_.push_back(entry); });
   const auto given_up = static_cast<std::size_t>(
       std::ranges::count_if(pending_, [](const Entry& entry) { return entry.sensor != kNextSession; }));
@@ -221,19 +247,23 @@ void RecorderWorker::flush() {
   while (pending_quantities_.size() < kQuantitiesCapacity && quantities_ring_.pop(quantities)) {
     pending_quantities_.push_back(quantities);
   }
-  const bool is_idle = pending_.empty() && pending_quantities_.empty();
+  const bool is_idle = lock_ && pending_.empty() && pending_quantities_.empty();
   if (is_idle || std::chrono::steady_clock::now() < retry_at_) return;
 
   const AtTheDisk at_the_disk(status_mutex_, writing_since_);
   if (const auto done = try_to_write(); !done) {
     writer_.reset();  // what it committed is complete in its file, wherever that has been moved
-    back_off_ = std::clamp(2 * back_off_, kFirstBackOff, kMaxBackOff);
-    retry_at_ = std::chrono::steady_clock::now() + back_off_;
-    set_status(done.error().message);
-    return;
+    return fail(done.error());
   }
   back_off_ = Nanoseconds{0};
   set_status("");
+}
+
+/// Shows why nothing can be written, and waits before the next attempt.
+void RecorderWorker::fail(const Failure& failure) {
+  back_off_ = std::clamp(2 * back_off_, kFirstBackOff, kMaxBackOff);
+  retry_at_ = std::chrono::steady_clock::now() + back_off_;
+  set_status(failure.message);
 }
 
 std::optional<std::uint64_t> RecorderWorker::measure_free_space() {
@@ -248,6 +278,7 @@ std::optional<std::uint64_t> RecorderWorker::measure_free_space() {
 
 Result<void, Failure> RecorderWorker::try_to_write() {
   try {
+    if (auto held = hold_lock(); !held) return held;
     return write_pending();
   } catch (const std::exception& error) {
     return Failure{file_.string() + ": " + error.what()};
@@ -335,6 +366,9 @@ Result<void, Failure> RecorderWorker::learn_begin() {
 /// `earliest`. What stations said before that goes into the session that ends: a session has no place for what was
 /// before it.
 Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earliest) {
+  if (!clock_) {
+    if (auto begun = begin_recording(begin_of_pending(first)); !begun) return begun;
+  }
   judge_clock(first);
   if (auto made = make_room(first.utc); !made) return made;
   if (writer_) {
@@ -353,9 +387,14 @@ Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earlie
     }
     return is_session_due_ ? begin_session_at(earliest) : Result<void, Failure>{};
   }
+  return open_session(begin_of_pending(first));
+}
+
+/// `first`, or what stations said before it.
+Instant RecorderWorker::begin_of_pending(Instant first) const {
   const bool have_said = !pending_quantities_.empty();
   const Instant said = have_said ? earliest_of(pending_quantities_) : first;
-  return open_session(said.mono < first.mono ? said : first);
+  return said.mono < first.mono ? said : first;
 }
 
 /// Commits; at first and then once a minute what is committed also comes into the file itself, so that a copy of it
@@ -395,14 +434,14 @@ std::optional<UtcTime> RecorderWorker::newest_time() const {
 }
 
 void RecorderWorker::judge_clock(Instant now) {
-  clock_.look(now, is_synchronized(synchronized_file_, now.utc));
+  clock_->look(now, is_synchronized(synchronized_file_, now.utc));
   save_doubt();
 }
 
 /// Reports a doubt of the clock that has begun or ended, and saves it then and once a minute. If that fails the disk
 /// takes no readings, either.
 void RecorderWorker::save_doubt() {
-  const auto& doubt = clock_.doubt();
+  const auto& doubt = clock_->doubt();
   {
     const std::lock_guard lock(status_mutex_);
     clock_doubt_ = doubt;
@@ -427,7 +466,7 @@ Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
     parts.push_back({part.file, part.begin, size_of(part.file)});
   }
   for (const auto& part : parts_to_delete(rules, parts, size_of(file_), free_bytes.value_or(rules.least_free_bytes),
-                                          now, clock_.doubt() ? 0 : may_delete_by_age_)) {
+                                          now, clock_->doubt() ? 0 : may_delete_by_age_)) {
     if (!drivers::windlog::remove_recording(part.file)) continue;
     report("deleted " + part.file.string() + ", which is not to be kept");
     if (part.is_by_age) --may_delete_by_age_;
@@ -450,6 +489,7 @@ Result<void, Failure> RecorderWorker::check_name() const {
 }
 
 Result<void, Failure> RecorderWorker::open_session(Instant started) {
+  if (auto held = hold_lock(); !held) return held;  // a link that was renamed refers to another file by now
   drivers::windlog::finish_rename_to_part(file_);
   const auto aside = drivers::windlog::set_older_recording_aside(file_);
   if (!aside) return aside.error();
@@ -463,10 +503,13 @@ Result<void, Failure> RecorderWorker::open_session(Instant started) {
   writer_.emplace(std::move(*opened));
   commits_ = 0;
   if (auto begun = begin_session_at(started); !begun) return begun;
+  const bool is_continued = writer_->last_before_session().has_value();
   const auto began = writer_->began();
   if (!began) return began.error();
   began_ = *began;
-  return {};
+  const auto parts = drivers::windlog::completed_parts(file_);
+  if (parts.empty() || is_continued) return {};
+  return writer_->set_previous_part(parts.back().begin);
 }
 
 /// Begins a session in the file that is open.

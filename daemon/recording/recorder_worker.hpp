@@ -18,6 +18,7 @@
 #include "daemon/recording/recorder_status.hpp"
 #include "daemon/settings/recording_config.hpp"
 #include "drivers/windlog/file_identity.hpp"
+#include "drivers/windlog/series_lock.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/spsc_ring.hpp"
@@ -61,7 +62,8 @@ class RecorderWorker {
   static constexpr int kCommitsPerCheckpoint = 60;
   static constexpr Nanoseconds kSaveDoubtEvery = std::chrono::minutes(1);
 
-  /// As Recorder::Recorder(). Throws FailureError (kCannotCreate) if it cannot open the recording.
+  /// As Recorder::Recorder(). Throws FailureError (kCannotCreate) if it cannot open the recording. If another program
+  /// records to it, run() tries again.
   RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules, RecordingInfo info,
                  RecorderReport report, const RecorderLimits& limits, std::filesystem::path synchronized_file);
 
@@ -105,6 +107,9 @@ class RecorderWorker {
   Result<void, Failure> append_quantities(MonoTime before);
   void forget_quantities(MonoTime before);
   Result<void, Failure> learn_begin();
+  Result<void, Failure> hold_lock();
+  Result<void, Failure> begin_recording(Instant started);
+  Instant begin_of_pending(Instant first) const;
   Result<void, Failure> prepare_file(Instant first, Instant earliest);
   Result<void, Failure> begin_session_at(Instant started);
   void take_next_session();
@@ -120,6 +125,7 @@ class RecorderWorker {
   void save_doubt();
   std::optional<std::uint64_t> measure_free_space();
   void report(std::string_view sentence);
+  void fail(const Failure& failure);
   void set_status(const std::string& error);
   RecorderStatus locked_status() const;
 
@@ -156,13 +162,15 @@ class RecorderWorker {
   // The recorder's thread alone, once it runs.
   std::vector<Entry> pending_;
   std::vector<QuantitiesEntry> pending_quantities_;
+  std::optional<drivers::windlog::SeriesLock> lock_;  ///< held while anything is opened, written or renamed
+  bool has_reported_no_locks_ = false;
   std::optional<drivers::windlog::WindlogWriter> writer_;
   drivers::windlog::FileIdentity identity_;  ///< of the file that writer_ writes
   std::optional<UtcTime> began_;             ///< that file's first session, once it has readings or quantities
   std::vector<std::int64_t> sensor_ids_;
-  bool is_session_due_ = false;  ///< the next reading begins one
-  int commits_ = 0;              ///< since the file was opened
-  ClockJudge clock_;
+  bool is_session_due_ = false;            ///< the next reading begins one
+  int commits_ = 0;                        ///< since the file was opened
+  std::optional<ClockJudge> clock_;        ///< from when the recording was first opened
   std::optional<ClockDoubt> saved_doubt_;  ///< as it is on the disk
   std::size_t may_delete_by_age_ = 0;      ///< until the next file is completed
   Nanoseconds back_off_{0};

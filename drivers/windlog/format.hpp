@@ -78,4 +78,21 @@ inline constexpr std::string_view kQuantityKeys = R"sql((  -- as decoded
   clock_ns INTEGER NOT NULL,  -- UTC less started_utc_ns + (time_ns - begin_ns), as in the tables of readings)sql";
 inline constexpr std::string_view kQuantityPrimaryKey = "\n  PRIMARY KEY (time_ns, series)\n) STRICT, WITHOUT ROWID";
 
+/// What a session wrote of each series, when it was closed: `yuragi verify` compares. A session that was not closed, or
+/// is of an older program, has no row. The checksum is SessionCount's.
+inline constexpr std::string_view kSessionCountTable = "session_count";
+inline constexpr std::string_view kSessionCountColumns = R"sql((  -- written when the session was closed
+  session  INTEGER NOT NULL,
+  series   INTEGER NOT NULL,
+  readings INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,  -- of all readings of the session and series, in any order
+  PRIMARY KEY (session, series)
+) STRICT, WITHOUT ROWID)sql";
+
+/// The completed file before this one in a series, by the moment in its name: one row, or no such table.
+inline constexpr std::string_view kPreviousPartTable = "previous_part";
+inline constexpr std::string_view kPreviousPartColumns = R"sql((  -- the file before this one in the series
+  begin_utc_ns INTEGER NOT NULL  -- the moment in its name
+) STRICT)sql";
+
 }  // namespace yuragi::drivers::windlog

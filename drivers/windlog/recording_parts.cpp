@@ -53,6 +53,14 @@ std::vector<RecordingPart> completed_parts(const std::filesystem::path& recordin
   return parts;
 }
 
+std::vector<std::filesystem::path> recording_files(const std::filesystem::path& recording) {
+  std::vector<std::filesystem::path> files;
+  for (const RecordingPart& part : completed_parts(recording)) files.push_back(part.file);
+  std::error_code is_not_there;
+  if (std::filesystem::exists(recording, is_not_there)) files.push_back(recording);
+  return files;
+}
+
 bool recording_exists(const std::filesystem::path& recording) {
   std::error_code is_unknown;
   return std::filesystem::exists(recording, is_unknown) || !completed_parts(recording).empty();

@@ -26,6 +26,9 @@ struct RecordingPart {
 /// The completed parts of a recording, oldest first; none where the folder cannot be read.
 std::vector<RecordingPart> completed_parts(const std::filesystem::path& recording);
 
+/// The files of a recording: its completed parts, oldest first, and the file that may still grow, if it exists.
+std::vector<std::filesystem::path> recording_files(const std::filesystem::path& recording);
+
 /// Is there such a recording: the file, or a completed part of it?
 bool recording_exists(const std::filesystem::path& recording);
 

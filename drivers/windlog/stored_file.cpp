@@ -68,13 +68,16 @@ Result<std::int64_t, Failure> version_of(sqlite::Database& database) {
 }
 
 Result<StoredFile, Failure> open_as(const std::filesystem::path& file, sqlite::Access access,
-                                    const std::stop_token& stop) {
+                                    const std::stop_token& stop, bool is_snapshot) {
   std::shared_lock names(recording_names());
   auto opened = sqlite::Database::open(file, access);
   if (!opened) return opened.error();
   auto database = std::make_unique<sqlite::Database>(std::move(*opened));
   database->set_busy_timeout(sqlite::kBusyTimeout_ms);
   database->end_on(stop);
+  if (is_snapshot) {
+    if (const auto begun = database->run("BEGIN"); !begun) return begun.error();
+  }
   const auto version = version_of(*database);
   if (!version) return version.error();
   names.unlock();
@@ -103,15 +106,16 @@ bool is_blank_file(const std::filesystem::path& file) {
   return format && format->is_blank();
 }
 
-Result<StoredFile, Failure> open_stored_file(const std::filesystem::path& file, const std::stop_token& stop) {
+Result<StoredFile, Failure> open_stored_file(const std::filesystem::path& file, const std::stop_token& stop,
+                                             bool is_snapshot) {
   if (const auto checked = check_is_file(file); !checked) return checked.error();
 
-  auto opened = open_as(file, sqlite::Access::kReadOnly, stop);
+  auto opened = open_as(file, sqlite::Access::kReadOnly, stop, is_snapshot);
   if (opened) return opened;
 
   // In a folder where nothing can be created SQLite cannot share the file, but a file that was closed needs no sharing.
   if (is_absent_or_empty(wal_of(file))) {
-    if (auto frozen = open_as(file, sqlite::Access::kReadFrozen, stop)) return frozen;
+    if (auto frozen = open_as(file, sqlite::Access::kReadFrozen, stop, is_snapshot)) return frozen;
   }
   // Not where it may be a recording that this process writes: closing any file releases the locks that SQLite has on
   // it.

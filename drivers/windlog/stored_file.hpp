@@ -21,7 +21,9 @@ Result<void, Failure> check_is_file(const std::filesystem::path& file);
 /// Is it a file that a writer had created, and was killed before it wrote to it?
 bool is_blank_file(const std::filesystem::path& file);
 
-/// Opens a file of any version of the format that this one reads. As WindlogReader::open().
-Result<StoredFile, Failure> open_stored_file(const std::filesystem::path& file, const std::stop_token& stop);
+/// Opens a file of any version of the format that this one reads. As WindlogReader::open(). A snapshot is read as it is
+/// at this moment, whatever its writer does; its readings are not to be merged with their database.
+Result<StoredFile, Failure> open_stored_file(const std::filesystem::path& file, const std::stop_token& stop,
+                                             bool is_snapshot = false);
 
 }  // namespace yuragi::drivers::windlog

@@ -1,6 +1,5 @@
 #include "drivers/windlog/windlog_reader.hpp"
 
-#include <system_error>
 #include <utility>
 
 #include "drivers/windlog/parts_in_turn.hpp"
@@ -8,26 +7,14 @@
 #include "drivers/windlog/stored_file.hpp"
 
 namespace yuragi::drivers::windlog {
-namespace {
-
-/// The completed parts of a recording, oldest first, and the file that may still grow, if it is there.
-std::vector<std::filesystem::path> files_of(const std::filesystem::path& recording) {
-  std::vector<std::filesystem::path> files;
-  for (const RecordingPart& part : completed_parts(recording)) files.push_back(part.file);
-  std::error_code is_not_there;
-  if (std::filesystem::exists(recording, is_not_there)) files.push_back(recording);
-  return files;
-}
-
-}  // namespace
 
 Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& file, const std::stop_token& stop) {
   constexpr int kMostLooks = 3;
   for (int tries = 1;; ++tries) {
-    const auto files = files_of(file);
+    const auto files = recording_files(file);
     auto reader = open(file, files, stop);
     // Where its writer completed a file meanwhile, one was missed, or taken for another.
-    if (tries == kMostLooks || files_of(file) == files) return reader;
+    if (tries == kMostLooks || recording_files(file) == files) return reader;
   }
 }
 

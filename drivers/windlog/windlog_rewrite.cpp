@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "drivers/windlog/file_format.hpp"
+#include "drivers/windlog/series_lock.hpp"
 #include "drivers/windlog/sqlite.hpp"
 #include "drivers/windlog/stored_file.hpp"
 
@@ -91,6 +92,8 @@ Result<std::size_t, Failure> rewrite_all(sqlite::Database& database, const TextR
 Result<std::size_t, Failure> rewrite_texts(const std::filesystem::path& file, const TextRewrite& rewrite) {
   if (const auto checked = check_is_file(file); !checked) return checked.error();
 
+  const auto lock = SeriesLock::take(file);
+  if (!lock) return lock.error();
   auto database = sqlite::Database::open(file, sqlite::Access::kReadWrite);
   if (!database) return database.error();
   database->set_busy_timeout(sqlite::kBusyTimeout_ms);

@@ -25,8 +25,8 @@ struct TextRewrite {
 /// whole, which takes as much free space again. Where that alone fails, the failure says so: then the texts are
 /// changed, and traces of the old ones may be left in unused parts of the file.
 ///
-/// Refuses (kUnavailable) a recording that another program has open, (kBadData) a file that is no recording, or one of
-/// a newer format, and (kNoInput) one that is not there.
+/// Holds the SeriesLock of the file. Refuses (kUnavailable) a recording that another program records to or has open,
+/// (kBadData) a file that is no recording, or one of a newer format, and (kNoInput) one that is not there.
 Result<std::size_t, Failure> rewrite_texts(const std::filesystem::path& file, const TextRewrite& rewrite);
 
 }  // namespace yuragi::drivers::windlog

@@ -118,6 +118,7 @@ WindlogWriter::~WindlogWriter() {
 }
 
 Result<void, Failure> WindlogWriter::begin_session(const WindlogSession& session) {
+  if (auto done = write_counts(); !done) return done;
   insert_reading_.clear();
   const auto begin_ns = begin_of_next_session(session.started.utc);
   if (!begin_ns) return begin_ns.error();
@@ -130,6 +131,35 @@ Result<void, Failure> WindlogWriter::begin_session(const WindlogSession& session
   insert_session_.bind(5, session.configuration);
   if (auto done = write(insert_session_); !done) return done;
   session_ = database_.last_id();
+  counts_.emplace();
+  return {};
+}
+
+Result<void, Failure> WindlogWriter::set_previous_part(UtcTime begin) {
+  if (auto begun = begin_transaction(); !begun) return begun;
+  const std::string table(kPreviousPartTable);
+  const std::string statements = "CREATE TABLE IF NOT EXISTS " + table + " " + std::string(kPreviousPartColumns) +
+                                 "; INSERT INTO " + table + " VALUES (" + std::to_string(nanoseconds(begin)) + ")";
+  return database_.run(statements.c_str()) ? Result<void, Failure>{} : undo();
+}
+
+/// Stores what the session that ends wrote; in the transaction of its last readings, or in one of its own.
+Result<void, Failure> WindlogWriter::write_counts() {
+  const auto counts = std::exchange(counts_, std::nullopt);
+  if (!counts || counts->empty()) return {};
+  if (auto begun = begin_transaction(); !begun) return begun;
+  const std::string table(kSessionCountTable);
+  const std::string create = "CREATE TABLE IF NOT EXISTS " + table + " " + std::string(kSessionCountColumns);
+  if (!database_.run(create.c_str())) return undo();
+  auto insert = database_.prepare("INSERT INTO " + table + " VALUES (?1, ?2, ?3, ?4)");
+  if (!insert) return undo();
+  for (const auto& [series, count] : *counts) {
+    insert->bind(1, session_);
+    insert->bind(2, series);
+    insert->bind(3, static_cast<std::int64_t>(count.readings));
+    insert->bind(4, static_cast<std::int64_t>(count.checksum));
+    if (auto done = write(*insert); !done) return done;
+  }
   return {};
 }
 
@@ -266,6 +296,11 @@ Result<void, Failure> WindlogWriter::append(std::int64_t sensor, const wind::Win
     ++since_ns;
   }
   into.last_since_ns = std::max(into.last_since_ns, since_ns);
+  if (counts_) {
+    wind::WindReading stored = reading;
+    stored.time.mono = started_.mono + Nanoseconds(since_ns);
+    (*counts_)[into.series].add(stored);
+  }
   return {};
 }
 
@@ -307,7 +342,7 @@ Result<bool, Failure> WindlogWriter::append(std::int64_t sensor, const wind::Sta
   const Failure failure = database_.failure();
   insert_quantities_.reset();
   if (database_.in_transaction() && code != SQLITE_FULL && code != SQLITE_IOERR) return false;
-  if (database_.in_transaction()) static_cast<void>(database_.run("ROLLBACK"));
+  roll_back();
   return failure;
 }
 
@@ -364,6 +399,8 @@ Result<void, Failure> WindlogWriter::checkpoint() {
 
 Result<void, Failure> WindlogWriter::close() {
   const auto committed = commit();
+  // Without its counts the recording is complete all the same.
+  if (committed && write_counts()) static_cast<void>(commit());
 
   // Back into one file. A reader that has it open prevents that; what was committed is safe either way.
   database_.set_busy_timeout(kCloseTimeout_ms);
@@ -403,9 +440,14 @@ Result<void, Failure> WindlogWriter::write(sqlite::Statement& statement) {
 Result<void, Failure> WindlogWriter::undo() {
   Failure failure = database_.failure();
   insert_quantities_.reset();  // their table may be taken back, too
+  roll_back();
+  return failure;
+}
+
+void WindlogWriter::roll_back() {
+  counts_.reset();
   // SQLite rolls back by itself after some errors.
   if (database_.in_transaction()) static_cast<void>(database_.run("ROLLBACK"));
-  return failure;
 }
 
 }  // namespace yuragi::drivers::windlog

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "drivers/windlog/session_count.hpp"
 #include "drivers/windlog/sqlite.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/time.hpp"
@@ -21,8 +22,8 @@ struct WindlogSession {
   std::string_view configuration;  ///< TOML, as read
 };
 
-/// Writes a recording (.windlog, format.hpp). What is committed survives the death of the process and a power cut; what
-/// was written since is lost with either, so commit often.
+/// Writes a recording (.windlog, format.hpp). Whoever writes a series of files holds its SeriesLock. What is committed
+/// survives the death of the process and a power cut; what was written since is lost with either, so commit often.
 ///
 /// A call that fails undoes everything since the last commit; its text names the file and what to do; the writer can be
 /// used on (a full disk that has room again), or destroyed and opened again. Owns the open file. Thread-safe: no; one
@@ -41,6 +42,9 @@ class WindlogWriter {
   /// Begins a session, to which the sensors and readings that follow belong; `started` must not be later than any of
   /// them.
   Result<void, Failure> begin_session(const WindlogSession& session);
+
+  /// Notes which completed file was before this one in its series, by the moment in its name. Once for each file.
+  Result<void, Failure> set_previous_part(UtcTime begin);
 
   /// Adds a sensor to the session; returns the id that append() takes. Fails where the recording would have readings of
   /// more than kMostSeries names.
@@ -93,6 +97,8 @@ class WindlogWriter {
   bool prepare_quantities();
   std::optional<std::int64_t> last_quantities_ns();
   Result<void, Failure> write(sqlite::Statement& statement);
+  Result<void, Failure> write_counts();
+  void roll_back();
   Result<void, Failure> undo();
   void release();
 
@@ -102,6 +108,8 @@ class WindlogWriter {
   std::map<std::int64_t, Insert> insert_reading_;       ///< by sensor
   std::optional<sqlite::Statement> insert_quantities_;  ///< from the first ones on
   std::int64_t session_ = 0;
+  /// Of the session, by series; nullopt after a failure: then it stores none.
+  std::optional<std::map<std::int64_t, SessionCount>> counts_;
   std::int64_t begin_ns_ = 0;  ///< of the session, on the recording's time line
   Instant started_;
   std::optional<UtcTime> last_before_session_;

@@ -71,6 +71,7 @@ TABLES = {
     "sensors watch": (["--connect", "ADDRESS", "--once"], [r"^(made-up|garden|played) +(\S+) "]),
     "check-config": (["CONFIG"], [r"^  sensor (\S+) \((\S+)\), (\S+),", r"^  scene (\S+) \((\S+)\)"]),
     "describe": ([], [r"^(\[.*?\])  # (.*)$", r"^  (\w+) {2,}(\S.*)$"]),
+    "verify": (["WIND"], [r"^(\S+): sound; (\d+) readings"]),
     "spectrum": (["--frequency", "0.01,0.1,1"], [r"^([\d.]+) ([\d.e-]+)$"]),
     "reload": (["--connect", "ADDRESS"], [r"^takes a restart: (.*)$"]),
     "token": (["--config", "CONFIG"], [r"^pairing code: (\S+),"]),
@@ -138,7 +139,7 @@ class Json(unittest.TestCase):
         with socket.create_server(("127.0.0.1", 0)) as listener, open(alone, "w", encoding="utf-8") as out:
             out.write(f'[stream]\nlisten = "127.0.0.1:{listener.getsockname()[1]}"\n'
                       '[[sensor]]\nname = "made-up"\ndriver = "synthetic"\n')
-        cls.places = {"ALONE": alone, "PAGE": os.path.join(cls.folder, "page.html"), "ADDRESS": cls.address, "CONFIG": cls.config,
+        cls.places = {"ALONE": alone, "WIND": os.path.join(cls.folder, "wind.windlog"), "PAGE": os.path.join(cls.folder, "page.html"), "ADDRESS": cls.address, "CONFIG": cls.config,
                       "MODBUS": slave.wait_for(r"(127\.0\.0\.1:\d+)").group(1)}
         cls.program = Help(YURAGI)
         cls.commands = {words_of(command): command for command in leaves(cls.program)}

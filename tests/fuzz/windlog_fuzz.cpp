@@ -12,6 +12,7 @@
 
 #include <unistd.h>
 
+#include "drivers/windlog/verify_recording.hpp"
 #include "drivers/windlog/windlog_player.hpp"
 #include "drivers/windlog/windlog_reader.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
@@ -114,6 +115,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::ofstream(scratch_file(), std::ios::binary | std::ios::trunc) << bytes;
 
   play_anything(std::span(data, size));
+  static_cast<void>(windlog::verify_recording(scratch_file(), std::chrono::seconds(1)));
 
   auto reader = windlog::WindlogReader::open(scratch_file());
   if (!reader) return 0;

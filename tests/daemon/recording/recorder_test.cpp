@@ -130,6 +130,43 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& file) {
   return files;
 }
 
+TEST(Recorder, WaitsWhileAnotherOneRecordsToTheSameSeriesAndTakesOverWhenThatHasEnded) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  const auto readings = test::numbered_readings(30);
+  std::optional<Recorder> first(std::in_place, file, info_of({{"mast", "", ""}}), RecorderReport(), RecorderLimits(),
+                                settings::RecordingConfig{.most_file_bytes = 1});
+  std::vector<std::string> reports;
+  Recorder second(file, info_of({{"roof", "", ""}}),
+                  [&](std::string_view sentence) { reports.emplace_back(sentence); });
+  EXPECT_EQ(second.status().state, RecorderState::kRetrying);
+  EXPECT_NE(second.status().error.find("records to " + file.string()), std::string::npos) << second.status().error;
+
+  for (std::size_t i = 0; i < 10; ++i) second.push(0, readings[i]);
+  for (std::size_t i = 10; i < 30; i += 10) {  // it completes a file meanwhile
+    for (std::size_t j = i; j < i + 10; ++j) first->push(0, readings[j]);
+    wait_for(*first, [&](const RecorderStatus& status) { return status.written == i; });
+  }
+  EXPECT_EQ(second.status().state, RecorderState::kRetrying);
+  EXPECT_EQ(second.status().written, 0U);
+  EXPECT_EQ(second.status().waiting, 10U);
+  first.reset();
+  wait_for(second, [](const RecorderStatus& status) { return status.written == 10; });
+  second.close();
+  EXPECT_EQ(test::read_all(file).size(), readings.size());
+  ASSERT_EQ(reports.size(), 2U);
+  EXPECT_EQ(reports[1], "resumed; 0 readings lost");
+}
+
+TEST(Recorder, ShowsThatItCanRecordAlsoBeforeTheFirstReadingAfterAnotherOneHasEnded) {
+  const test::TemporaryFolder folder;
+  std::optional<Recorder> first(std::in_place, folder / "a.windlog", info_of({{"mast", "", ""}}));
+  const Recorder second(folder / "a.windlog", info_of({{"mast", "", ""}}));
+  EXPECT_EQ(second.status().state, RecorderState::kRetrying);
+  first.reset();
+  wait_for(second, [](const RecorderStatus& status) { return status.state == RecorderState::kWriting; });
+}
+
 TEST(Recorder, LosesAndDoublesNothingThatStationsSayWhereAFileIsCompleted) {
   const test::TemporaryFolder folder;
   const auto file = folder / "a.windlog";

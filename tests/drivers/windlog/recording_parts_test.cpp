@@ -123,12 +123,12 @@ TEST_F(RecordingOfParts, OneThatIsDamagedIsNamedAndTheOthersAreRead) {
 TEST_F(RecordingOfParts, TheRestOfOneThatIsDamagedInTheMiddleIsLeftOut) {
   const auto damaged = part_name(recording(), kDay + 24h);
   {
-    // All pages after the first ones, where its tables begin.
+    // Pages of readings; the last page of readings, and that of the counts, stay.
     std::fstream file(damaged, std::ios::binary | std::ios::in | std::ios::out);
     constexpr std::streamoff kPage = 4096;
     const auto size = static_cast<std::streamoff>(std::filesystem::file_size(damaged));
     ASSERT_GT(size, 8 * kPage);
-    file.seekp(size - 4 * kPage);
+    file.seekp(size - 5 * kPage);
     file << std::string(3 * kPage, '\xff');
   }
   auto reader = WindlogReader::open(recording());
