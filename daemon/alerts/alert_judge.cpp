@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "daemon/settings/duration_text.hpp"
+#include "engine/base/count_text.hpp"
 #include "engine/wire/sensor_trouble.hpp"
 
 namespace yuragi::daemon::alerts {
@@ -85,6 +86,14 @@ std::vector<AlertJudge::Subject> AlertJudge::subjects_of(const AlertConfig& aler
                .begins = fmt::format("the disk of the recording has {:.0f} MB free, less than {:.0f} MB",
                                      free_bytes / kMegabyte, alert.free_bytes / kMegabyte),
                .ends = fmt::format("the disk of the recording has {:.0f} MB free again", free_bytes / kMegabyte)}};
+    }
+    case AlertCondition::kNotRecording: {
+      if (!status.recorder) return {};
+      const std::string lost = fmt::format("{} lost", count_text(status.recorder->lost, "reading"));
+      return {{.name = {},
+               .holds = status.recorder->state != wire::RecorderState::kWriting,
+               .begins = fmt::format("nothing is recorded: {}; {}", status.recorder->error, lost),
+               .ends = fmt::format("readings are recorded again; {}", lost)}};
     }
     case AlertCondition::kNoFrame:
       if (!frames_) return {};

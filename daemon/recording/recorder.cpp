@@ -9,10 +9,10 @@ namespace yuragi::daemon::recording {
 
 Recorder::Recorder(const std::filesystem::path& file, RecordingInfo info, RecorderReport report,
                    const RecorderLimits& limits, const settings::RecordingConfig& rules,
-                   const std::filesystem::path& synchronized_file)
+                   const std::filesystem::path& synchronized_file, RecorderStart start)
     : limits_(limits),
-      worker_(
-          std::make_shared<RecorderWorker>(file, rules, std::move(info), std::move(report), limits, synchronized_file)),
+      worker_(std::make_shared<RecorderWorker>(file, rules, std::move(info), std::move(report), limits,
+                                               synchronized_file, start)),
       thread_(
           [worker = worker_](const std::stop_token& stop) { contain("the recorder", [&] { worker->run(stop); }); }) {}
 

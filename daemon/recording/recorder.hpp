@@ -27,13 +27,15 @@ class Recorder {
 
   /// Opens the recording, or creates it so that others cannot read it (mode 0640), and begins its session; a recording
   /// of an older format is renamed first (set_older_recording_aside). `report` is called on the recorder's thread, in
-  /// the constructor, or in close(). Throws FailureError (kCannotCreate) where it cannot, but not if another program
-  /// records to it (SeriesLock): then it retries, and takes over when that program has ended. `rules`: when a new file
-  /// is begun, and what is deleted; its `file` is not looked at. `synchronized_file`: for is_synchronized(). While the
-  /// date of what is pushed is doubted (ClockJudge) age deletes nothing, and FILE-clock exists.
+  /// the constructor, or in close(). If it cannot, it throws FailureError (kCannotCreate) or, as `start` says, retries;
+  /// a damaged or foreign file is never overwritten. If another program records to it (SeriesLock) it retries, and
+  /// takes over when that program has ended. `rules`: when a new file is begun, and what is deleted; its `file` is not
+  /// looked at. `synchronized_file`: for is_synchronized(). While the date of what is pushed is doubted (ClockJudge)
+  /// age deletes nothing, and FILE-clock exists.
   Recorder(const std::filesystem::path& file, RecordingInfo info, RecorderReport report = {},
            const RecorderLimits& limits = {}, const settings::RecordingConfig& rules = {},
-           const std::filesystem::path& synchronized_file = kSynchronizedFile);
+           const std::filesystem::path& synchronized_file = kSynchronizedFile,
+           RecorderStart start = RecorderStart::kMustOpen);
   ~Recorder();  ///< closes
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

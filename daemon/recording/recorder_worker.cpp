@@ -11,6 +11,7 @@
 #include "daemon/recording/clock_synchronization.hpp"
 #include "daemon/recording/private_file.hpp"
 #include "daemon/recording/retention.hpp"
+#include "drivers/windlog/iso_time.hpp"
 #include "drivers/windlog/older_recording.hpp"
 #include "drivers/windlog/recording_files.hpp"
 #include "drivers/windlog/recording_parts.hpp"
@@ -68,11 +69,15 @@ class AtTheDisk {
   Since& since_;
 };
 
+std::string since_text(UtcTime moment) {
+  return " (since " + drivers::windlog::iso_time_text(std::chrono::floor<std::chrono::seconds>(moment)) + ")";
+}
+
 }  // namespace
 
 RecorderWorker::RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules,
                                RecordingInfo info, RecorderReport report, const RecorderLimits& limits,
-                               std::filesystem::path synchronized_file)
+                               std::filesystem::path synchronized_file, RecorderStart start)
     : file_(file),
       synchronized_file_(std::move(synchronized_file)),
       rules_(rules),
@@ -84,7 +89,7 @@ RecorderWorker::RecorderWorker(const std::filesystem::path& file, const settings
       report_(std::move(report)) {
   const auto begun = begin_recording(info_.started);
   if (begun) return;
-  if (begun.error().kind != FailureKind::kUnavailable) {
+  if (start == RecorderStart::kMustOpen && begun.error().kind != FailureKind::kUnavailable) {
     throw FailureError({"cannot record: " + begun.error().message, FailureKind::kCannotCreate});
   }
   fail(begun.error());
@@ -169,7 +174,7 @@ RecorderStatus RecorderWorker::locked_status() const {
                         .written = written_.load(std::memory_order_relaxed),
                         .waiting = 0,
                         .lost = lost_.load(std::memory_order_relaxed) + given_up_.load(std::memory_order_relaxed),
-                        .error = error_,
+                        .error = error_.empty() ? error_ : error_ + since_text(failing_since_),
                         .free_bytes = free_bytes_,
                         .clock_doubt = clock_doubt_};
   const std::uint64_t done = status.written + given_up_.load(std::memory_order_relaxed);
@@ -531,6 +536,7 @@ void RecorderWorker::set_status(const std::string& error) {
   {
     const std::lock_guard lock(status_mutex_);
     changed = error_.empty() != error.empty();
+    if (error_.empty()) failing_since_ = UtcTime(std::chrono::system_clock::now());
     error_ = error;
   }
   status_changed_.notify_all();

@@ -62,10 +62,10 @@ class RecorderWorker {
   static constexpr int kCommitsPerCheckpoint = 60;
   static constexpr Nanoseconds kSaveDoubtEvery = std::chrono::minutes(1);
 
-  /// As Recorder::Recorder(). Throws FailureError (kCannotCreate) if it cannot open the recording. If another program
-  /// records to it, run() tries again.
+  /// As Recorder::Recorder().
   RecorderWorker(const std::filesystem::path& file, const settings::RecordingConfig& rules, RecordingInfo info,
-                 RecorderReport report, const RecorderLimits& limits, std::filesystem::path synchronized_file);
+                 RecorderReport report, const RecorderLimits& limits, std::filesystem::path synchronized_file,
+                 RecorderStart start);
 
   /// Writes until `stop` is requested, then what is left, and closes the file.
   void run(const std::stop_token& stop);
@@ -154,6 +154,7 @@ class RecorderWorker {
   mutable std::mutex status_mutex_;
   mutable std::condition_variable status_changed_;
   std::string error_;
+  UtcTime failing_since_{};  ///< while error_ is not empty
   std::optional<std::uint64_t> free_bytes_;
   std::optional<ClockDoubt> clock_doubt_;
   std::optional<SteadyTime> writing_since_;  ///< while it is at the disk

@@ -139,7 +139,7 @@ class Service::Io {
     ignore_what_need_not_end_it();
     spdlog::info("listening on {}", stream_.local_endpoint());
     if (web_) spdlog::info("answering at http://{}", web_->local_endpoint());
-    if (recorder_) spdlog::info("recording to {}", options_.record->string());
+    if (recorder_ && recorder_->status().error.empty()) spdlog::info("recording to {}", options_.record->string());
     if (animation_) spdlog::info("{} nodes at {} Hz", animation_->node_count(), rate_hz_);
 
     signals_.async_wait([this](const boost::system::error_code& error, int signal) {
@@ -624,7 +624,9 @@ std::unique_ptr<recording::Recorder> Service::Io::make_recorder(const settings::
                                                                 const std::filesystem::path& file) const {
   return std::make_unique<recording::Recorder>(
       file, recording_info(config, started_), [](std::string_view news) { spdlog::warn("recording: {}", news); },
-      recording::RecorderLimits{}, config.recording);
+      recording::RecorderLimits{}, config.recording, recording::kSynchronizedFile,
+      // A wall goes on without a recording; a program that only records has nothing to go on with.
+      options_.with_scenes ? recording::RecorderStart::kRetries : recording::RecorderStart::kMustOpen);
 }
 
 recording::RecordingInfo Service::Io::recording_info(const settings::Config& config, Instant started) {

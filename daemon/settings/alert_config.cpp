@@ -16,7 +16,8 @@ const std::array kAlertParameters = {
               .unit = "",
               .default_value = std::string(kAlertConditionNames[0]),
               .help = "what it is about: a sensor's readings are not used, the measured wind is above speed, the disk "
-                      "of the recording has less than free, or the animation has made no frame",
+                      "of the recording has less than free, the animation has made no frame, or readings cannot be "
+                      "recorded",
               .choices = kAlertConditionNames},
     Parameter{.name = "sensor",
               .unit = "",

@@ -22,9 +22,10 @@ enum class AlertCondition : std::uint8_t {
   kWindAbove,     ///< the wind that the sensors make together, before it is shaped for the scenes
   kDiskBelow,     ///< the free space on the disk of the recording
   kNoFrame,       ///< the animation has made no frame
+  kNotRecording,  ///< readings are to be recorded, and cannot be written
 };
-inline constexpr std::array<std::string_view, 4> kAlertConditionNames = {"sensor_silent", "wind_above", "disk_below",
-                                                                         "no_frame"};
+inline constexpr std::array<std::string_view, 5> kAlertConditionNames = {"sensor_silent", "wind_above", "disk_below",
+                                                                         "no_frame", "not_recording"};
 
 /// An [[alert]]: what somebody is told of, when, and how. Its beginning is told once and its end once.
 struct AlertConfig {

@@ -3,7 +3,9 @@
 #include <chrono>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/settings/output_file.hpp"
@@ -60,6 +62,16 @@ Result<SiteMemory, Failure> SiteFile::read() const {
                        read_numbers(json, kOctavesKey, memory.octaves_db);
   if (!is_read) return none;
   return memory;
+}
+
+Result<std::filesystem::path, Failure> SiteFile::set_aside() const {
+  std::filesystem::path aside = file_.string() + ".unreadable";
+  std::error_code error;
+  for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(aside, error)); ++number)
+    aside = fmt::format("{}.unreadable-{}", file_.string(), number);
+  std::filesystem::rename(file_, aside, error);
+  if (error) return Failure{file_.string() + ": cannot be renamed: " + error.message()};
+  return {boost::system::in_place_value, aside};
 }
 
 void SiteFile::save(SiteMemory memory) {

@@ -25,6 +25,10 @@ class SiteFile {
   /// Reads the file. Checks only that the values are numbers.
   Result<SiteMemory, Failure> read() const;
 
+  /// Renames a file that cannot be read as one, so that save() does not overwrite it: FILE.unreadable, or, if there is
+  /// one already, FILE.unreadable-2 and so on. Returns the new name, or why it could not be renamed.
+  Result<std::filesystem::path, Failure> set_aside() const;
+
   /// Writes the file on a thread of its own, as a whole or not at all. Precondition: not is_writing().
   void save(SiteMemory memory);
   bool is_writing() const;

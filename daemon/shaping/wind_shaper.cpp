@@ -56,8 +56,11 @@ void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> 
   }
   const auto memory = site_file_->read();
   if (!memory || !shaping_.restore(memory->times_s)) {
-    spdlog::warn("shaping: {}starting a new file: {}", has_gain ? "site gain begins at 1; " : "",
-                 memory ? site_path_.string() + ": has another format" : memory.error().message);
+    const auto aside = site_file_->set_aside();
+    spdlog::warn("shaping: {}starting a new file: {}; {}", has_gain ? "site gain begins at 1; " : "",
+                 memory ? site_path_.string() + ": has another format" : memory.error().message,
+                 aside ? "it is kept as " + aside->string() : aside.error().message);
+    if (!aside) site_file_.reset();  // what it holds is not overwritten
     return;
   }
   const double known_s = shaping_.memory().known_s();

@@ -281,6 +281,18 @@ class DaemonTest(unittest.TestCase):
         done = run("record", log, "--listen", "127.0.0.1:0", "--duration", "1")
         self.assertIn("recording to " + log, done.stderr)
 
+    def test_a_recording_that_cannot_be_opened_at_the_start_is_a_state(self):
+        folder = self.file("disk")
+        daemon = self.start_daemon("--record", folder + "/wall.windlog")
+        daemon.wait_for(r"recording: interrupted, trying again: .*wall\.windlog")
+        address = daemon.address()
+        status = run("status", "--connect", address)
+        self.assertEqual(status.returncode, 1, status.stdout + status.stderr)
+        self.assertRegex(status.stdout, r"the recorder cannot write, and tries again: .*\(since 2\d{3}-\S+Z\)")
+        os.mkdir(folder)
+        daemon.wait_for(r"recording: resumed; 0 readings lost")
+        self.assertNotIn("the recorder cannot", run("status", "--connect", address).stdout)
+
     def test_an_address_that_is_taken_is_told_and_ends_it_with_69(self):
         daemon = self.start_daemon()
         done = run("run", "--listen", daemon.address())

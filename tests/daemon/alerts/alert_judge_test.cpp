@@ -202,6 +202,26 @@ TEST(AlertJudge, TellsOfADiskThatIsNearlyFull) {
                                         "- the disk of the recording has 900 MB free again, after 1 h"));
 }
 
+TEST(AlertJudge, TellsThatNothingIsRecordedAndHowMuchWasLost) {
+  Judging judging({{.name = "recording", .when = AlertCondition::kNotRecording, .after_s = 60.0}});
+  judging.hold({}, 1h);  // nothing is to be recorded
+  wire::Sensors status;
+  status.recorder.emplace();
+  judging.hold(status, 1h);
+  EXPECT_THAT(judging.told, IsEmpty());
+  status.recorder->state = wire::RecorderState::kRetrying;
+  status.recorder->error = "a.windlog: the disk is full (since 2026-05-01T12:00:00Z)";
+  judging.hold(status, 1h);
+  status.recorder->state = wire::RecorderState::kWriting;
+  status.recorder->lost = 7;
+  judging.hold(status, 1h);
+  EXPECT_THAT(
+      judging.told,
+      ElementsAre("nothing is recorded: a.windlog: the disk is full (since 2026-05-01T12:00:00Z); 0 readings lost "
+                  "(for 1 min)",
+                  "- readings are recorded again; 7 readings lost, after 1 h"));
+}
+
 TEST(AlertJudge, TellsThatThereAreNoFrames) {
   Judging judging({{.name = "frames", .when = AlertCondition::kNoFrame, .after_s = 10.0}});
   judging.hold({}, 1h);

@@ -428,6 +428,38 @@ TEST(Recorder, CountsWhatCannotBeRecorded) {
   EXPECT_EQ(recorder.status().lost, 2U);
 }
 
+TEST(Recorder, CanBeginWithoutItsFolderAndRecordsOnceItIsThere) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "disk" / "a.windlog";
+  Recorder recorder(file, info_of({{"mast", "", ""}}), {}, {.commit_every = std::chrono::milliseconds(1)}, {},
+                    kSynchronizedFile, RecorderStart::kRetries);
+  EXPECT_EQ(recorder.status().state, RecorderState::kRetrying);
+  EXPECT_NE(recorder.status().error.find("disk/a.windlog"), std::string::npos) << recorder.status().error;
+  EXPECT_NE(recorder.status().error.find(" (since 20"), std::string::npos) << recorder.status().error;
+  EXPECT_TRUE(recorder.push(0, test::reading_at(1, 3.0)));
+  std::filesystem::create_directory(folder / "disk");
+  EXPECT_TRUE(
+      recorder.wait_until([](const RecorderStatus& status) { return status.written == 1; }, std::chrono::seconds(60)));
+  EXPECT_EQ(recorder.status().state, RecorderState::kWriting);
+  EXPECT_EQ(recorder.status().lost, 0U);
+}
+
+TEST(Recorder, OverwritesNoForeignFileHoweverOftenItTries) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  std::ofstream(file) << "my diary";
+  {
+    Recorder recorder(file, info_of({{"mast", "", ""}}), {}, {.commit_every = std::chrono::milliseconds(1)}, {},
+                      kSynchronizedFile, RecorderStart::kRetries);
+    EXPECT_TRUE(recorder.push(0, test::reading_at(1, 3.0)));
+    EXPECT_TRUE(recorder.wait_until([](const RecorderStatus& status) { return !status.error.empty(); },
+                                    std::chrono::seconds(60)));
+  }
+  std::string text;
+  std::getline(std::ifstream(file), text);
+  EXPECT_EQ(text, "my diary");
+}
+
 TEST(Recorder, RefusesToStartWhereItCannotWrite) {
   try {
     const Recorder recorder("/nonexistent/a.windlog", info_of({}));

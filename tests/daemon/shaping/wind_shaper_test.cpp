@@ -300,8 +300,12 @@ TEST_F(SiteFileTest, AFileOfAnotherKindIsToldAndBegunAnew) {
       EXPECT_EQ(wall.after(2.0), 2.0) << wrong;
     }
     EXPECT_EQ(log.count("site gain begins at 1; starting a new file"), 1) << wrong;
+    EXPECT_EQ(log.count("it is kept as "), 1) << wrong;
     EXPECT_TRUE(SiteFile(file_).read().has_value()) << wrong;
   }
+  std::string kept;
+  std::getline(std::ifstream(file_.string() + ".unreadable-2"), kept);
+  EXPECT_EQ(kept, "{") << "the second one";
 }
 
 TEST_F(SiteFileTest, AFolderThatIsNotThereIsToldAndNoReasonToStop) {
