@@ -164,6 +164,8 @@ class PackageTest(unittest.TestCase):
         def change(tree):
             (tree / CONFIGURATION).parent.mkdir(parents=True)
             (tree / EXAMPLE).rename(tree / CONFIGURATION)
+            with open(tree / CONFIGURATION, "a", encoding="utf-8") as example:
+                example.write("# The older example.\n")
             (tree / "DEBIAN/conffiles").write_text(f"/{CONFIGURATION}\n", encoding="utf-8")
             for script in ("postinst", "postrm"):
                 (tree / "DEBIAN" / script).unlink()

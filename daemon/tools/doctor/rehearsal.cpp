@@ -170,11 +170,12 @@ std::vector<ListenFacts> listen_facts(const Rehearsal& rehearsal) {
 
 /// The sensor's devices that are found by what is plugged in. One of several that would do is enough.
 std::vector<PathFacts> plugged_paths(const settings::SensorConfig& sensor, const DeviceFacts& device,
-                                     std::span<const sensors::DeviceFinding> plugged) {
+                                     const std::optional<std::span<const sensors::DeviceFinding>>& plugged) {
   std::vector<fs::path> nodes;
   if (device.kind == DeviceKind::kSoundCard) nodes = sound_nodes();
   if (device.kind == DeviceKind::kUsb) {
-    for (const sensors::DeviceFinding& found : plugged) {
+    if (!plugged) return {};
+    for (const sensors::DeviceFinding& found : *plugged) {
       if (!is_chosen(sensor, found)) continue;
       for (fs::path& node : usb_nodes(found.device.what, sensor.driver->name == "hid"))
         nodes.push_back(std::move(node));
@@ -358,6 +359,23 @@ std::vector<Finding> rehearse_configuration(const Rehearsal& rehearsal) {
   }
   for (const ListenFacts& listen : listen_facts(rehearsal)) add_findings(all, judge(listen, rehearsal.unit));
   return all;
+}
+
+std::vector<std::string> next_start_warnings(const settings::Config& running, const settings::Config& next,
+                                             const std::string& config_file) {
+  Rehearsal rehearsal{.config = next, .config_file = config_file, .unit = this_process()};
+  if (auto unit = installed_unit(kServiceUnit);
+      unit && std::ranges::find(unit->command, config_file) != unit->command.end()) {
+    rehearsal.unit = std::move(*unit);
+  }
+  rehearsal.own_addresses = {running.stream.listen, running.http.listen};
+  for (const settings::SensorConfig& sensor : running.sensors) {
+    for (const DeviceFacts& device : named_devices(sensor)) rehearsal.own_addresses.push_back(device.name);
+  }
+  std::vector<std::string> warnings;
+  for (const Finding& finding : rehearse_configuration(rehearsal))
+    warnings.push_back(fmt::format("at the next start: {}; mend it: {}", finding.text, finding.remedy));
+  return warnings;
 }
 
 std::vector<Finding> rehearse(const Rehearsal& rehearsal) {

@@ -19,8 +19,9 @@ struct Rehearsal {
   const settings::Config& config;
   std::filesystem::path config_file{};
   ServiceUnit unit{};
-  std::span<const sensors::DeviceFinding> plugged{};  ///< what the drivers have found (plugged_devices())
-  std::vector<std::string> own_addresses{};           ///< where the daemon that asks listens itself
+  /// What the drivers have found (plugged_devices()); nullopt: not searched, and USB devices are passed over.
+  std::optional<std::span<const sensors::DeviceFinding>> plugged{};
+  std::vector<std::string> own_addresses{};  ///< where the daemon that asks listens itself
 };
 
 /// Searches for the USB devices that the configuration names, for Rehearsal::plugged; opens each that is found.
@@ -34,8 +35,13 @@ std::vector<PathFacts> named_paths(const Rehearsal& rehearsal);
 void look_at(PathFacts& path);
 
 /// What the configuration will meet in the unit: errors and warnings; none if all is well. Opens no device and no file;
-/// listens at each address for a moment. To be called on any thread.
+/// listens at each address for a moment. Looks up names of users and groups: on one thread at a time.
 std::vector<Finding> rehearse_configuration(const Rehearsal& rehearsal);
+
+/// What a daemon that runs with one configuration and reads another one would meet with it at its next start: as its
+/// unit if that is installed and names this file, else as this process. Texts, each with what mends it.
+std::vector<std::string> next_start_warnings(const settings::Config& running, const settings::Config& next,
+                                             const std::string& config_file);
 
 /// The same, with the programs, the viewer's unit if it is enabled, and the monitors. At least one finding. Takes up to
 /// 5 s for each program.
