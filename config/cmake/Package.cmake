@@ -7,7 +7,8 @@ install(FILES ${units_folder}/yuragi.service ${units_folder}/yuragi-viewer@.serv
   ${units_folder}/yuragi-report.timer DESTINATION /lib/systemd/system)
 install(PROGRAMS ${units_folder}/daily-report DESTINATION lib/yuragi)
 install(FILES ${units_folder}/yuragi.sysusers DESTINATION lib/sysusers.d RENAME yuragi.conf)
-install(FILES ${units_folder}/yuragi.toml DESTINATION /etc/yuragi)
+# From which postinst makes /etc/yuragi/yuragi.toml, once: a file of dpkg's own would be asked about at an upgrade.
+install(FILES ${units_folder}/yuragi.toml DESTINATION share/yuragi)
 install(FILES ${PROJECT_SOURCE_DIR}/README.md ${package_folder}/copyright DESTINATION share/doc/yuragi)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/config/examples DESTINATION share/doc/yuragi PATTERN "*.log" EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/config/garden.toml DESTINATION share/doc/yuragi/examples)
@@ -44,7 +45,6 @@ there. Without a sensor it replays recorded winds, and makes up its own.
 This package has the daemon, the viewer, simulated sensors, and units of
 systemd for the daemon, for a wall at boot and for a daily report. It starts
 none of them by itself.")
-set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${package_folder}/postinst ${package_folder}/prerm ${package_folder}/postrm
-  ${package_folder}/conffiles)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${package_folder}/postinst ${package_folder}/prerm ${package_folder}/postrm)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 include(CPack)

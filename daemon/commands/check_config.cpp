@@ -9,12 +9,17 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/commands/command.hpp"
+#include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
 #include "daemon/service/config_check.hpp"
 #include "daemon/settings/config.hpp"
+#include "daemon/settings/config_file.hpp"
 #include "daemon/settings/secret_exposure.hpp"
 #include "daemon/settings/sensor_blend.hpp"
+#include "daemon/settings/standard_output.hpp"
 #include "daemon/state/json_value.hpp"
+#include "daemon/tools/doctor/judgements.hpp"
+#include "daemon/tools/doctor/rehearsal.hpp"
 #include "daemon/tools/sensors/description_json.hpp"
 #include "daemon/tools/sensors/driver_reference.hpp"
 #include "engine/output/output.hpp"
@@ -107,13 +112,41 @@ void print_summary(const settings::Config& config, const std::filesystem::path& 
 
 struct CheckOptions {
   std::filesystem::path file;
+  bool as_service = false;
+  std::filesystem::path unit;
   bool full = false;
   bool as_json = false;
 };
 
+/// What the unit would meet with this configuration at the next boot.
+void rehearse(const settings::Config& config, const CheckOptions& options) {
+  namespace doctor = tools::doctor;
+  const auto unit =
+      options.unit.empty() ? doctor::installed_unit(doctor::kServiceUnit) : doctor::unit_of_file(options.unit);
+  if (!unit) {
+    throw FailureError({fmt::format("{} is not installed here; name its file: --unit FILE", doctor::kServiceUnit),
+                        FailureKind::kNoInput});
+  }
+  const std::filesystem::path file = settings::absolute_path(options.file);
+  const auto plugged = doctor::plugged_devices(config);
+  std::vector<doctor::Finding> findings =
+      doctor::judge({.file = file, .error = {}, .exposed = settings::exposed_secrets(config, file)});
+  for (doctor::Finding& finding :
+       doctor::rehearse({.config = config, .config_file = file, .unit = *unit, .plugged = plugged})) {
+    findings.push_back(std::move(finding));
+  }
+  if (options.as_json) {
+    print_json(doctor::findings_json(findings));
+  } else {
+    settings::write_at_once(doctor::findings_text(findings));
+  }
+  if (doctor::gravest(findings) == doctor::Verdict::kError) throw ExitError(kExitAttention, "");
+}
+
 void check_config(const CheckOptions& options) {
   const settings::Config config = settings::load_config(options.file);
   service::check(config);
+  if (options.as_service) return rehearse(config, options);
   for (const std::string& warning : settings::exposed_secrets(config, options.file)) {
     fmt::print(stderr, "warning: {}\n", warning);
   }
@@ -134,9 +167,19 @@ void add_check_config(CLI::App& app) {
       "Warns on standard error where others can read a password.\n"
       "--json: sensors (name, driver, place, gust_length_m, height_m), scenes (name, kind), cameras (name, from) and "
       "alerts\n(name, when); with --full also the values of every table by the keys of the configuration, without "
-      "secrets.");
+      "secrets.\n"
+      "--as-service tries the next boot: what yuragi.service would meet, whoever asks (with sudo it may look at "
+      "everything):\nits user's rights to token, pictures, recordings, profiles and devices, ports, libraries, the "
+      "wall's X server, monitors.\nExit code 0: no error; 1: errors, each with the command that mends it. --json: as "
+      "`yuragi doctor`.\n"
+      "  sudo yuragi check-config /etc/yuragi/yuragi.toml --as-service");
   auto options = std::make_shared<CheckOptions>();
   command->add_option("file", options->file, "the configuration")->required()->type_name("FILE.toml");
+  CLI::Option* as_service =
+      command->add_flag("--as-service", options->as_service, "try what the daemon's unit would meet at the next boot");
+  command->add_option("--unit", options->unit, "the file of that unit; default: yuragi.service, as it is installed")
+      ->needs(as_service)
+      ->type_name("FILE");
   command->add_flag("--full", options->full, "print every value, including defaults, as TOML");
   add_json(*command, options->as_json);
   command->callback([options] { check_config(*options); });

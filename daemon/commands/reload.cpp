@@ -32,7 +32,7 @@ constexpr const char* kReloadFooter =
     "mistake.\n"
     "--json: outcome (\"done\", \"mistake\", \"not allowed\", \"no file\" or \"failed\"), and lists of texts: "
     "applied,\n"
-    "takes_restart, mistakes.";
+    "takes_restart, mistakes; of an outcome \"done\" these are warnings of what the next start would meet.";
 
 struct ReloadOptions {
   std::optional<std::string> connect;

@@ -8,7 +8,9 @@
 #include "daemon/service/daemon_log.hpp"
 #include "daemon/service/hold_back_hangups.hpp"
 #include "daemon/service/service.hpp"
+#include "daemon/settings/config_file.hpp"
 #include "daemon/settings/secret_exposure.hpp"
+#include "daemon/tools/doctor/rehearsal.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -39,6 +41,10 @@ void run_daemon(const RunOptions& options, const std::optional<std::filesystem::
   if (options.config_file) {
     service.config_file = *options.config_file;
     service.read_config = [options] { return config_with_warnings(options); };
+    service.rehearse = [file = settings::absolute_path(*options.config_file)](const settings::Config& running,
+                                                                              const settings::Config& next) {
+      return tools::doctor::next_start_warnings(running, next, file);
+    };
   }
   service::Service(config, service).run();
 }

@@ -44,6 +44,7 @@ void log(const wire::ReloadReport& report, const std::string& file) {
     spdlog::info("reload: {}: applied {}: {}", file, count_text(report.applied.size(), "change"),
                  fmt::join(report.applied, "; "));
   }
+  for (const std::string& warning : report.mistakes) spdlog::warn("reload: {}", warning);
   if (!report.takes_restart.empty()) {
     spdlog::warn("reload: {} a restart: {}",
                  report.takes_restart.size() == 1 ? "this change takes" : "these changes take",
@@ -57,6 +58,7 @@ void log(const wire::ReloadReport& report, const std::string& file) {
 struct Reload::Task {
   std::function<void(std::function<void()>)> post;
   std::function<settings::Config()> read;
+  decltype(ReloadParts::rehearse) rehearse;
   decltype(ReloadParts::make_scenes) make_scenes;
   std::shared_ptr<const settings::Config> running;
 
@@ -95,6 +97,7 @@ void Reload::Task::work(const std::function<void()>& done) {
 
 void Reload::Task::try_to_work() {
   const settings::Config wanted = read();
+  if (rehearse) contain("trying the next start", [&] { report.mistakes = rehearse(*running, wanted); });
   {
     const std::lock_guard lock(mutex);
     has_read = true;
@@ -211,7 +214,9 @@ void Reload::begin() {
   task_->make_scenes = parts_.make_scenes;
   task_->running = running_;
   seen_at_.reset();
-  if (!present_.reads_file) {
+  if (present_.reads_file) {
+    task_->rehearse = parts_.rehearse;
+  } else {
     task_->read = [running = running_, configured = configured_, edits = present_.edits] {
       auto next = settings::edited(*running, *configured, edits);
       if (!next) throw settings::ConfigError(next.error().name + ": " + next.error().message);

@@ -26,6 +26,10 @@ struct ReloadParts {
   std::string file;
   std::function<settings::Config()> read;
 
+  /// What the next start would meet with the configuration that was read, as texts for people; it is applied all the
+  /// same. On the reload's thread, and so it owns all that it uses. Empty: nothing is tried.
+  std::function<std::vector<std::string>(const settings::Config& running, const settings::Config& next)> rehearse = {};
+
   /// Makes the scenes of a configuration, on the reload's thread. What it returns brings them to the animation, on the
   /// I/O thread, and cannot fail. Throws ConfigError or FailureError where they cannot be made; `is_given_up` tells it
   /// to return early, with anything. Empty: other scenes take a restart.

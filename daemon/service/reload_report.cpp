@@ -33,8 +33,10 @@ std::string summary_of(const wire::ReloadReport& report) {
   if (report.outcome != wire::ReloadOutcome::kDone) {
     return "nothing was changed: " + (report.mistakes.empty() ? std::string() : report.mistakes.front());
   }
-  return fmt::format("{} applied, {} to be applied by a restart", count_text(report.applied.size(), "change"),
-                     report.takes_restart.size());
+  const std::string warnings =
+      report.mistakes.empty() ? "" : ", " + count_text(report.mistakes.size(), "warning") + " of the next start";
+  return fmt::format("{} applied, {} to be applied by a restart{}", count_text(report.applied.size(), "change"),
+                     report.takes_restart.size(), warnings);
 }
 
 }  // namespace yuragi::daemon::service

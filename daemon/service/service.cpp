@@ -308,6 +308,7 @@ class Service::Io {
         check_restart(*running, wanted);
         return wanted;
       };
+      parts.rehearse = options_.rehearse;
     }
     parts.apply = [this](const settings::ReloadPlan& plan) { apply(plan); };
     parts.apply_edits = [this](const settings::ReloadPlan& plan) { show_look(plan.next.look); };

@@ -23,6 +23,8 @@ struct ServiceOptions {
   /// outlive the service and everything else; throws ConfigError. Empty: there is no file.
   std::filesystem::path config_file = {};
   std::function<settings::Config()> read_config = {};
+  /// ReloadParts::rehearse; on that thread, too.
+  std::function<std::vector<std::string>(const settings::Config& running, const settings::Config& next)> rehearse = {};
   /// Called with [log] level when it has changed.
   std::function<void(settings::LogLevel)> set_log_level = {};
   /// The last lines of the log. Thread-safe. Empty: there is none.

@@ -96,7 +96,7 @@ echo '# ours' | inside tee -a /etc/yuragi/yuragi.toml >/dev/null
 
 for step in "upgraded to 99.0:next.deb" "rolled back:yuragi.deb"; do
   first=$(property MainPID)
-  inside dpkg --force-confold -i "/root/${step#*:}" >/dev/null 2>&1
+  inside dpkg -i "/root/${step#*:}" </dev/null >/dev/null 2>&1
   expect "${step%:*}: it is" active "$(property ActiveState)"
   [ "$(property MainPID)" != "$first" ] # the new program runs
   expect "its configuration" '# ours' "$(inside tail -1 /etc/yuragi/yuragi.toml)"

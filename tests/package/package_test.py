@@ -22,8 +22,9 @@ EPOCH_S = 1_700_000_000
 CONFIGURATION = "etc/yuragi/yuragi.toml"
 RECORDING = "var/lib/yuragi/wind.windlog"
 PROGRAMS = ["yuragi", "yuragi-sim", "yuragi-viewer"]
+EXAMPLE = "usr/share/yuragi/yuragi.toml"
 CONTENTS = [
-    CONFIGURATION,
+    EXAMPLE,
     *[f"usr/bin/{name}" for name in PROGRAMS],
     *[f"usr/share/man/man1/{name}.1.gz" for name in PROGRAMS],
     *[f"usr/share/bash-completion/completions/{name}" for name in PROGRAMS],
@@ -88,7 +89,9 @@ class PackageTest(unittest.TestCase):
                 for member in archive:
                     self.assertEqual((member.uid, member.gid, member.mtime), (0, 0, EPOCH_S), member.name)
                     self.assertFalse(member.mode & 0o022, f"{member.name} can be written by others")
-        self.assertEqual((self.contents / "DEBIAN/conffiles").read_text(encoding="utf-8"), f"/{CONFIGURATION}\n")
+        self.assertFalse((self.contents / "DEBIAN/conffiles").exists(), "dpkg asks about them at an upgrade")
+        self.assertFalse((self.contents / CONFIGURATION).exists())
+        self.assertIn('[http]\nlisten = "127.0.0.1:7480"\n', (self.contents / EXAMPLE).read_text(encoding="utf-8"))
 
     def test_it_depends_on_the_libraries_that_are_linked(self):
         depends = run("dpkg-deb", "-f", self.package, "Depends")
@@ -138,29 +141,76 @@ class PackageTest(unittest.TestCase):
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.assertEqual((done.returncode, done.stdout), (0, ""))
 
-    def next_version(self):
-        """The same package with a higher version and another example configuration."""
-        tree = self.folder / "next"
+    def other_version(self, name, version, change):
+        """The same package with another version; `change` is called with its tree."""
+        tree = self.folder / name
         shutil.copytree(self.contents, tree, symlinks=True)
         control = tree / "DEBIAN/control"
-        control.write_text(re.sub(r"^Version: .*$", "Version: 99.0", control.read_text(encoding="utf-8"), flags=re.M),
+        control.write_text(re.sub(r"^Version: .*$", f"Version: {version}", control.read_text(encoding="utf-8"), flags=re.M),
                            encoding="utf-8")
-        with open(tree / CONFIGURATION, "a", encoding="utf-8") as example:
-            example.write("# The next version's example says more.\n")
-        run("dpkg-deb", "--root-owner-group", "-b", tree, self.folder / "next.deb")
-        return self.folder / "next.deb"
+        change(tree)
+        run("dpkg-deb", "--root-owner-group", "-b", tree, self.folder / f"{name}.deb")
+        return self.folder / f"{name}.deb"
 
-    @unittest.skipUnless(os.geteuid() == 0, "dpkg gives files to root: this needs to be root")
-    def test_it_installs_upgrades_rolls_back_and_leaves_no_trace_but_recordings(self):
-        tree = self.folder / "tree"
+    def next_version(self):
+        """With another example configuration."""
+        def change(tree):
+            with open(tree / EXAMPLE, "a", encoding="utf-8") as example:
+                example.write("# The next version's example has more.\n")
+        return self.other_version("next", "99.0", change)
+
+    def old_version(self):
+        """As packages were: the configuration is dpkg's own file, and no script makes it."""
+        def change(tree):
+            (tree / CONFIGURATION).parent.mkdir(parents=True)
+            (tree / EXAMPLE).rename(tree / CONFIGURATION)
+            with open(tree / CONFIGURATION, "a", encoding="utf-8") as example:
+                example.write("# The older example.\n")
+            (tree / "DEBIAN/conffiles").write_text(f"/{CONFIGURATION}\n", encoding="utf-8")
+            for script in ("postinst", "postrm"):
+                (tree / "DEBIAN" / script).unlink()
+        return self.other_version("old", "0.0.1", change)
+
+    def new_tree(self, name):
+        """An empty system, and dpkg in it. It has nobody to ask: a question ends it with an error."""
+        tree = self.folder / name
         for folder in ("etc", "var/lib/dpkg/info", "var/lib/dpkg/updates", "var/lib/dpkg/triggers"):
             (tree / folder).mkdir(parents=True)
         (tree / "var/lib/dpkg/status").touch()
         (tree / "var/lib/dpkg/available").touch()
+        return tree, lambda *words: run("dpkg", f"--root={tree}", "--force-script-chrootless", "--force-depends",
+                                        "--log=/dev/null", *words, stdin=subprocess.DEVNULL)
 
-        def dpkg(*words):
-            return run("dpkg", f"--root={tree}", "--force-script-chrootless", "--force-depends", "--force-confold",
-                       "--log=/dev/null", *words)
+    @unittest.skipUnless(os.geteuid() == 0, "dpkg gives files to root: this needs to be root")
+    def test_an_upgrade_from_an_older_package_asks_nothing_and_keeps_the_configuration(self):
+        for edit in ("", "# ours\n"):
+            tree, dpkg = self.new_tree(f"upgraded{len(edit)}")
+            dpkg("-i", self.old_version() if not edit else self.folder / "old.deb")
+            own = (tree / CONFIGURATION).read_text(encoding="utf-8") + edit
+            (tree / CONFIGURATION).write_text(own, encoding="utf-8")
+            dpkg("-i", self.package)
+            self.assertEqual((tree / CONFIGURATION).read_text(encoding="utf-8"), own)
+            self.assertEqual(list((tree / CONFIGURATION).parent.iterdir()), [tree / CONFIGURATION])
+            dpkg("-P", "yuragi")
+            self.assertFalse((tree / CONFIGURATION).parent.exists())
+
+    @unittest.skipUnless(os.geteuid() == 0, "dpkg gives files to root: this needs to be root")
+    def test_a_configuration_that_is_missing_is_made_again_and_another_is_left(self):
+        tree, dpkg = self.new_tree("missing")
+        dpkg("-i", self.package)
+        made = (tree / CONFIGURATION).read_text(encoding="utf-8")
+        self.assertEqual(made, (self.contents / EXAMPLE).read_text(encoding="utf-8"))
+        (tree / CONFIGURATION).unlink()
+        (tree / CONFIGURATION).symlink_to("elsewhere.toml")
+        dpkg("-i", self.package)
+        self.assertTrue((tree / CONFIGURATION).is_symlink())
+        (tree / CONFIGURATION).unlink()
+        dpkg("-i", self.package)
+        self.assertEqual((tree / CONFIGURATION).read_text(encoding="utf-8"), made)
+
+    @unittest.skipUnless(os.geteuid() == 0, "dpkg gives files to root: this needs to be root")
+    def test_it_installs_upgrades_rolls_back_and_leaves_no_trace_but_recordings(self):
+        tree, dpkg = self.new_tree("tree")
 
         def configuration():
             return (tree / CONFIGURATION).read_text(encoding="utf-8")

@@ -6,6 +6,7 @@
 #include "daemon/settings/secret_exposure.hpp"
 #include "daemon/tools/doctor/judgements.hpp"
 #include "daemon/tools/doctor/machine_probe.hpp"
+#include "daemon/tools/doctor/rehearsal.hpp"
 #include "daemon/tools/doctor/sensor_probe.hpp"
 
 namespace yuragi::daemon::tools::doctor {
@@ -71,6 +72,10 @@ std::vector<Finding> examine(const Examination& examination) {
   append(all, judge(display));
   append(all, judge(probe_versions(daemon, display.viewer)));
   append(all, judge(probe_limits(config)));
+  if (const auto unit = installed_unit(kServiceUnit); unit && examination.config && examination.config_file) {
+    append(all,
+           rehearse({.config = config, .config_file = *examination.config_file, .unit = *unit, .plugged = plugged}));
+  }
   return all;
 }
 

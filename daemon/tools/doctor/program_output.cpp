@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 }  // namespace
 
 std::optional<std::string> find_program(const std::string& name) {
+  if (name.starts_with('/')) return access(name.c_str(), X_OK) == 0 ? std::optional(name) : std::nullopt;
   std::error_code ignored;
   const fs::path beside = fs::read_symlink("/proc/self/exe", ignored).parent_path();
   for (const fs::path& folder : {beside, fs::path("/usr/local/bin"), fs::path("/usr/bin"), fs::path("/bin"),

@@ -8,7 +8,8 @@
 
 namespace yuragi::daemon::tools::doctor {
 
-/// The path of a program beside this one, or in the system's own folders; nothing where there is none.
+/// The path of a program beside this one, or in the system's own folders, or an absolute path; nothing where there is
+/// none.
 std::optional<std::string> find_program(const std::string& name);
 
 struct ProgramOutput {

@@ -66,6 +66,27 @@ class ReloadTest : public ::testing::Test {
   std::vector<wire::ReloadReport> reports_;
 };
 
+TEST_F(ReloadTest, WarnsOfTheNextStartAndAppliesAllTheSame) {
+  ReloadParts warning = parts();
+  warning.rehearse = [](const settings::Config&, const settings::Config& next) {
+    if (next.seed == 2) throw std::runtime_error("a disk that is gone");
+    return std::vector<std::string>{"at the next start: no folder"};
+  };
+  Reload reload(settings::default_config(), warning);
+  reload.request({}, reply());
+  queue_.do_one();
+  ASSERT_EQ(reports_.size(), 1U);
+  EXPECT_EQ(reports_.at(0).outcome, wire::ReloadOutcome::kDone);
+  EXPECT_THAT(reports_.at(0).mistakes, ElementsAre("at the next start: no folder"));
+  EXPECT_EQ(applied_.size(), 1U);
+  text_ = "seed = 2\n[shaping]\nfloor = 3.0\n";
+  reload.request({}, reply());
+  queue_.do_one();
+  ASSERT_EQ(reports_.size(), 2U);
+  EXPECT_EQ(reports_.at(1).outcome, wire::ReloadOutcome::kDone) << "a rehearsal that fails is no mistake of the file";
+  EXPECT_EQ(applied_.size(), 2U);
+}
+
 TEST_F(ReloadTest, AppliesWhatHasChangedOnceAndSaysSo) {
   Reload reload(settings::default_config(), parts());
   reload.request({}, reply());
