@@ -183,6 +183,7 @@ std::vector<PathFacts> plugged_paths(const settings::SensorConfig& sensor, const
   }
   if (nodes.empty()) nodes.emplace_back(device.name);  // nothing that is there
   std::vector<PathFacts> all;
+  all.reserve(nodes.size());
   for (const fs::path& node : nodes)
     all.push_back({.what = "sensor " + sensor.name, .use = PathUse::kDevice, .node = {.path = node}});
   return all;
@@ -272,10 +273,9 @@ std::vector<PathFacts> named_paths(const Rehearsal& rehearsal) {
   const settings::Config& config = rehearsal.config;
   std::vector<PathFacts> all;
   const auto add = [&](std::string what, const fs::path& path, PathUse use, bool is_optional = false) {
-    all.push_back({.what = std::move(what),
-                   .use = use,
-                   .is_optional = is_optional,
-                   .node = {.path = (rehearsal.unit.working_folder / path).lexically_normal()}});
+    fs::path whole = (rehearsal.unit.working_folder / path).lexically_normal();
+    if (!whole.has_filename()) whole = whole.parent_path();  // "/var/lib/yuragi/"
+    all.push_back({.what = std::move(what), .use = use, .is_optional = is_optional, .node = {.path = whole}});
   };
   const fs::path folder = rehearsal.config_file.parent_path();
   if (!rehearsal.config_file.empty()) add("configuration", rehearsal.config_file, PathUse::kRead);

@@ -196,6 +196,16 @@ TEST(Rehearsal, JudgesProgramsAndMonitors) {
   EXPECT_THAT(judge(monitor), IsEmpty());
 }
 
+TEST(Rehearsal, BeginsRelativePathsWhereTheServiceDoes) {
+  const settings::Config config = settings::parse_config(
+      "[recording]\nfile = \"wind.windlog\"\n[http]\ntoken_file = \"deep/../token\"\n", "a.toml");
+  std::vector<std::string> paths;
+  for (const PathFacts& path : named_paths({.config = config, .config_file = "/etc/yuragi/a.toml", .unit = packaged()}))
+    paths.push_back(path.node.path);
+  EXPECT_THAT(paths, ElementsAre("/etc/yuragi/a.toml", "/var/lib/yuragi/token", "/var/lib/yuragi",
+                                 "/var/lib/yuragi/wind.windlog"));
+}
+
 /// Real files, and a user who is not who asks.
 TEST(Rehearsal, LooksAtRealFilesAndPorts) {
   const test::TemporaryFolder folder;
