@@ -23,32 +23,83 @@ constexpr const char* kVideoExtension = ".mp4";
   throw ViewerExit(kExitInterrupted, "interrupted: the film is not whole");
 }
 
-class PictureFolder final : public FilmOutput {
+/// A folder that is made, with its parents. Those that were missing are removed again if they are empty, unless kept.
+class MadeFolder {
  public:
-  PictureFolder(std::filesystem::path folder, const FilmFormat& format) : folder_(std::move(folder)), format_(format) {
+  explicit MadeFolder(const std::filesystem::path& folder) {
     std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error) throw ViewerExit(EX_CANTCREAT, "cannot make the folder " + folder_.string() + ": " + error.message());
-    if (std::filesystem::exists(file(1))) {
-      throw ViewerExit(EX_CANTCREAT, folder_.string() +
-                                         " holds the pictures of another film, with which these would be mixed: "
-                                         "remove them, or give another folder");
+    make(folder, error);
+    if (!error) return;
+    remove_made();
+    throw ViewerExit(EX_CANTCREAT, "cannot make the folder " + folder.string() + ": " + error.message());
+  }
+  ~MadeFolder() { remove_made(); }
+  MadeFolder(const MadeFolder&) = delete;
+  MadeFolder& operator=(const MadeFolder&) = delete;
+
+  void keep() { made_.clear(); }
+
+ private:
+  void make(const std::filesystem::path& folder, std::error_code& error) {
+    std::error_code ignored;
+    if (folder.empty() || std::filesystem::is_directory(folder, ignored)) return;
+    make(folder.parent_path(), error);
+    if (!error && std::filesystem::create_directory(folder, error)) made_.push_back(folder);
+  }
+  void remove_made() {
+    for (; !made_.empty(); made_.pop_back()) {
+      std::error_code ignored;
+      std::filesystem::remove(made_.back(), ignored);
     }
   }
+
+  std::vector<std::filesystem::path> made_;  // parents first
+};
+
+class PictureFolder final : public FilmOutput {
+ public:
+  PictureFolder(std::filesystem::path folder, const FilmFormat& format)
+      : folder_(std::move(folder)), made_(folder_), format_(format) {
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(folder_, error), end; !error && entry != end;
+         entry.increment(error)) {
+      if (is_picture(entry->path())) {
+        throw ViewerExit(EX_CANTCREAT, folder_.string() +
+                                           " holds the pictures of another film, with which these would be mixed: "
+                                           "remove them, or give another folder");
+      }
+    }
+    if (error) throw ViewerExit(EX_CANTCREAT, "cannot read the folder " + folder_.string() + ": " + error.message());
+  }
+  ~PictureFolder() override {
+    if (is_finished_) return;
+    std::error_code ignored;
+    for (int number = 1; number <= count_; ++number) std::filesystem::remove(file(number), ignored);
+  }
+  PictureFolder(const PictureFolder&) = delete;
+  PictureFolder& operator=(const PictureFolder&) = delete;
 
   void write(std::span<const std::uint8_t> rgb) override {
     write_picture(file(count_ + 1), format_.width_px, format_.height_px, rgb);
     ++count_;
   }
-  void finish() override {}
+  void finish() override {
+    is_finished_ = true;
+    made_.keep();
+  }
   std::string text() const override { return folder_.string(); }
 
  private:
   std::filesystem::path file(int number) const { return folder_ / fmt::format("{:06}.png", number); }
+  static bool is_picture(const std::filesystem::path& file) {
+    return file.extension() == ".png" && file.stem().string().find_first_not_of("0123456789") == std::string::npos;
+  }
 
   std::filesystem::path folder_;
+  MadeFolder made_;
   FilmFormat format_;
   int count_ = 0;
+  bool is_finished_ = false;
 };
 
 class RawPictures final : public FilmOutput {

@@ -12,8 +12,8 @@ namespace yuragi::viewer {
 /// As a shell says it of a program that Ctrl-C has ended.
 inline constexpr int kExitInterrupted = 128 + SIGINT;
 
-/// Where the pictures of a film go. What is wrong throws ViewerExit; then, and where it ends without finish(), there is
-/// no file that looks whole and is not.
+/// Where the pictures of a film go. What is wrong throws ViewerExit. Without finish() the destructor removes every file
+/// and folder that this has made; what was there before stays.
 class FilmOutput {
  public:
   virtual ~FilmOutput() = default;

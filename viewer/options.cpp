@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 
 #include "engine/base/duration.hpp"
 #include "engine/look/look.hpp"
@@ -111,8 +112,10 @@ void add_options(CLI::App& app, ViewerOptions& options) {
   app.add_option("--samples", options.samples,
                  "Samples per pixel (antialiasing); default 4, or 1 in a window without graphics hardware")
       ->check(CLI::Range(1, 16));
-  app.add_flag("--overlay,!--no-overlay", options.overlay,
-               "Show wind, sensors and stream over the picture (default in windows)");
+  // Not add_flag(): CLI11 counts into an optional, and sets it to 0 at once.
+  app.add_flag_function(
+      "--overlay,!--no-overlay", [&options](std::int64_t count) { options.overlay = count > 0; },
+      "Show wind, sensors and stream over the picture (default in windows)");
   app.add_flag("--panel", options.has_panel,
                "Show the panel that lists and sets the values of the daemon's [look] and scenes (P)");
   app.add_option("--show", options.shown,

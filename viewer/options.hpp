@@ -44,6 +44,8 @@ struct ViewerOptions {
   double fps = 30.0;                 ///< pictures a second
   std::string out;                   ///< make_film_output()
   bool draws_nothing = false;
+
+  friend bool operator==(const ViewerOptions&, const ViewerOptions&) = default;
 };
 
 /// Where the camera is, of the text "HEADING,PITCH,DISTANCE".

@@ -15,7 +15,6 @@
 namespace yuragi::viewer {
 namespace {
 
-constexpr float kPanelWidth = 30.0F;    // letters
 constexpr float kTooltipWidth = 26.0F;  // letters
 constexpr double kLargeRatio = 1000.0;  // of a slider's ends, above which it is logarithmic
 const ImVec4 kNotice(1.0F, 0.78F, 0.36F, 1.0F);
@@ -210,7 +209,7 @@ void draw_group(Panel& panel, const wire::ParameterGroup& group) {
   if (!ImGui::CollapsingHeader((title + "###" + group.scene).c_str(), flags)) return;
   ImGui::PushID(group.scene.c_str());
   if (ImGui::BeginTable("parameters", 3)) {
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 0.38F * kPanelWidth * ImGui::GetFontSize());
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 0.4F * ImGui::GetContentRegionAvail().x);
     ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
     ImGui::TableSetupColumn("reset", ImGuiTableColumnFlags_WidthFixed,
                             ImGui::CalcTextSize("reset").x + ImGui::GetFontSize());
@@ -224,16 +223,6 @@ void draw_group(Panel& panel, const wire::ParameterGroup& group) {
 
 void draw_panel(Panel& panel) {
   const QuietColors colors;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float margin = ImGui::GetFontSize();
-  const float width = std::min(kPanelWidth * ImGui::GetFontSize(), size.x - 2.0F * margin);
-  const float height = size.y - 2.0F * margin;
-  ImGui::SetNextWindowPos(ImVec2(size.x - width - margin, margin), ImGuiCond_Always);
-  ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0.0F), ImVec2(width, std::max(height, margin)));
-  ImGui::Begin("values", nullptr,
-               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
-                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav);
   if (!panel.refusal().empty()) write_wrapped(kNotice, panel.refusal());
   if (!panel.mistake().empty()) write_wrapped(kNotice, "Not set: " + panel.mistake());
   if (!panel.has_list() && panel.refusal().empty()) write_wrapped(kFaded, "waiting for the daemon's values");
@@ -243,7 +232,6 @@ void draw_panel(Panel& panel) {
         kFaded,
         "Until the configuration is read again. To keep: yuragi look values --toml, yuragi scene values --toml");
   }
-  ImGui::End();
 }
 
 }  // namespace yuragi::viewer

@@ -4,8 +4,10 @@
 
 namespace yuragi::viewer {
 
-/// Draws the panel with ImGui, within a frame of it, at the right edge of the picture, and tells it what a person has
-/// moved. What cannot be set is shown without a handle.
+inline constexpr float kPanelWidthInLetters = 30.0F;
+
+/// Draws the panel within a window of ImGui, as wide as that is, and sends it what a person has moved. What cannot be
+/// set is shown without a handle.
 void draw_panel(Panel& panel);
 
 }  // namespace yuragi::viewer

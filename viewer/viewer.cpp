@@ -20,6 +20,7 @@
 #include "viewer/stream/picture_age.hpp"
 #include "viewer/stream/scene_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
+#include "viewer/stream/stream_notice.hpp"
 #include "viewer/viewer_exit.hpp"
 #include "viewer/wall/outputs_file.hpp"
 #include "viewer/wall/test_card.hpp"
@@ -234,7 +235,7 @@ class Viewer::Show {
       camera.zoom(input.zoom_notches);
     }
     for (const Key& key : input.keys) use_key(key);
-    window_->set_taken(has_panel_ && overlay_->takes_mouse(), has_panel_ && overlay_->takes_keys());
+    window_->set_taken(has_something_over() && overlay_->takes_mouse(), has_panel_ && overlay_->takes_keys());
   }
 
   void toggle_profiler() {
@@ -319,6 +320,8 @@ class Viewer::Show {
     last_s_ = now;
     picture_passed_s_ = passed_s;
     moment_ = &paused_.advance(timeline_.advance(now), passed_s);
+    // A wall stays black, and a picture in a file is not made without a frame.
+    if (window_ && !wall_) notice_ = notice_words_.advance(now, timeline_.playback(), connection_.status());
     follow_brightness(is_first_status ? kDimming_s : passed_s);
     // Scenes that are new while a picture stands still come when it goes on.
     if (!paused_.is_paused()) {
@@ -346,7 +349,8 @@ class Viewer::Show {
 
   /// Is anything drawn over the picture?
   bool has_something_over() const {
-    return has_overlay_ || has_panel_ || has_help_ || has_profiler_ || has_wind_ || paused_.is_paused();
+    return has_overlay_ || has_panel_ || has_help_ || has_profiler_ || has_wind_ || paused_.is_paused() ||
+           !notice_.empty();
   }
 
   /// Nothing is asked of the daemon before a person wants to see the panel.
@@ -404,6 +408,7 @@ class Viewer::Show {
                     .camera = director_->camera_text(),
                     .has_help = has_help_,
                     .is_paused = paused_.is_paused(),
+                    .notice = notice_,
                     .wind_trace = has_wind_ ? &wind_trace_ : nullptr,
                     .passes = has_profiler_ ? &passes_ : nullptr,
                     .picture_times_ms = picture_times_ms_,
@@ -473,6 +478,8 @@ class Viewer::Show {
   bool has_help_ = false;
   bool has_profiler_ = false;
   bool has_wind_ = false;
+  stream::StreamNotice notice_words_;
+  std::string notice_;  // empty: none
   PausedMoment paused_;
   WindTrace wind_trace_;
   std::vector<gl::PassClock::Pass> passes_;

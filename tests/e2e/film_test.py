@@ -201,6 +201,20 @@ class Film(unittest.TestCase):
             self.assertIn(words, self.make(*more, code=code)[1])
         self.assertIn("no such recording", self.make("--render", self.folder / "none.windlog", "--out", "-", code=66)[1])
 
+    def test_a_film_that_fails_leaves_no_folder(self):
+        folder = self.folder / "takes" / "first"
+        for code, more in ((66, ("--render", self.folder / "none.windlog")), (64, ("--scene", "tree")), (78, ("--config", "no/scenes.toml")),
+                           (64, ("--from", "yesterday"))):
+            self.make(*more, "--out", folder, code=code)
+            self.assertFalse(folder.parent.exists(), more)
+        film = self.begin("--out", folder)
+        until = time.monotonic() + HANG_S
+        while not (folder / "000002.png").exists():
+            self.assertLess(time.monotonic(), until)
+        film.send_signal(signal.SIGINT)
+        self.end(film, 128 + signal.SIGINT)
+        self.assertFalse(folder.parent.exists())
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "viewer/stream/pose_timeline.hpp"
+#include "viewer/stream/stream_connection.hpp"
+
+namespace yuragi::viewer::stream {
+
+/// The words shown instead of a picture while no frame has come: what is wrong, and what to do. A failure is shown at
+/// once; an attempt that neither fails nor brings a frame, after kPatience_s. The words stay until others replace them
+/// or frames come, so that they do not flicker while the connection is tried again. Once frames have come it stays
+/// empty: a lost stream is replayed. Not thread-safe.
+class StreamNotice {
+ public:
+  static constexpr double kPatience_s = 1.0;
+
+  /// `now_s`: on any clock that only advances. Empty: there is nothing to show.
+  const std::string& advance(double now_s, Playback playback, const StreamStatus& status);
+
+ private:
+  std::string text_;
+  std::string status_text_;
+  std::optional<double> since_s_;  // of this status
+};
+
+}  // namespace yuragi::viewer::stream
