@@ -527,24 +527,6 @@ void check_sensor(const SensorConfig& sensor) {
   }
 }
 
-namespace {
-
-/// Two sensors that read the same values would count twice.
-void refuse_same_sources(std::span<const SensorConfig> sensors) {
-  std::map<std::pair<const drivers::sensor::DriverDescription*, std::string>, const SensorConfig*> sources;
-  for (const SensorConfig& sensor : sensors) {
-    if (sensor.driver->source == nullptr || sensor.stand_in) continue;
-    const std::string source = sensor.driver->source(sensor.values);
-    const auto [first, is_new] = sources.try_emplace({sensor.driver, source}, &sensor);
-    if (is_new) continue;
-    throw ConfigError(fmt::format("{}: sensor: \"{}\" and \"{}\" read the same: {}; remove one of them",
-                                  sensor.origin.empty() ? sensor.name : sensor.origin, sensor.name, first->second->name,
-                                  source));
-  }
-}
-
-}  // namespace
-
 void refuse_shared_devices(std::span<const SensorConfig> sensors) {
   struct Claim {
     const SensorConfig* sensor;
@@ -563,7 +545,6 @@ void refuse_shared_devices(std::span<const SensorConfig> sensors) {
                                     claim.device));
     }
   }
-  refuse_same_sources(sensors);
 }
 
 std::vector<std::unique_ptr<drivers::sensor::Sensor>> open_sensors(std::span<const SensorConfig> sensors) {

@@ -87,7 +87,6 @@ const sensor::DriverDescription kDavisDriver{
     .claims =
         [](const ParameterValues& values) {
           return sensor::claims_of(bus::sole_device_of(vantage_settings_of(values).address));
-        },
-    .source = [](const ParameterValues& values) { return describe(vantage_settings_of(values).address); }};
+        }};
 
 }  // namespace yuragi::drivers::davis

@@ -6,13 +6,10 @@
 #include <array>
 #include <stdexcept>
 
-#include <fmt/format.h>
-
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/davis/weatherlink_live_finder.hpp"
 #include "drivers/davis/weatherlink_live_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
-#include "drivers/sensor/source_text.hpp"
 
 namespace yuragi::drivers::davis {
 namespace {
@@ -57,7 +54,6 @@ WeatherLinkLiveSettings weatherlink_live_settings_of(const ParameterValues& valu
   settings.http.port = static_cast<std::uint16_t>(values.integer("http_port"));
   if (settings.http.host.empty()) throw std::runtime_error("host: is missing; give the WeatherLink Live's address");
   settings.broadcasts.kind = bus::BytePortKind::kUdp;
-  settings.broadcasts.is_port_shared = true;  // by the transmitters of one station; all hear its broadcasts
   settings.broadcasts.port = static_cast<std::uint16_t>(values.integer("port"));
   settings.transmitter = static_cast<int>(values.integer("transmitter"));
   return settings;
@@ -70,15 +66,8 @@ const sensor::DriverDescription kWeatherLinkLiveDriver{
     .parameters = kWeatherLinkLiveParameters,
     .open = open_weatherlink_live,
     .find_in_network = find_weatherlink_lives,
-    .claims =
-        [](const ParameterValues& values) {
-          return std::vector<sensor::DeviceClaim>{
-              {.device = fmt::format("UDP port {}", weatherlink_live_settings_of(values).broadcasts.port),
-               .is_shared = true}};
-        },
-    .source =
-        [](const ParameterValues& values) {
-          return sensor::source_text(values, {"host", "http_port", "transmitter"});
-        }};
+    .claims = [](const ParameterValues& values) {
+      return sensor::claims_of(bus::sole_device_of(weatherlink_live_settings_of(values).broadcasts));
+    }};
 
 }  // namespace yuragi::drivers::davis

@@ -6,13 +6,10 @@
 //   2Fh, number, channels        2Fh, status, the channels      the wind and what else the station measures
 #include <array>
 
-#include <fmt/format.h>
-
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/lufft/umb_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/serial_or_tcp.hpp"
-#include "drivers/sensor/source_text.hpp"
 
 namespace yuragi::drivers::lufft {
 namespace {
@@ -95,11 +92,6 @@ const sensor::DriverDescription kUmbDriver{
     .claims =
         [](const ParameterValues& values) {
           return sensor::claims_of(bus::sole_device_of(umb_settings_of(values).address));
-        },
-    .source =
-        [](const ParameterValues& values) {
-          return fmt::format("{} ({})", describe(umb_settings_of(values).address),
-                             sensor::source_text(values, {"class", "id"}));
         }};
 
 }  // namespace yuragi::drivers::lufft

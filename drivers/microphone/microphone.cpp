@@ -19,7 +19,6 @@
 #include "drivers/microphone/microphone_calibration.hpp"
 #include "drivers/microphone/microphone_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
-#include "drivers/sensor/source_text.hpp"
 
 namespace yuragi::drivers::microphone {
 namespace {
@@ -204,16 +203,11 @@ std::vector<sensor::FoundDevice> find_plugged_microphones() {
 }  // namespace
 
 extern const sensor::DriverDescription kMicrophoneDriver;
-const sensor::DriverDescription kMicrophoneDriver{
-    .name = "microphone",
-    .summary = "one to four bare microphones, by PortAudio",
-    .parameters = kMicrophoneParameters,
-    .open = open_microphone,
-    .find = find_plugged_microphones,
-    .source =
-        [](const ParameterValues& values) {
-          return sensor::source_text(values, {"device", "host_api", "channels"});
-        },
-    .is_relative = true};
+const sensor::DriverDescription kMicrophoneDriver{.name = "microphone",
+                                                  .summary = "one to four bare microphones, by PortAudio",
+                                                  .parameters = kMicrophoneParameters,
+                                                  .open = open_microphone,
+                                                  .find = find_plugged_microphones,
+                                                  .is_relative = true};
 
 }  // namespace yuragi::drivers::microphone

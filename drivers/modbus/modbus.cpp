@@ -6,13 +6,10 @@
 #include <stdexcept>
 #include <string>
 
-#include <fmt/format.h>
-
 #include "drivers/bus/serial_ports.hpp"
 #include "drivers/modbus/modbus_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/serial_or_tcp.hpp"
-#include "drivers/sensor/source_text.hpp"
 
 namespace yuragi::drivers::modbus {
 namespace {
@@ -215,13 +212,6 @@ std::vector<sensor::FoundDevice> find_modbus() {
   return sensor::find_behind_serial_ports("transport = \"rtu\"\n");
 }
 
-std::string modbus_source(const ParameterValues& values) {
-  const ModbusProfile profile = profile_of(values);
-  const std::string line = values.text("transport") == "tcp" ? sensor::source_text(values, {"host", "port"})
-                                                             : bus::serial_device_of(values.text("device"));
-  return fmt::format("slave {} at {}", profile.speed.slave, line);
-}
-
 sensor::PromisedQuantities modbus_promises(const ParameterValues& values) {
   const ModbusProfile profile = profile_of(values);
   return {.direction = profile.direction.has_value(), .gust = profile.gust.has_value()};
@@ -237,7 +227,6 @@ const sensor::DriverDescription kModbusDriver{
     .open = open_modbus,
     .find = find_modbus,
     .claims = modbus_claims,
-    .source = modbus_source,
     .known_devices = known_modbus_devices,
     .promises = modbus_promises};
 

@@ -21,7 +21,6 @@
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/sensor/secret_source.hpp"
-#include "drivers/sensor/source_text.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 #include "engine/base/printable_text.hpp"
 
@@ -464,11 +463,6 @@ const sensor::DriverDescription kMqttDriver{
     .summary = "wind that is published on an MQTT broker, as a number or in JSON",
     .parameters = kMqttParameters,
     .open = open_mqtt,
-    .source =
-        [](const ParameterValues& values) {
-          return sensor::source_text(values, {"host", "port", "tls", "preset", "topic", "speed_path", "direction_topic",
-                                              "direction_path", "gust_topic", "gust_path", "model", "id", "channel"});
-        },
     .unchanged_for_s = mqtt_unchanged_for_s};
 
 }  // namespace yuragi::drivers::mqtt

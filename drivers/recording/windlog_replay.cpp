@@ -13,7 +13,6 @@
 
 #include "drivers/recording/recording_player.hpp"
 #include "drivers/sensor/driver.hpp"
-#include "drivers/sensor/source_text.hpp"
 #include "drivers/windlog/recording_parts.hpp"
 #include "drivers/windlog/windlog_player.hpp"
 
@@ -222,15 +221,10 @@ std::unique_ptr<sensor::Sensor> play_recording(std::filesystem::path file, windl
 }
 
 extern const sensor::DriverDescription kWindlogDriver;
-const sensor::DriverDescription kWindlogDriver{
-    .name = "windlog",
-    .summary = "plays a recording",
-    .parameters = kWindlogParameters,
-    .open = open_windlog,
-    .source =
-        [](const ParameterValues& values) {
-          return sensor::source_text(values, {"file", "sensor", "start", "same_time_of_day", "utc_offset", "rate"});
-        },
-    .plays_recordings = true};
+const sensor::DriverDescription kWindlogDriver{.name = "windlog",
+                                               .summary = "plays a recording",
+                                               .parameters = kWindlogParameters,
+                                               .open = open_windlog,
+                                               .plays_recordings = true};
 
 }  // namespace yuragi::drivers::recording

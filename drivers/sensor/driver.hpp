@@ -52,9 +52,6 @@ struct DriverDescription {
   /// The devices that a sensor of these values has to itself, without touching them, of values that open() takes;
   /// nullptr: none. Two sensors that claim the same device are refused.
   std::vector<DeviceClaim> (*claims)(const ParameterValues& values) = nullptr;
-  /// What a sensor of these values reads, as text (source_text()): two sensors of one driver that read the same are
-  /// refused. nullptr: no two can, because claims() prevents it or each makes values of its own.
-  std::string (*source)(const ParameterValues& values) = nullptr;
   /// The devices that it knows by name; nullptr: none.
   std::vector<KnownDevice> (*known_devices)() = nullptr;
   /// A sensor of these values speaks on change only: for how long, s, its silence says that nothing has changed; 0, or

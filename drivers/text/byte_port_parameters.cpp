@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "drivers/sensor/serial_or_tcp.hpp"
-#include "drivers/sensor/source_text.hpp"
 
 namespace yuragi::drivers::text {
 namespace {
@@ -159,11 +158,6 @@ bus::BytePortAddress byte_port_address_of(const ParameterValues& values) {
 
 std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values) {
   return sensor::claims_of(bus::sole_device_of(byte_port_address_of(values)));
-}
-
-std::string byte_port_source(const ParameterValues& values, std::initializer_list<std::string_view> keys) {
-  const std::string chosen = sensor::source_text(values, keys);
-  return describe(byte_port_address_of(values)) + (chosen.empty() ? "" : " (" + chosen + ")");
 }
 
 }  // namespace yuragi::drivers::text

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <initializer_list>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "drivers/bus/byte_port.hpp"
@@ -21,8 +18,5 @@ bus::BytePortAddress byte_port_address_of(const ParameterValues& values);
 
 /// What a sensor of such values has to itself: its serial port, or its UDP port.
 std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values);
-
-/// DriverDescription::source of a driver that reads from such a port: the port, and the keys that choose what of it.
-std::string byte_port_source(const ParameterValues& values, std::initializer_list<std::string_view> keys);
 
 }  // namespace yuragi::drivers::text

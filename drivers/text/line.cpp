@@ -189,11 +189,6 @@ const sensor::DriverDescription kLineDriver{
           return sensor::find_behind_serial_ports("transport = \"serial\"\n",
                                                   "\nbaud = 9600  # as Serial.begin() of the sketch says");
         },
-    .claims = byte_port_claims,
-    .source =
-        [](const ParameterValues& values) {
-          return byte_port_source(
-              values, {"speed_column", "direction_column", "gust_column", "speed_key", "direction_key", "gust_key"});
-        }};
+    .claims = byte_port_claims};
 
 }  // namespace yuragi::drivers::text

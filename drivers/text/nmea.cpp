@@ -180,10 +180,6 @@ const sensor::DriverDescription kNmeaDriver{
           return sensor::find_behind_serial_ports("transport = \"serial\"\n",
                                                   "\nbaud = 4800  # or 9600, 19200: as the anemometer is set");
         },
-    .claims = byte_port_claims,
-    .source =
-        [](const ParameterValues& values) {
-          return byte_port_source(values, {"sentences", "talker", "address", "xdr_id", "reference"});
-        }};
+    .claims = byte_port_claims};
 
 }  // namespace yuragi::drivers::text

@@ -104,10 +104,6 @@ const sensor::DriverDescription kNmea2000Driver{
       return std::make_unique<Nmea2000Sensor>(settings, bus::make_byte_port(settings.text.address));
     },
     .find = find_behind_can_interfaces,
-    .claims = byte_port_claims,
-    .source =
-        [](const ParameterValues& values) {
-          return byte_port_source(values, {"address", "reference"});
-        }};
+    .claims = byte_port_claims};
 
 }  // namespace yuragi::drivers::text

@@ -12,7 +12,6 @@
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/secret_source.hpp"
-#include "drivers/sensor/source_text.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/signalk_finder.hpp"
 #include "drivers/text/signalk_sensor.hpp"
@@ -145,11 +144,6 @@ const sensor::DriverDescription kSignalKDriver{
     .claims =
         [](const ParameterValues& values) {
           return sensor::claims_of(bus::sole_device_of(signalk_address_of(values)));
-        },
-    .source =
-        [](const ParameterValues& values) {
-          return fmt::format("{} ({})", describe(signalk_address_of(values)),
-                             sensor::source_text(values, {"source", "context", "path", "reference"}));
         }};
 
 }  // namespace yuragi::drivers::text
