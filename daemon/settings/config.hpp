@@ -95,15 +95,12 @@ Config load_config(const std::filesystem::path& file);
 std::unique_ptr<drivers::sensor::Sensor> open_sensor(const SensorConfig& sensor);
 
 /// Makes all sensors, so that it also throws where two of them cannot be used together (different settings for one
-/// serial line, two that need the same device for themselves).
+/// serial line, the same device: refuse_same_device()).
 std::vector<std::unique_ptr<drivers::sensor::Sensor>> open_sensors(std::span<const SensorConfig> sensors);
 
 /// Makes a sensor and forgets it, without touching its device. Throws ConfigError where its values contradict each
 /// other; not where they contradict those of a sensor that runs on the same line.
 void check_sensor(const SensorConfig& sensor);
-
-/// Throws ConfigError where two sensors need the same device for themselves (DriverDescription::claims).
-void refuse_shared_devices(std::span<const SensorConfig> sensors);
 
 /// The configuration as TOML with every value written out, except keys without a default that are not set. Stored in
 /// recordings and printed by `check-config`. In place of a secret stands Secret::kWithheld. Written from `seed`,
