@@ -23,7 +23,7 @@ struct SensorPair {
   std::string driver;  ///< of both sensors, where their entries name none
   std::string first;   ///< the keys of two sensors
   std::string second;
-  std::string shared;  ///< what the message names; empty: they are allowed together
+  std::string shared = {};  ///< what the message names; empty: they are allowed together
 };
 
 // /dev/yuragi-... is on no machine, so that nothing of what is plugged in here is named.
