@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "daemon/settings/alert_config.hpp"
 #include "daemon/settings/animation_config.hpp"
 #include "daemon/settings/camera_config.hpp"
+#include "daemon/settings/config_error.hpp"
 #include "daemon/settings/config_tables.hpp"
 #include "daemon/settings/http_config.hpp"
 #include "daemon/settings/local_clock.hpp"
@@ -57,13 +57,6 @@ struct Config {
   struct ByName {
     ParameterValues stream, http, recording, animation, wind, shaping, look, log;
   } by_name;
-};
-
-/// The errors in a configuration, one line for each: `file:line:column: key: what is wrong; what is
-/// allowed`.
-class ConfigError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
 };
 
 /// What `yuragi run` does without a file: one synthetic sensor, a grass scene and the ground around it.

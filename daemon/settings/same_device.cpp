@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/settings/config.hpp"
+#include "daemon/settings/config_error.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {

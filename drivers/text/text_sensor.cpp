@@ -71,7 +71,8 @@ TextSensorSettings text_sensor_settings_of(const ParameterValues& values) {
 sensor::ValueSelection text_selection(const TextSensorSettings& settings, std::vector<sensor::SelectedPart> own) {
   std::string request = settings.poll_interval > Nanoseconds::zero() ? settings.request : "";
   make_printable(request);
-  own.push_back({.key = "sender", .value = settings.address.senders, .covers = bus::senders_cover});
+  const bool has_senders = settings.address.kind == bus::BytePortKind::kUdp;
+  own.push_back({.key = "sender", .value = has_senders ? settings.address.senders : "", .covers = bus::senders_cover});
   own.push_back({.key = "request", .value = std::move(request)});
   return sensor::selection_at(settings.address, std::move(own));
 }

@@ -126,8 +126,8 @@ const std::vector<SensorPair>& sensor_pairs() {
 
       {"NmeaServer", "nmea", "transport = 'tcp'\nhost = '127.0.0.1'", "transport = 'tcp'\nhost = 'localhost'",
        "read 127.0.0.1:10110 "},
-      {"NmeaTalker", "nmea", "transport = 'tcp'\nhost = 'a'\ntalker = 'WI'",
-       "transport = 'tcp'\nhost = 'a'\ntalker = 'WI'", "(talker: WI; "},
+      {"NmeaTalker", "nmea", "transport = 'tcp'\nhost = 'a'\ntalker = 'WI'\nsender = '10.0.0.1'",
+       "transport = 'tcp'\nhost = 'a'\ntalker = 'WI'\nsender = '10.0.0.2'", "(talker: WI; "},
       // Any talker that is heard first is read.
       {"NmeaAnyTalker", "nmea", "transport = 'tcp'\nhost = 'a'", "transport = 'tcp'\nhost = 'a'\ntalker = 'WI'",
        "(talker: any and WI; "},
