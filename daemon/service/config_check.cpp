@@ -6,6 +6,7 @@
 #include "daemon/animation/animation.hpp"
 #include "daemon/sensing/fallback_recording.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
+#include "daemon/settings/same_device.hpp"
 
 namespace yuragi::daemon::service {
 
@@ -22,7 +23,7 @@ void check_restart(const settings::Config& running, const settings::Config& want
     });
     if (same == running.sensors.end()) settings::check_sensor(sensor);
   }
-  settings::refuse_shared_devices(wanted.sensors);
+  settings::refuse_same_device(wanted.sensors);
   const auto recording_of = [](const settings::Config& config) {
     return config.wind.fallback ? config.wind.fallback->recording : std::filesystem::path();
   };

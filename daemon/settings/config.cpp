@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -15,6 +14,7 @@
 #include <unistd.h>
 
 #include "daemon/pictures/picture_file.hpp"
+#include "daemon/settings/same_device.hpp"
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/settings/shaping_parameters.hpp"
 #include "engine/output/output_tables.hpp"
@@ -504,7 +504,7 @@ Config load_config(const std::filesystem::path& file) {
 namespace {
 
 ConfigError cannot_open(const SensorConfig& sensor, const std::exception& why) {
-  return ConfigError((sensor.origin.empty() ? sensor.name : sensor.origin) + ": sensor: " + why.what());
+  return ConfigError(place_of(sensor) + ": sensor: " + why.what());
 }
 
 }  // namespace
@@ -527,31 +527,11 @@ void check_sensor(const SensorConfig& sensor) {
   }
 }
 
-void refuse_shared_devices(std::span<const SensorConfig> sensors) {
-  struct Claim {
-    const SensorConfig* sensor;
-    bool is_shared;
-  };
-  std::map<std::string, Claim> claims;
-  for (const SensorConfig& sensor : sensors) {
-    if (sensor.driver->claims == nullptr) continue;
-    for (const drivers::sensor::DeviceClaim& claim : sensor.driver->claims(sensor.values)) {
-      const auto [first, is_new] = claims.try_emplace(claim.device, Claim{&sensor, claim.is_shared});
-      const SensorConfig& other = *first->second.sensor;
-      const bool can_share = claim.is_shared && first->second.is_shared && other.driver == sensor.driver;
-      if (is_new || &other == &sensor || can_share) continue;
-      throw ConfigError(fmt::format("{}: sensor: \"{}\" and \"{}\" need the same {}, which only one can have",
-                                    sensor.origin.empty() ? sensor.name : sensor.origin, sensor.name, other.name,
-                                    claim.device));
-    }
-  }
-}
-
 std::vector<std::unique_ptr<drivers::sensor::Sensor>> open_sensors(std::span<const SensorConfig> sensors) {
   std::vector<std::unique_ptr<drivers::sensor::Sensor>> opened;
   opened.reserve(sensors.size());
   for (const SensorConfig& sensor : sensors) opened.push_back(open_sensor(sensor));
-  refuse_shared_devices(sensors);
+  refuse_same_device(sensors);
   return opened;
 }
 

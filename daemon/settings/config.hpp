@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "daemon/settings/alert_config.hpp"
 #include "daemon/settings/animation_config.hpp"
 #include "daemon/settings/camera_config.hpp"
+#include "daemon/settings/config_error.hpp"
 #include "daemon/settings/config_tables.hpp"
 #include "daemon/settings/http_config.hpp"
 #include "daemon/settings/local_clock.hpp"
@@ -59,13 +59,6 @@ struct Config {
   } by_name;
 };
 
-/// The errors in a configuration, one line for each: `file:line:column: key: what is wrong; what is
-/// allowed`.
-class ConfigError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 /// What `yuragi run` does without a file: one synthetic sensor, a grass scene and the ground around it.
 Config default_config();
 
@@ -95,15 +88,12 @@ Config load_config(const std::filesystem::path& file);
 std::unique_ptr<drivers::sensor::Sensor> open_sensor(const SensorConfig& sensor);
 
 /// Makes all sensors, so that it also throws where two of them cannot be used together (different settings for one
-/// serial line, two that need the same device for themselves).
+/// serial line, the same device: refuse_same_device()).
 std::vector<std::unique_ptr<drivers::sensor::Sensor>> open_sensors(std::span<const SensorConfig> sensors);
 
 /// Makes a sensor and forgets it, without touching its device. Throws ConfigError where its values contradict each
 /// other; not where they contradict those of a sensor that runs on the same line.
 void check_sensor(const SensorConfig& sensor);
-
-/// Throws ConfigError where two sensors need the same device for themselves (DriverDescription::claims).
-void refuse_shared_devices(std::span<const SensorConfig> sensors);
 
 /// The configuration as TOML with every value written out, except keys without a default that are not set. Stored in
 /// recordings and printed by `check-config`. In place of a secret stands Secret::kWithheld. Written from `seed`,

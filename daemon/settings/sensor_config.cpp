@@ -8,6 +8,10 @@
 
 namespace yuragi::daemon::settings {
 
+const std::string& place_of(const SensorConfig& sensor) noexcept {
+  return sensor.origin.empty() ? sensor.name : sensor.origin;
+}
+
 double gust_length_m(const WindConfig& wind, const SensorConfig& sensor) noexcept {
   return sensor.blend.length_m > 0.0 ? sensor.blend.length_m : wind.gust_length_m();
 }

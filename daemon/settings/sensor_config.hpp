@@ -53,6 +53,9 @@ struct SensorConfig {
   std::optional<StandIn> stand_in{};  ///< in place of its device, which is not opened; none: the device
 };
 
+/// Its origin, or its name if it is in no file: how a message about it begins.
+const std::string& place_of(const SensorConfig& sensor) noexcept;
+
 /// The integral length of the gusts at a sensor before it is fitted to its readings, m: [wind] default_length where it
 /// is set; else from the sensor's height; else that of the default wind. Pure.
 double gust_length_m(const WindConfig& wind, const SensorConfig& sensor) noexcept;

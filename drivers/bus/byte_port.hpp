@@ -69,8 +69,16 @@ struct BytePortAddress {
 /// people.
 std::string describe(const BytePortAddress& address);
 
-/// The identity of a port that cannot be open twice: a serial port's device file behind its links, a UDP port that is
-/// neither shared nor a multicast group's. Empty: others may open it, too.
+/// The identity of what a port is connected to, for people, too: "serial port /dev/ttyUSB0", "192.168.1.21:10110",
+/// "UDP port 10110", "UDP 239.1.2.3:10110" (a multicast group), "CAN interface can0", "file /tmp/wind". Files and
+/// devices are those behind their links, names of hosts in small letters; no name is looked up.
+std::string device_of(const BytePortAddress& address);
+
+/// The settings that select it: "host, port".
+std::string_view keys_of(BytePortKind kind) noexcept;
+
+/// device_of() a port that cannot be open twice: a serial port, a UDP port that is neither shared nor a multicast
+/// group's. Empty: others may open it, too.
 std::string sole_device_of(const BytePortAddress& address);
 
 enum class ByteStatus : std::uint8_t {

@@ -31,6 +31,15 @@ bool is_in_any(const std::vector<Net>& nets, const Address& address) {
   return std::ranges::any_of(nets, [&address](const Net& net) { return net_of(address, net.prefix_length()) == net; });
 }
 
+template <class Net>
+bool each_is_in(const std::vector<Net>& nets, const std::vector<Net>& others) {
+  return std::ranges::all_of(others, [&nets](const Net& other) {
+    return std::ranges::any_of(nets, [&other](const Net& net) {
+      return net.prefix_length() <= other.prefix_length() && net_of(other.address(), net.prefix_length()) == net;
+    });
+  });
+}
+
 }  // namespace
 
 Result<SenderFilter, Failure> SenderFilter::parse(const std::string& senders) {
@@ -57,6 +66,16 @@ Result<SenderFilter, Failure> SenderFilter::parse(const std::string& senders) {
     }
   }
   return filter;
+}
+
+bool SenderFilter::covers(const SenderFilter& other) const {
+  return each_is_in(v4_, other.v4_) && each_is_in(v6_, other.v6_);
+}
+
+bool senders_cover(const std::string& wide, const std::string& narrow) {
+  const auto nets = SenderFilter::parse(wide);
+  const auto others = SenderFilter::parse(narrow);
+  return nets && others && nets->covers(*others);
 }
 
 bool SenderFilter::takes(const ip::address& sender) const {

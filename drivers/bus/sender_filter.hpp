@@ -24,10 +24,16 @@ class SenderFilter {
   /// An IPv4 address that came through an IPv6 socket counts as IPv4.
   bool takes(const boost::asio::ip::address& sender) const;
 
+  /// Returns true if each net of `other` lies in one of these.
+  bool covers(const SenderFilter& other) const;
+
  private:
   std::vector<boost::asio::ip::network_v4> v4_;
   std::vector<boost::asio::ip::network_v6> v6_;
 };
+
+/// Returns true if `wide` takes every sender that `narrow` names; false if one of them is no list.
+bool senders_cover(const std::string& wide, const std::string& narrow);
 
 /// IPv4 addresses that came through an IPv6 socket look like it; people write them as they are.
 boost::asio::ip::address plain_address(const boost::asio::ip::address& address);

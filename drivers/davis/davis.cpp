@@ -87,6 +87,8 @@ const sensor::DriverDescription kDavisDriver{
     .claims =
         [](const ParameterValues& values) {
           return sensor::claims_of(bus::sole_device_of(vantage_settings_of(values).address));
-        }};
+        },
+    .selection =
+        [](const ParameterValues& values) { return sensor::selection_at(vantage_settings_of(values).address); }};
 
 }  // namespace yuragi::drivers::davis

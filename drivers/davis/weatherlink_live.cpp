@@ -54,6 +54,7 @@ WeatherLinkLiveSettings weatherlink_live_settings_of(const ParameterValues& valu
   settings.http.port = static_cast<std::uint16_t>(values.integer("http_port"));
   if (settings.http.host.empty()) throw std::runtime_error("host: is missing; give the WeatherLink Live's address");
   settings.broadcasts.kind = bus::BytePortKind::kUdp;
+  settings.broadcasts.is_port_shared = true;  // by the sensors of one device's transmitters
   settings.broadcasts.port = static_cast<std::uint16_t>(values.integer("port"));
   settings.transmitter = static_cast<int>(values.integer("transmitter"));
   return settings;
@@ -66,8 +67,17 @@ const sensor::DriverDescription kWeatherLinkLiveDriver{
     .parameters = kWeatherLinkLiveParameters,
     .open = open_weatherlink_live,
     .find_in_network = find_weatherlink_lives,
-    .claims = [](const ParameterValues& values) {
-      return sensor::claims_of(bus::sole_device_of(weatherlink_live_settings_of(values).broadcasts));
-    }};
+    .claims = [](const ParameterValues& values) -> std::vector<sensor::DeviceClaim> {
+      return {{.device = bus::device_of(weatherlink_live_settings_of(values).broadcasts), .is_shared = true}};
+    },
+    .selection =
+        [](const ParameterValues& values) {
+          const WeatherLinkLiveSettings settings = weatherlink_live_settings_of(values);
+          return sensor::ValueSelection{
+              .device = "WeatherLink Live " + bus::device_of(settings.http),
+              .device_keys = "host, http_port",
+              .parts = {{.key = "transmitter",
+                         .value = settings.transmitter == 0 ? "" : std::to_string(settings.transmitter)}}};
+        }};
 
 }  // namespace yuragi::drivers::davis

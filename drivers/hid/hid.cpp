@@ -11,7 +11,10 @@
 // Source: drivers/SOURCES.md S2.
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <string>
+#include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -71,10 +74,19 @@ std::unique_ptr<sensor::Sensor> open_hid(const ParameterValues& values) {
                                      sensor::seed_of(station + place.path + place.serial), bus::make_hid_device());
 }
 
-/// Whoever selects alike gets the same station.
-std::vector<sensor::DeviceClaim> hid_claims(const ParameterValues& values) {
-  return sensor::claims_of(fmt::format("USB weather station with station = \"{}\", path = \"{}\", serial = \"{}\"",
-                                       values.text("station"), values.text("path"), values.text("serial")));
+/// A path of a file is that behind its links.
+sensor::ValueSelection hid_selection(const ParameterValues& values) {
+  const std::string& station = values.text("station");
+  std::string path = values.text("path");
+  if (path.starts_with('/')) {
+    std::error_code error;
+    const auto node = std::filesystem::weakly_canonical(path, error);
+    if (!error) path = node.string();
+  }
+  return {.device = "USB weather station",
+          .parts = {{.key = "station", .value = station == "auto" ? "" : station},
+                    {.key = "path", .value = std::move(path)},
+                    {.key = "serial", .value = values.text("serial")}}};
 }
 
 std::vector<sensor::FoundDevice> find_hid() {
@@ -104,6 +116,6 @@ const sensor::DriverDescription kHidDriver{.name = "hid",
                                            .parameters = kHidParameters,
                                            .open = open_hid,
                                            .find = find_hid,
-                                           .claims = hid_claims};
+                                           .selection = hid_selection};
 
 }  // namespace yuragi::drivers::hid

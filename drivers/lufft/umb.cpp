@@ -92,6 +92,12 @@ const sensor::DriverDescription kUmbDriver{
     .claims =
         [](const ParameterValues& values) {
           return sensor::claims_of(bus::sole_device_of(umb_settings_of(values).address));
+        },
+    .selection =
+        [](const ParameterValues& values) {
+          return sensor::selection_at(umb_settings_of(values).address,
+                                      {{.key = "class", .value = std::to_string(values.integer("class"))},
+                                       {.key = "id", .value = std::to_string(values.integer("id"))}});
         }};
 
 }  // namespace yuragi::drivers::lufft

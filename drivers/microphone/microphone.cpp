@@ -7,7 +7,9 @@
 // Sources: Morgan and Raspet 1992, "Investigation of the mechanisms of low-frequency wind noise generation outdoors";
 // Raspet, Webster and Dillion 2006, "Framework for wind noise studies" (stagnation pressure, f^-7/3); Nelke and Vary
 // 2014, "Measurement, analysis and simulation of wind noise signals for mobile communication devices" (coherence).
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -196,6 +198,24 @@ std::unique_ptr<sensor::Sensor> open_microphone(const ParameterValues& values) {
                                             bus::make_process_port(std::move(command)));
 }
 
+/// A part of a name selects the first input that has it, so that a shorter part may select the same one. Sensors with
+/// different numbers of channels all begin with the first channel.
+bool name_covers(const std::string& wide, const std::string& narrow) {
+  return narrow.find(wide) != std::string::npos;
+}
+
+sensor::ValueSelection microphone_selection(const ParameterValues& values) {
+  const auto lower = [](std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+  };
+  const std::string device = lower(values.text("device"));
+  const std::string host_api = lower(values.text("host_api"));
+  return {.device = device.empty() && host_api.empty() ? "the default sound input" : "sound input",
+          .parts = {{.key = "device", .value = device, .covers = name_covers},
+                    {.key = "host_api", .value = host_api, .covers = name_covers}}};
+}
+
 std::vector<sensor::FoundDevice> find_plugged_microphones() {
   return find_microphones(microphone_worker_program());
 }
@@ -208,6 +228,7 @@ const sensor::DriverDescription kMicrophoneDriver{.name = "microphone",
                                                   .parameters = kMicrophoneParameters,
                                                   .open = open_microphone,
                                                   .find = find_plugged_microphones,
+                                                  .selection = microphone_selection,
                                                   .is_relative = true};
 
 }  // namespace yuragi::drivers::microphone

@@ -6,6 +6,9 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "drivers/bus/byte_port.hpp"
 #include "drivers/bus/serial_ports.hpp"
 #include "drivers/modbus/modbus_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
@@ -189,6 +192,21 @@ std::vector<sensor::DeviceClaim> modbus_claims(const ParameterValues& values) {
   return claims;
 }
 
+/// The register that holds the speed: sensors may have a vane in common.
+sensor::ValueSelection modbus_selection(const ParameterValues& values) {
+  const ModbusProfile profile = profile_of(values);
+  const bool is_tcp = values.text("transport") == "tcp";
+  return {.device = is_tcp
+                        ? "Modbus line " + bus::device_of({.kind = bus::BytePortKind::kTcpClient,
+                                                           .host = values.text("host"),
+                                                           .port = static_cast<std::uint16_t>(values.integer("port"))})
+                        : bus::serial_device_of(values.text("device")),
+          .device_keys = is_tcp ? "host, port" : "device",
+          .parts = {{.key = "speed_slave", .value = std::to_string(profile.speed.slave)},
+                    {.key = "profile",
+                     .value = fmt::format("function {}, register {}", profile.speed.function, profile.speed.address)}}};
+}
+
 /// Every profile that can be found by name. One that cannot be read says why.
 std::vector<sensor::KnownDevice> known_modbus_devices() {
   std::vector<sensor::KnownDevice> devices;
@@ -227,6 +245,7 @@ const sensor::DriverDescription kModbusDriver{
     .open = open_modbus,
     .find = find_modbus,
     .claims = modbus_claims,
+    .selection = modbus_selection,
     .known_devices = known_modbus_devices,
     .promises = modbus_promises};
 

@@ -397,19 +397,33 @@ std::vector<MqttPlace> places_of(const std::string& path, std::span<const Preset
   return places;
 }
 
+bool has_own_unit(const ParameterValues& values) {
+  return values.text("speed_unit") != "preset";
+}
+
+MqttSource speed_source_of(const ParameterValues& values) {
+  const MqttPreset& preset = mqtt_preset_of(values.text("preset"));
+  MqttSource speed = {.topic = values.text("topic").empty() ? std::string(preset.topic) : values.text("topic"),
+                      .places = places_of(values.text("speed_path"), preset.speed, has_own_unit(values))};
+  if (speed.topic.empty()) throw std::runtime_error("topic: is missing; give the topic that the speed is published on");
+  if (speed.places.empty()) speed.places.emplace_back();
+  return speed;
+}
+
+std::uint16_t broker_port_of(const ParameterValues& values) {
+  const std::int64_t port = values.integer("port");
+  return static_cast<std::uint16_t>(port != 0 ? port : values.flag("tls") ? 8883 : 1883);
+}
+
 MqttSettings mqtt_settings_of(const ParameterValues& values) {
   MqttSettings settings;
   settings.preset = &mqtt_preset_of(values.text("preset"));
   const MqttPreset& preset = *settings.preset;
-  const std::string& unit = values.text("speed_unit");
-  settings.has_own_unit = unit != "preset";
-  settings.metres_per_second = sensor::metres_per_second_in(settings.has_own_unit ? unit : preset.unit);
+  settings.has_own_unit = has_own_unit(values);
+  settings.metres_per_second =
+      sensor::metres_per_second_in(settings.has_own_unit ? values.text("speed_unit") : preset.unit);
 
-  settings.speed.topic = values.text("topic").empty() ? std::string(preset.topic) : values.text("topic");
-  if (settings.speed.topic.empty())
-    throw std::runtime_error("topic: is missing; give the topic that the speed is published on");
-  settings.speed.places = places_of(values.text("speed_path"), preset.speed, settings.has_own_unit);
-  if (settings.speed.places.empty()) settings.speed.places.emplace_back();
+  settings.speed = speed_source_of(values);
 
   // Without a topic of its own a quantity comes with the speed, if its place in the message is known.
   const auto source_of = [&](std::string_view topic, std::string_view path, std::span<const PresetPlace> known) {
@@ -429,8 +443,7 @@ MqttSettings mqtt_settings_of(const ParameterValues& values) {
   bus::MqttSubscription& subscription = settings.subscription;
   subscription.host = values.text("host");
   subscription.uses_tls = values.flag("tls");
-  const std::int64_t port = values.integer("port");
-  subscription.port = static_cast<std::uint16_t>(port != 0 ? port : subscription.uses_tls ? 8883 : 1883);
+  subscription.port = broker_port_of(values);
   subscription.user = values.text("user");
   subscription.password = sensor::secret_of(values, "password");
   subscription.ca_file = values.text("ca_file");
@@ -451,6 +464,30 @@ std::unique_ptr<sensor::Sensor> open_mqtt(const ParameterValues& values) {
   return std::make_unique<MqttSensor>(std::move(settings));
 }
 
+/// Returns true if every topic of the filter `narrow` is one of `wide`, another filter.
+bool topic_covers(const std::string& wide, const std::string& narrow) {
+  std::string topic = narrow;
+  std::ranges::replace_if(
+      topic, [](char c) { return c == '+' || c == '#'; }, '?');
+  return bus::mqtt_topic_matches(topic, wide);
+}
+
+sensor::ValueSelection mqtt_selection(const ParameterValues& values) {
+  const MqttSource speed = speed_source_of(values);
+  const auto pointer_of = [](const MqttPlace& place) { return place.is_json() ? place.pointer : "the whole message"; };
+  std::string pointers;
+  for (const MqttPlace& place : speed.places) pointers += (pointers.empty() ? "" : ",") + pointer_of(place);
+  return {.device = "MQTT broker " + bus::device_of({.kind = bus::BytePortKind::kTcpClient,
+                                                     .host = values.text("host"),
+                                                     .port = broker_port_of(values)}),
+          .device_keys = "host, port",
+          .parts = {{.key = "topic", .value = speed.topic, .covers = topic_covers},
+                    {.key = "speed_path", .value = std::move(pointers), .covers = sensor::list_covers},
+                    {.key = "model", .value = values.text("model")},
+                    {.key = "id", .value = values.text("id")},
+                    {.key = "channel", .value = values.text("channel")}}};
+}
+
 double mqtt_unchanged_for_s(const ParameterValues& values) {
   return values.flag("on_change") ? values.number("silence") : 0.0;
 }
@@ -463,6 +500,7 @@ const sensor::DriverDescription kMqttDriver{
     .summary = "wind that is published on an MQTT broker, as a number or in JSON",
     .parameters = kMqttParameters,
     .open = open_mqtt,
+    .selection = mqtt_selection,
     .unchanged_for_s = mqtt_unchanged_for_s};
 
 }  // namespace yuragi::drivers::mqtt

@@ -181,8 +181,8 @@ std::unique_ptr<sensor::Sensor> open_ecowitt(const ParameterValues& values) {
   return std::make_unique<EcowittSensor>(settings);
 }
 
-std::vector<sensor::DeviceClaim> ecowitt_claims(const ParameterValues& values) {
-  return sensor::claims_of("gateway " + describe(ecowitt_settings_of(values).port));
+sensor::ValueSelection ecowitt_selection(const ParameterValues& values) {
+  return {.device = "gateway " + bus::device_of(ecowitt_settings_of(values).port), .device_keys = "host, port"};
 }
 
 }  // namespace
@@ -194,6 +194,6 @@ const sensor::DriverDescription kEcowittDriver{
     .parameters = kEcowittParameters,
     .open = open_ecowitt,
     .find_in_network = find_ecowitt_gateways,
-    .claims = ecowitt_claims};
+    .selection = ecowitt_selection};
 
 }  // namespace yuragi::drivers::network

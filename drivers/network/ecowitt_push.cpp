@@ -359,6 +359,11 @@ const sensor::DriverDescription kEcowittPushDriver{
     .parameters = kEcowittPushParameters,
     .open = open_ecowitt_push,
     .claims = ecowitt_push_claims,
+    .selection =
+        [](const ParameterValues& values) {
+          return sensor::ValueSelection{.device = fmt::format("pushes to TCP port {}", push_address_of(values).port),
+                                        .device_keys = "port"};
+        },
     .device_setup = kEcowittPushSetup};
 
 }  // namespace yuragi::drivers::network

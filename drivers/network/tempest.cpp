@@ -215,14 +215,16 @@ std::unique_ptr<sensor::Sensor> open_tempest(const ParameterValues& values) {
   return std::make_unique<TempestSensor>(std::move(settings));
 }
 
-/// Sensors of different stations share the port. One that may follow any station has it to itself among ours, so that
-/// no station counts twice.
+/// Sensors of different stations share the port.
 std::vector<sensor::DeviceClaim> tempest_claims(const ParameterValues& values) {
+  return {{.device = bus::device_of(tempest_settings_of(values).port), .is_shared = true}};
+}
+
+sensor::ValueSelection tempest_selection(const ParameterValues& values) {
   const TempestSettings settings = tempest_settings_of(values);
-  const std::string port = fmt::format("UDP port {}", settings.port.port);
-  if (settings.serial_number.empty()) return {{.device = port}};
-  return {{.device = port, .is_shared = true},
-          {.device = fmt::format("station {} at {}", settings.serial_number, port)}};
+  return sensor::selection_at(settings.port,
+                              {{.key = "serial_number", .value = settings.serial_number},
+                               {.key = "from", .value = settings.port.senders, .covers = bus::senders_cover}});
 }
 
 }  // namespace
@@ -234,6 +236,7 @@ const sensor::DriverDescription kTempestDriver{
     .parameters = kTempestParameters,
     .open = open_tempest,
     .find_in_network = find_tempest_stations,
-    .claims = tempest_claims};
+    .claims = tempest_claims,
+    .selection = tempest_selection};
 
 }  // namespace yuragi::drivers::network

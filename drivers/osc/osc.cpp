@@ -256,6 +256,17 @@ std::vector<sensor::DeviceClaim> osc_claims(const ParameterValues& values) {
   return sensor::claims_of(bus::sole_device_of(port_of(values)));
 }
 
+bool osc_address_covers(const std::string& wide, const std::string& narrow) {
+  return bus::osc_address_matches(narrow, wide);
+}
+
+sensor::ValueSelection osc_selection(const ParameterValues& values) {
+  return sensor::selection_at(port_of(values),
+                              {{.key = "address", .value = values.text("address"), .covers = osc_address_covers},
+                               {.key = "from", .value = values.text("from"), .covers = bus::senders_cover},
+                               {.key = "speed_argument", .value = std::to_string(values.integer("speed_argument"))}});
+}
+
 double osc_unchanged_for_s(const ParameterValues& values) {
   return values.flag("on_change") ? values.number("silence") : 0.0;
 }
@@ -268,6 +279,7 @@ const sensor::DriverDescription kOscDriver{.name = "osc",
                                            .parameters = kOscParameters,
                                            .open = open_osc,
                                            .claims = osc_claims,
+                                           .selection = osc_selection,
                                            .unchanged_for_s = osc_unchanged_for_s};
 
 }  // namespace yuragi::drivers::osc

@@ -214,6 +214,19 @@ std::unique_ptr<sensor::Sensor> open_windlog(const ParameterValues& values) {
   return play_recording(file, std::move(options));
 }
 
+/// The same readings may be played from two places on.
+sensor::ValueSelection windlog_selection(const ParameterValues& values) {
+  std::error_code error;
+  const std::string& file = values.text("file");
+  const auto behind_links = std::filesystem::weakly_canonical(file, error);
+  const std::string& recorded = values.text("sensor");
+  const std::string& start = values.text("start");
+  return {.device = "recording " + (error ? file : behind_links.string()),
+          .device_keys = "file",
+          .parts = {{.key = "sensor", .value = recorded == "*" ? "" : recorded},
+                    {.key = "start", .value = start.empty() ? "the first reading" : start}}};
+}
+
 }  // namespace
 
 std::unique_ptr<sensor::Sensor> play_recording(std::filesystem::path file, windlog::PlayerOptions options) {
@@ -225,6 +238,7 @@ const sensor::DriverDescription kWindlogDriver{.name = "windlog",
                                                .summary = "plays a recording",
                                                .parameters = kWindlogParameters,
                                                .open = open_windlog,
+                                               .selection = windlog_selection,
                                                .plays_recordings = true};
 
 }  // namespace yuragi::drivers::recording

@@ -11,6 +11,7 @@
 #include "drivers/sensor/found_device.hpp"
 #include "drivers/sensor/network_search.hpp"
 #include "drivers/sensor/sensor.hpp"
+#include "drivers/sensor/value_selection.hpp"
 #include "engine/base/parameter.hpp"
 
 namespace yuragi::drivers::sensor {
@@ -52,6 +53,9 @@ struct DriverDescription {
   /// The devices that a sensor of these values has to itself, without touching them, of values that open() takes;
   /// nullptr: none. Two sensors that claim the same device are refused.
   std::vector<DeviceClaim> (*claims)(const ParameterValues& values) = nullptr;
+  /// Which values a sensor of these values reads, without touching its device, of values that open() takes; nullptr:
+  /// no two sensors read the same. Two sensors of the driver are refused where one's selection covers the other's.
+  ValueSelection (*selection)(const ParameterValues& values) = nullptr;
   /// The devices that it knows by name; nullptr: none.
   std::vector<KnownDevice> (*known_devices)() = nullptr;
   /// A sensor of these values speaks on change only: for how long, s, its silence says that nothing has changed; 0, or

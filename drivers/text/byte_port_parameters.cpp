@@ -160,4 +160,9 @@ std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values)
   return sensor::claims_of(bus::sole_device_of(byte_port_address_of(values)));
 }
 
+sensor::SelectedPart reference_part(const ParameterValues& values) {
+  const std::string& reference = values.text("reference");
+  return {.key = "reference", .value = reference == "auto" ? "" : reference};
+}
+
 }  // namespace yuragi::drivers::text

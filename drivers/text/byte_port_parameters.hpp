@@ -4,6 +4,7 @@
 
 #include "drivers/bus/byte_port.hpp"
 #include "drivers/sensor/device_claim.hpp"
+#include "drivers/sensor/value_selection.hpp"
 #include "engine/base/parameter.hpp"
 
 namespace yuragi::drivers::text {
@@ -18,5 +19,8 @@ bus::BytePortAddress byte_port_address_of(const ParameterValues& values);
 
 /// What a sensor of such values has to itself: its serial port, or its UDP port.
 std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values);
+
+/// The part of the setting "reference" (chosen_wind_parameters()).
+sensor::SelectedPart reference_part(const ParameterValues& values);
 
 }  // namespace yuragi::drivers::text

@@ -175,6 +175,20 @@ LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
   return settings;
 }
 
+namespace {
+
+/// Where the speed stands in a line; what the format does not use is any.
+sensor::ValueSelection line_selection(const ParameterValues& values) {
+  const std::string& format = values.text("format");
+  const bool has_columns = format == "auto" || format == "columns";
+  return text_selection(
+      line_sensor_settings_of(values).text,
+      {{.key = "speed_column", .value = has_columns ? std::to_string(values.integer("speed_column")) : ""},
+       {.key = "speed_key", .value = format == "columns" ? "" : values.text("speed_key")}});
+}
+
+}  // namespace
+
 extern const sensor::DriverDescription kLineDriver;
 const sensor::DriverDescription kLineDriver{
     .name = "line",
@@ -189,6 +203,7 @@ const sensor::DriverDescription kLineDriver{
           return sensor::find_behind_serial_ports("transport = \"serial\"\n",
                                                   "\nbaud = 9600  # as Serial.begin() of the sketch says");
         },
-    .claims = byte_port_claims};
+    .claims = byte_port_claims,
+    .selection = line_selection};
 
 }  // namespace yuragi::drivers::text

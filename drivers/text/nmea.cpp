@@ -166,6 +166,21 @@ NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values) {
   return settings;
 }
 
+namespace {
+
+/// A talker, sentences, a direction's reference and a number in XDR select among what comes through one port.
+sensor::ValueSelection nmea_selection(const ParameterValues& values) {
+  const NmeaSensorSettings settings = nmea_sensor_settings_of(values);
+  return text_selection(settings.text, {{.key = "talker", .value = settings.talker},
+                                        {.key = "sentences",
+                                         .value = fmt::format("{}", fmt::join(settings.sentences, ",")),
+                                         .covers = sensor::list_covers},
+                                        reference_part(values),
+                                        {.key = "xdr_id", .value = std::to_string(settings.xdr_first_id)}});
+}
+
+}  // namespace
+
 extern const sensor::DriverDescription kNmeaDriver;
 const sensor::DriverDescription kNmeaDriver{
     .name = "nmea",
@@ -180,6 +195,7 @@ const sensor::DriverDescription kNmeaDriver{
           return sensor::find_behind_serial_ports("transport = \"serial\"\n",
                                                   "\nbaud = 4800  # or 9600, 19200: as the anemometer is set");
         },
-    .claims = byte_port_claims};
+    .claims = byte_port_claims,
+    .selection = nmea_selection};
 
 }  // namespace yuragi::drivers::text

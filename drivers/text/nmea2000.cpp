@@ -104,6 +104,13 @@ const sensor::DriverDescription kNmea2000Driver{
       return std::make_unique<Nmea2000Sensor>(settings, bus::make_byte_port(settings.text.address));
     },
     .find = find_behind_can_interfaces,
-    .claims = byte_port_claims};
+    .claims = byte_port_claims,
+    .selection =
+        [](const ParameterValues& values) {
+          const std::int64_t address = values.integer("address");
+          return text_selection(
+              text_sensor_settings_of(values),
+              {{.key = "address", .value = address < 0 ? "" : std::to_string(address)}, reference_part(values)});
+        }};
 
 }  // namespace yuragi::drivers::text

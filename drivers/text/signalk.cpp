@@ -144,6 +144,17 @@ const sensor::DriverDescription kSignalKDriver{
     .claims =
         [](const ParameterValues& values) {
           return sensor::claims_of(bus::sole_device_of(signalk_address_of(values)));
+        },
+    .selection =
+        [](const ParameterValues& values) {
+          TextSensorSettings text = text_sensor_settings_of(values);
+          text.address = signalk_address_of(values);
+          const bool is_websocket = text.address.kind == bus::BytePortKind::kWebSocket;
+          const std::string& context = values.text("context");
+          return text_selection(text, {{.key = "path", .value = is_websocket ? values.text("path") : ""},
+                                       {.key = "context", .value = context.empty() ? std::string(kOwnVessel) : context},
+                                       {.key = "source", .value = values.text("source")},
+                                       reference_part(values)});
         }};
 
 }  // namespace yuragi::drivers::text

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "drivers/bus/sender_filter.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
+#include "engine/base/printable_text.hpp"
 
 namespace yuragi::drivers::text {
 namespace {
@@ -64,6 +66,15 @@ TextSensorSettings text_sensor_settings_of(const ParameterValues& values) {
   settings.poll_interval = from_seconds(values.number("poll_interval"));
   settings.response_timeout = from_seconds(values.number("response_timeout"));
   return settings;
+}
+
+sensor::ValueSelection text_selection(const TextSensorSettings& settings, std::vector<sensor::SelectedPart> own) {
+  std::string request = settings.poll_interval > Nanoseconds::zero() ? settings.request : "";
+  make_printable(request);
+  const bool has_senders = settings.address.kind == bus::BytePortKind::kUdp;
+  own.push_back({.key = "sender", .value = has_senders ? settings.address.senders : "", .covers = bus::senders_cover});
+  own.push_back({.key = "request", .value = std::move(request)});
+  return sensor::selection_at(settings.address, std::move(own));
 }
 
 TextSensor::TextSensor(const TextSensorSettings& settings, std::unique_ptr<bus::BytePort> port)

@@ -13,6 +13,7 @@
 #include "drivers/decode/text/line_assembler.hpp"
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
+#include "drivers/sensor/value_selection.hpp"
 #include "drivers/text/arrival_watch.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/wind/station_quantities.hpp"
@@ -37,6 +38,9 @@ struct TextSensorSettings {
 
 /// Those of the parameters that with_byte_port_parameters() adds. Throws std::runtime_error.
 TextSensorSettings text_sensor_settings_of(const ParameterValues& values);
+
+/// What a sensor of such settings reads: `own` are the driver's parts, to which senders and the request are added.
+sensor::ValueSelection text_selection(const TextSensorSettings& settings, std::vector<sensor::SelectedPart> own);
 
 /// A device that sends one line per reading, by itself or on request. This base assembles lines from the bytes, sends
 /// requests, detects silence and invalid lines, and reports them; a driver decodes a line.

@@ -186,10 +186,12 @@ std::unique_ptr<sensor::Sensor> open_usb(const ParameterValues& values) {
   return std::make_unique<UsbSensor>(std::move(settings), seed, std::move(device));
 }
 
-/// Whoever selects alike gets the same device.
-std::vector<sensor::DeviceClaim> usb_claims(const ParameterValues& values) {
-  return sensor::claims_of(fmt::format("USB device with device = \"{}\", serial = \"{}\", port = \"{}\"",
-                                       values.text("device"), values.text("serial"), values.text("port")));
+sensor::ValueSelection usb_selection(const ParameterValues& values) {
+  const std::string& device = values.text("device");
+  return {.device = "USB device",
+          .parts = {{.key = "device", .value = device == "auto" ? "" : device},
+                    {.key = "serial", .value = values.text("serial")},
+                    {.key = "port", .value = values.text("port")}}};
 }
 
 std::vector<sensor::FoundDevice> find_usb() {
@@ -219,6 +221,6 @@ const sensor::DriverDescription kUsbDriver{
     .parameters = kUsbParameters,
     .open = open_usb,
     .find = find_usb,
-    .claims = usb_claims};
+    .selection = usb_selection};
 
 }  // namespace yuragi::drivers::usb

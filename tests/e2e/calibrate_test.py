@@ -86,6 +86,7 @@ driver = "modbus"
 [[sensor]]
 name = "mast"
 driver = "modbus"
+speed_slave = 3
 [sensor.calibration]
 gain = 1.0          # from the institute
 """

@@ -346,6 +346,8 @@ class DaemonTest(unittest.TestCase):
 
         path = self.two_baud_rates()
         expect_refused(path, path + ":7:1: sensor: /dev/yuragi-none is used with 4800 8N1 by another sensor")
+        twice = "".join(f'[[sensor]]\nname = "{name}"\ndriver = "modbus"\n' for name in ("roof", "mast"))
+        expect_refused(self.file("twice.toml", twice), ':4:1: sensors "roof" and "mast" both read Modbus line 127.0.0.1:502 ')
         scenes = [f'[[scene]]\nkind = "grass"\nname = "{name}"\nblades_across = 2000\nblades_deep = 1100\nlinks = 1\n' for name in "ab"]
         expect_refused(self.file("large.toml", "".join(scenes)), "the scenes are larger than the stream allows")
 

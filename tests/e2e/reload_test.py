@@ -230,7 +230,9 @@ class Reload(RunningDaemon):
         daemon = self.start_daemon(SENSOR + GRASS)
         frames = self.frames()
         for text, place in (("[shaping]\nfloor = 3\ngusts = -1\n", ":3:9: shaping.gusts: "), ("[shaping\n", ":1:9: TOML: "),
-                            ('[[sensor]]\ndriver = "windlog"\nfile = "/nonexistent.windlog"\n', ":1:1: sensor: ")):
+                            ('[[sensor]]\ndriver = "windlog"\nfile = "/nonexistent.windlog"\n', ":1:1: sensor: "),
+                            ("".join(f'[[sensor]]\ndriver = "hid"\nname = "{name}"\n' for name in ("roof", "mast")),
+                             ':4:1: sensors "roof" and "mast" both read USB weather station: ')):
             self.write(text)
             done = reload("--connect", self.address)
             self.assertEqual(done.returncode, 78, done.stdout)
