@@ -16,7 +16,7 @@
 #include "daemon/pictures/picture_file.hpp"
 #include "daemon/settings/same_device.hpp"
 #include "daemon/settings/sensor_blend.hpp"
-#include "daemon/settings/shaping_parameters.hpp"
+#include "daemon/settings/shaping_config.hpp"
 #include "engine/output/output_tables.hpp"
 #include "engine/tables/parse_toml.hpp"
 #include "engine/tables/toml_values.hpp"

@@ -35,7 +35,7 @@ inline constexpr std::size_t kMostSensors = 255;
 inline constexpr std::size_t kMostScenes = 64;
 
 /// The configuration of an installation, parsed from TOML. Every value is within its range; what the file leaves out
-/// has its default. The keys are described in config_tables.hpp, shaping_parameters.hpp and sensor_blend.hpp.
+/// has its default. The keys are described in config_tables.hpp, shaping_config.hpp and sensor_blend.hpp.
 struct Config {
   std::uint64_t seed = 1;
   StreamConfig stream;

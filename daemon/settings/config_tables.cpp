@@ -7,7 +7,7 @@
 #include "daemon/settings/control_permission.hpp"
 #include "daemon/settings/log_config.hpp"
 #include "daemon/settings/recording_config.hpp"
-#include "daemon/settings/shaping_parameters.hpp"
+#include "daemon/settings/shaping_config.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 #include "engine/look/look.hpp"
 #include "engine/wind/wind_reading.hpp"

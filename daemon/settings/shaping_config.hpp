@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "daemon/settings/opening_hours.hpp"
@@ -17,6 +18,9 @@ struct ShapingConfig {
   OpeningHours hours;
   std::filesystem::path site_file{};  ///< keeps what was learnt of the site over a restart; empty: not kept
 };
+
+/// What the table [shaping] may hold.
+std::span<const Parameter> shaping_parameters();
 
 /// From the values of shaping_parameters(); the breeze that the floor adds has the turbulence of `wind`. Each error
 /// (values that contradict each other, invalid hours) names its key.

@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 
 #include "daemon/settings/sensor_blend.hpp"
-#include "daemon/settings/shaping_parameters.hpp"
+#include "daemon/settings/shaping_config.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::daemon::settings {
