@@ -39,6 +39,7 @@ constexpr Part kUpperLeft{.x = 10, .y = 10, .width_px = 60, .height_px = 60};
 constexpr Part kLowerLeft{.x = 10, .y = kHeight_px - 70, .width_px = 60, .height_px = 60};
 constexpr Part kLowerRight{.x = kWidth_px - 70, .y = kHeight_px - 70, .width_px = 60, .height_px = 60};
 constexpr Part kMiddle{.x = kWidth_px / 2 - 30, .y = kHeight_px / 2 - 30, .width_px = 60, .height_px = 60};
+constexpr Part kWords{.x = kWidth_px / 2 - 150, .y = kHeight_px / 2 - 20, .width_px = 300, .height_px = 40};
 
 int channel(std::uint32_t color, unsigned shift) {
   return static_cast<int>(color >> shift & 0xFFU);
@@ -82,14 +83,19 @@ class WindowTest : public testing::Test {
     screen_.point(kWidth_px / 2, kHeight_px / 3);
   }
 
-  /// A viewer without texts, once the stream's meadow is seen. In quality low it draws less of it while the machine is
-  /// busy.
-  std::unique_ptr<RunningViewer> start(const StreamServer& server, const std::string& quality = "low") const {
-    auto viewer = std::make_unique<RunningViewer>(
+  /// Starts a viewer without texts. Its picture may not be there yet.
+  std::unique_ptr<RunningViewer> begin(const StreamServer& server, const std::string& quality) const {
+    return std::make_unique<RunningViewer>(
         std::vector<std::string>{"--connect", "127.0.0.1:" + std::to_string(server.port()), "--size",
                                  std::to_string(kWidth_px) + "x" + std::to_string(kHeight_px), "--no-overlay", "--look",
                                  "quality=" + quality, "--look", "clouds=0", "--scale", "0.5"},
         screen_.environment(), folder_.path() / "said.txt");
+  }
+
+  /// A viewer without texts, once the stream's meadow is seen. In quality low it draws less of it while the machine is
+  /// busy.
+  std::unique_ptr<RunningViewer> start(const StreamServer& server, const std::string& quality = "low") const {
+    auto viewer = begin(server, quality);
     EXPECT_TRUE(comes_true([this] { return shows_grass(); })) << viewer->said();
     return viewer;
   }
@@ -130,6 +136,26 @@ class WindowTest : public testing::Test {
 TEST_F(WindowTest, ShowsThePictureAndEndsWhenAsked) {
   const StreamServer server(greeting_for(meadow_) + frame(0.3, 0.1));
   const auto viewer = start(server);
+  EXPECT_EQ(viewer->end(), 0) << viewer->said();
+}
+
+TEST_F(WindowTest, WordsStandInItUntilAPictureComes) {
+  StreamServer server{wire::Bytes()};
+  const auto viewer = begin(server, "low");
+  const auto shows_words = [this] {
+    const ScreenPixels seen = screen_.pixels();
+    int letters = 0;  // light ones, on a dark ground: grass has little blue, too
+    for (int y = kWords.y; y < kWords.y + kWords.height_px; ++y) {
+      for (int x = kWords.x; x < kWords.x + kWords.width_px; ++x) letters += channel(seen.at(x, y), 0) > 110 ? 1 : 0;
+    }
+    return letters > 200 && blue(seen, kWords) < 60.0;
+  };
+  ASSERT_TRUE(comes_true(shows_words)) << viewer->said();
+  // The viewer gives up a daemon that is silent, and connects again: what is sent between is lost.
+  EXPECT_TRUE(comes_true([&, next = 1]() mutable {
+    server.send(greeting_for(meadow_) + frame(0.3, 0.1 * next++));
+    return shows_grass() && !shows_words();
+  })) << viewer->said();
   EXPECT_EQ(viewer->end(), 0) << viewer->said();
 }
 
