@@ -54,7 +54,7 @@ namespace asio = boost::asio;
 
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 /// What could not be opened at the start is tried again so often.
-constexpr auto kTryAgainAfter = std::chrono::seconds(5);
+constexpr auto kTryAgainAfter = std::chrono::seconds(2);
 
 static_assert(settings::kMostSensors + 1 <= wire::kMaxSensors && settings::kMostScenes <= wire::kMaxScenes);
 
