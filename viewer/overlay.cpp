@@ -57,6 +57,12 @@ void Overlay::draw(const PixelSize& size, double scale, const OverlayFacts& fact
     io.DisplaySize = picture;
     io.DisplayFramebufferScale = ImVec2(1.0F, 1.0F);
   }
+  // Nobody sees a panel before its size is known: a single picture, and the first of a film, has it in its place.
+  while (!panels_.is_laid_out(facts)) {
+    ImGui::NewFrame();
+    panels_.draw(facts);
+    ImGui::EndFrame();
+  }
   ImGui::NewFrame();
   panels_.draw(facts);
   ImGui::Render();

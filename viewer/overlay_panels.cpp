@@ -345,6 +345,18 @@ constexpr std::size_t index_of(PanelId id) {
   return static_cast<std::size_t>(id);
 }
 
+OfPanels<bool> shown_panels(const OverlayFacts& facts) {
+  OfPanels<bool> is_shown{};
+  is_shown[index_of(PanelId::kTexts)] = facts.has_texts;
+  is_shown[index_of(PanelId::kHelp)] = facts.has_help;
+  is_shown[index_of(PanelId::kProfile)] = facts.passes != nullptr;
+  is_shown[index_of(PanelId::kValues)] = facts.panel != nullptr;
+  is_shown[index_of(PanelId::kTrace)] = facts.wind_trace != nullptr;
+  is_shown[index_of(PanelId::kNotice)] = !facts.notice.empty();
+  is_shown[index_of(PanelId::kPause)] = facts.is_paused;
+  return is_shown;
+}
+
 }  // namespace
 
 void OverlayPanels::set_scale(double scale) {
@@ -393,16 +405,17 @@ void OverlayPanels::draw_panel_at(PanelId id, const char* name, const Content& c
   ImGui::End();
 }
 
+bool OverlayPanels::is_laid_out(const OverlayFacts& facts) const {
+  const OfPanels<bool> is_shown = shown_panels(facts);
+  for (std::size_t i = 0; i < kPanelCount; ++i) {
+    if (is_shown[i] && places_[i].frames < kFramesToMeasure) return false;
+  }
+  return true;
+}
+
 void OverlayPanels::draw(const OverlayFacts& facts) {
   const ImVec2 picture = ImGui::GetIO().DisplaySize;
-  OfPanels<bool> is_shown{};
-  is_shown[index_of(PanelId::kTexts)] = facts.has_texts;
-  is_shown[index_of(PanelId::kHelp)] = facts.has_help;
-  is_shown[index_of(PanelId::kProfile)] = facts.passes != nullptr;
-  is_shown[index_of(PanelId::kValues)] = facts.panel != nullptr;
-  is_shown[index_of(PanelId::kTrace)] = facts.wind_trace != nullptr;
-  is_shown[index_of(PanelId::kNotice)] = !facts.notice.empty();
-  is_shown[index_of(PanelId::kPause)] = facts.is_paused;
+  const OfPanels<bool> is_shown = shown_panels(facts);
   // The panel of values fills the width that it has.
   places_[index_of(PanelId::kValues)].wanted.width =
       std::min(kPanelWidthInLetters * ImGui::GetFontSize(), picture.x - 2.0F * margin());
@@ -411,7 +424,10 @@ void OverlayPanels::draw(const OverlayFacts& facts) {
     if (is_shown[i]) wanted[i] = places_[i].wanted;
   }
   const auto rects = layout_.place({.width = picture.x, .height = picture.y}, margin(), wanted);
-  for (std::size_t i = 0; i < kPanelCount; ++i) places_[i].rect = rects[i];
+  for (std::size_t i = 0; i < kPanelCount; ++i) {
+    places_[i].rect = rects[i];
+    if (is_shown[i]) places_[i].frames = std::min(places_[i].frames + 1, kFramesToMeasure);
+  }
 
   const auto draw_if_shown = [&](PanelId id, const char* name, const auto& content) {
     if (is_shown[index_of(id)]) draw_panel_at(id, name, content);

@@ -53,14 +53,20 @@ class OverlayPanels {
   /// Loads the font and sets the style for texts of this size. ImGui's font texture has to be made again afterwards.
   static void set_scale(double scale);
 
-  /// Within a frame of ImGui. A panel is first seen one frame later, when its size is known.
+  /// Within a frame of ImGui, which knows the size of a panel after two frames of it.
   void draw(const OverlayFacts& facts);
+
+  /// Returns true once the sizes of all panels that are shown are known.
+  bool is_laid_out(const OverlayFacts& facts) const;
 
  private:
   struct Place {
     PanelSize wanted;  // as of the last frame in which it was shown; empty: it has never been
     PanelRect rect;    // of this frame
+    int frames = 0;    // in which it was shown, as far as they count: at most kFramesToMeasure
   };
+  static constexpr int kFramesToMeasure = 2;
+
   static void set_size(ImGuiSizeCallbackData* data);
   template <class Content>
   void draw_panel_at(PanelId id, const char* name, const Content& content);

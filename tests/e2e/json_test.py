@@ -121,6 +121,7 @@ class Json(unittest.TestCase):
         with open(os.path.join(cls.folder, "token"), "w", encoding="ascii") as out:
             out.write("correct horse battery staple\n")
         os.chmod(out.name, 0o640)
+        os.environ["YURAGI_TOKEN_FILE"] = out.name
         subprocess.run([os.path.join(BIN, "yuragi-sim"), "recording", "-o", os.path.join(cls.folder, "wind.windlog"),
                         "--speed", "6", "--duration", "600"], check=True, stdout=subprocess.DEVNULL, timeout=HANG_S)
         daemon = Program(YURAGI, "run", "--config", cls.config, "--listen", "127.0.0.1:0")

@@ -35,13 +35,13 @@ class SupportBundle(unittest.TestCase):
         return path
 
     def config(self):
-        mqtt = '[[sensor]]\ndriver = "mqtt"\ntopic = "garden/speed"\nport = 1\nuser = "garden"\n'
+        mqtt = '[[sensor]]\ndriver = "mqtt"\nport = 1\nuser = "garden"\n'
         return self.path("wall.toml", f"# password = '{SECRETS['comment']}'\n"
                          f'[recording]\nfile = "{self.path("wall.windlog")}"\n'
                          '[[sensor]]\nname = "made-up"\ndriver = "synthetic"\n'
-                         f'{mqtt}name = "a"\npassword = "{SECRETS["text"]}"\n'
-                         f'{mqtt}name = "b"\npassword_file = "{self.path("password", SECRETS["file"])}"\n'
-                         f'{mqtt}name = "c"\npassword_env = "GARDEN_PASSWORD"\n')
+                         f'{mqtt}name = "a"\ntopic = "garden/a"\npassword = "{SECRETS["text"]}"\n'
+                         f'{mqtt}name = "b"\ntopic = "garden/b"\npassword_file = "{self.path("password", SECRETS["file"])}"\n'
+                         f'{mqtt}name = "c"\ntopic = "garden/c"\npassword_env = "GARDEN_PASSWORD"\n')
 
     def bundle(self, *options):
         """Makes one and answers its texts by name."""

@@ -123,6 +123,22 @@ TEST_F(OverlayPanelsTest, NeverOverlapAndStayInThePicture) {
   }
 }
 
+TEST_F(OverlayPanelsTest, AreInTheirPlaceOnceTheyAreLaidOut) {
+  set_size({.width_px = 1280, .height_px = 720});
+  const unsigned help = 1U << static_cast<unsigned>(PanelId::kHelp);
+  int frames = 0;
+  for (; !panels_.is_laid_out(facts_of(help)); ++frames) draw(help);
+  EXPECT_LE(frames, 2);
+  draw(help);
+  const ImGuiWindow* const window = ImGui::FindWindowByName("help");
+  ASSERT_NE(window, nullptr);
+  const ImVec2 size = window->Size;
+  EXPECT_GT(size.x, 10.0F * ImGui::GetFontSize());
+  for (int frame = 0; frame < 3; ++frame) draw(help);
+  EXPECT_EQ(window->Size.x, size.x) << "and stay as they are";
+  EXPECT_EQ(window->Size.y, size.y);
+}
+
 TEST_F(OverlayPanelsTest, TheNoticeIsWholeAndItsLettersAreLarge) {
   for (const auto& [width_px, height_px] : {std::pair{640, 360}, {360, 640}, {3840, 2160}}) {
     set_size({.width_px = width_px, .height_px = height_px});
