@@ -42,15 +42,16 @@ endif()
 # The rooms where a running program spends its time: poses and wind, readings, recordings and their import, the stream, pictures.
 # They are compiled with the preset's optimization. All others (options, settings, JSON, tables, the web page, the set-up of
 # devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. With sanitizers,
-# whose code takes longest to optimize, only the engine has the preset's optimization, and the rest -O0.
+# whose code takes longest to optimize, only the engine has the preset's optimization; the other hot rooms have -O1, the rest -O0.
 set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/stream
                      daemon/tools/csv viewer)
-set(YURAGI_OTHER_ROOMS_OPTIMIZATION -O1)
+set(YURAGI_WARM_ROOMS "[^/]+")
 if(YURAGI_SANITIZE)
+  set(YURAGI_WARM_ROOMS ${YURAGI_HOT_ROOMS})
   set(YURAGI_HOT_ROOMS engine)
-  set(YURAGI_OTHER_ROOMS_OPTIMIZATION -O0)
 endif()
 list(JOIN YURAGI_HOT_ROOMS "|" YURAGI_HOT_ROOMS)
+list(JOIN YURAGI_WARM_ROOMS "|" YURAGI_WARM_ROOMS)
 
 # yuragi_room(engine/wind SOURCES a.cpp b.cpp LINK yuragi_engine_base ...)
 # A library of one folder. LINK lists what ARCHITECTURE.md's table allows that room.
@@ -61,7 +62,11 @@ function(yuragi_room folder)
     add_library(${name} STATIC ${ARG_SOURCES})
     target_link_libraries(${name} PUBLIC yuragi_flags ${ARG_LINK})
     if(NOT folder MATCHES "^(${YURAGI_HOT_ROOMS})(/|$)")
-      target_compile_options(${name} PRIVATE ${YURAGI_OTHER_ROOMS_OPTIMIZATION})
+      if(folder MATCHES "^(${YURAGI_WARM_ROOMS})(/|$)")
+        target_compile_options(${name} PRIVATE -O1)
+      else()
+        target_compile_options(${name} PRIVATE -O0)
+      endif()
     endif()
     if(YURAGI_FUZZ AND NOT folder MATCHES "^engine/(fft|math|noise|operators|scenes|wind)|^viewer$")
       target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link) # what is fuzzed tells where it has been
