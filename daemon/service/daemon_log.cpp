@@ -56,11 +56,17 @@ void BoundedLogSink::log(const spdlog::details::log_msg& message) {
   write(message);
 }
 
+void BoundedLogSink::count_overruns_of(spdlog::details::thread_pool* pool) {
+  const std::lock_guard lock(writing_);
+  take_overruns();
+  pool_ = pool;
+  overruns_ = 0;
+}
+
 /// Counts what the pool had to drop since the last look.
 void BoundedLogSink::take_overruns() {
-  const auto pool = pool_.lock();
-  if (!pool) return;
-  const std::uint64_t overruns = pool->overrun_counter();
+  if (pool_ == nullptr) return;
+  const std::uint64_t overruns = pool_->overrun_counter();
   lost_ += overruns - overruns_;
   overruns_ = overruns;
 }
@@ -82,7 +88,7 @@ DaemonLog::DaemonLog(bool verbose)
       sink_(std::make_shared<BoundedLogSink>(stderr)),
       kept_(std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(kMostKept)) {
   writer_ = std::make_shared<spdlog::details::thread_pool>(kMostWaiting, 1);
-  sink_->count_overruns_of(writer_);
+  sink_->count_overruns_of(writer_.get());
   const auto logger = std::make_shared<spdlog::async_logger>("yuragi", spdlog::sinks_init_list{kept_, sink_}, writer_,
                                                              spdlog::async_overflow_policy::overrun_oldest);
   spdlog::set_default_logger(logger);
@@ -120,10 +126,13 @@ web::LogTail DaemonLog::tail() const {
 
 DaemonLog::~DaemonLog() {
   report_faults_to(nullptr);
-  // What is still said is written by who says it.
+  // The last reference to the logger is released here, after the writer's thread has ended, and not on that thread.
+  const auto logger = spdlog::default_logger();
+  // Later lines are written by the thread that logs them.
   const auto level = spdlog::get_level();
   spdlog::set_default_logger(std::make_shared<spdlog::logger>("yuragi", sink_));
   spdlog::set_level(level);
+  sink_->count_overruns_of(nullptr);
   writer_.reset();
 }
 

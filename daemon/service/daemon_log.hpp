@@ -33,8 +33,9 @@ class BoundedLogSink final : public spdlog::sinks::ansicolor_sink<spdlog::detail
 
   void log(const spdlog::details::log_msg& message) override;
 
-  /// Counts the lines that this pool had to drop, too.
-  void count_overruns_of(std::weak_ptr<spdlog::details::thread_pool> pool) { pool_ = std::move(pool); }
+  /// Counts the lines that this pool had to drop, too; nullptr: no more. The pool must live until another is set. It is
+  /// not shared: its last owner may not be its own thread, which cannot wait for itself to end.
+  void count_overruns_of(spdlog::details::thread_pool* pool);
 
  private:
   void take_overruns();
@@ -44,7 +45,7 @@ class BoundedLogSink final : public spdlog::sinks::ansicolor_sink<spdlog::detail
   std::FILE* stream_;
   std::mutex writing_;
   bool is_stuck_ = false;
-  std::weak_ptr<spdlog::details::thread_pool> pool_;
+  spdlog::details::thread_pool* pool_ = nullptr;
   std::uint64_t overruns_ = 0;  ///< of the pool, as of the last look
   std::uint64_t lost_ = 0;
 };

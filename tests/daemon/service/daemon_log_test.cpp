@@ -126,6 +126,22 @@ TEST(DaemonLog, IsDelayedByNobodyAndEndsAlthoughNobodyReads) {
   EXPECT_NE(pipe.read_all().find("of the log"), std::string::npos);
 }
 
+TEST(DaemonLog, EndsWhileItsThreadWrites) {
+  Pipe pipe;
+  std::fflush(stderr);
+  const int before = dup(STDERR_FILENO);
+  dup2(fileno(pipe.stream()), STDERR_FILENO);
+  for (int end = 0; end < 200; ++end) {
+    {
+      const DaemonLog log(false);
+      for (int i = 0; i < 20; ++i) spdlog::info("line {}", i);
+    }
+    EXPECT_NE(pipe.read_all().find("line 19"), std::string::npos);
+  }
+  dup2(before, STDERR_FILENO);
+  close(before);
+}
+
 TEST(DaemonLog, ContainedExceptionsAreInTheLog) {
   web::LogTail tail;
   {
