@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <exception>
 #include <fstream>
+#include <sstream>
 #include <system_error>
 
 #include "daemon/settings/output_file.hpp"
@@ -41,11 +42,10 @@ bool write_clock_doubt(const std::filesystem::path& file, const std::optional<Cl
     return !error;
   }
   try {
-    settings::OutputFile output(file, true);
-    std::ofstream(output.working_path()) << doubt->since.time_since_epoch().count() << ' ' << doubt->is_at_start << ' '
-                                         << doubt->ahead_s << ' '
-                                         << std::chrono::floor<std::chrono::seconds>(doubt->running).count() << '\n';
-    return output.commit().has_value();
+    std::ostringstream text;
+    text << doubt->since.time_since_epoch().count() << ' ' << doubt->is_at_start << ' ' << doubt->ahead_s << ' '
+         << std::chrono::floor<std::chrono::seconds>(doubt->running).count() << '\n';
+    return settings::write_whole(file, text.str()).has_value();
   } catch (const std::exception&) {
     return false;
   }
