@@ -8,6 +8,7 @@ without_record=0 # of those that were skipped: for want of the real recordings i
 again=0          # of those that passed: only by themselves, after they had failed among all (tests/support/run_again.py)
 stage_times=()
 complaints=()
+built_ahead=() # presets that build_ahead() builds
 
 # Nothing here asks a question: no test may wait for a keyboard.
 exec </dev/null
@@ -82,14 +83,59 @@ collect() {
   fi
 }
 
-# test_preset PRESET [CTEST ARGUMENT...]: configures, builds and tests a preset of CMakePresets.json.
+# build_preset PRESET: configures and builds a preset of CMakePresets.json.
+build_preset() {
+  check "configuring $1" cmake --preset "$1" --log-level=WARNING || return
+  check "building $1" timed "$1: build" cmake --build --preset "$1" || return
+  /usr/bin/python3 tests/support/build_times.py "build/$1" || true
+}
+
+# build_ahead PRESET...: builds presets in the background, one after the other, at the lowest priority: it takes the time of the
+# processors that tests leave while they wait for devices and windows. test_preset() then waits for the build, and prints its output.
+build_ahead() {
+  local preset
+  built_ahead=("$@")
+  mkdir -p build
+  for preset in "$@"; do
+    rm -f "build/$preset-ahead.status"
+  done
+  # Not a child of this shell: its time on the processors would count as that of the tests that run meanwhile.
+  (
+    (
+      renice -n 19 -p "$BASHPID" >/dev/null
+      for preset in "$@"; do
+        status=0
+        build_preset "$preset" >"build/$preset-ahead.log" 2>&1 || status=$?
+        printf '%s\n' "$status" "${stage_times[-1]-}" >"build/$preset-ahead.partial"
+        mv "build/$preset-ahead.partial" "build/$preset-ahead.status"
+      done
+    ) &
+    echo $! >build/ahead.pid
+  )
+}
+
+# await_build PRESET: waits for what build_ahead() builds. Fails if that failed or was killed.
+await_build() {
+  local status_file=build/$1-ahead.status lines
+  while [ ! -e "$status_file" ] && kill -0 "$(cat build/ahead.pid)" 2>/dev/null; do
+    sleep 1
+  done
+  cat "build/$1-ahead.log"
+  mapfile -t lines <"$status_file" || return
+  [ -z "${lines[1]}" ] || stage_times+=("${lines[1]}")
+  return "${lines[0]}"
+}
+
+# test_preset PRESET [CTEST ARGUMENT...]: configures, builds and tests a preset.
 test_preset() {
   local preset=$1 results=$PWD/build/$1/results.xml status=0 failed_now
   shift
   rm -f "$results"
-  check "configuring $preset" cmake --preset "$preset" --log-level=WARNING || return
-  check "building $preset" timed "$preset: build" cmake --build --preset "$preset" || return
-  /usr/bin/python3 tests/support/build_times.py "build/$preset" || true
+  if [[ " ${built_ahead[*]-} " == *" $preset "* ]]; then
+    check "building $preset" await_build "$preset" || return
+  else
+    build_preset "$preset" || return
+  fi
   # Three times as many at once as there are cores: tests that talk to simulated devices mostly wait. A long output is cut at its
   # beginning: what failed stands at the end.
   timed "$preset: tests" ctest --preset "$preset" --parallel "$((3 * $(nproc)))" --output-junit "$results" --test-output-truncation head \
