@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -23,6 +24,8 @@ struct WebSettings {
       {};                    ///< names by which clients may call this machine, besides its own (is_known_host())
   bool takes_token = false;  ///< only who shows the token changes something; false: only this machine does
   Secret token = {};         ///< empty: there is none, or it cannot be read
+  /// Where pairings outlive the daemon (PairingsFile); empty: browsers have to be paired again after a restart.
+  std::filesystem::path pairings_file = {};
   bool reading_takes_token = false;       ///< nobody reads without it, either; but this machine reads kHealthPath
   std::vector<std::string> proxies = {};  ///< addresses whose X-Forwarded-For is believed, for the log and limits
   stream::AdmissionLimits clients = {};

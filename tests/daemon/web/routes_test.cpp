@@ -104,6 +104,20 @@ TEST_F(RoutesTest, PlayersOfADaemonThatPlaysNothing_AreNone) {
   EXPECT_EQ(json::parse(none.body)["players"], json::array());
 }
 
+TEST_F(RoutesTest, Sessions_AreListedWhileTheyAreValid) {
+  EXPECT_EQ(json::parse(get("/api/v1/sessions").body)["sessions"], json::array());
+  Pairings pairings;
+  pairings.add("0123456789", "192.168.1.30", 1.8e9);
+  facts_.pairings = &pairings;
+  facts_.utc_s = 1.8e9;
+  EXPECT_EQ(json::parse(get("/api/v1/sessions").body)["sessions"][0], json({{"id", "0123456789"},
+                                                                            {"since_s", 1'800'000'000},
+                                                                            {"last_use_s", 1'800'000'000},
+                                                                            {"address", "192.168.1.30"}}));
+  facts_.utc_s = 1.9e9;
+  EXPECT_EQ(json::parse(get("/api/v1/sessions").body)["sessions"], json::array());
+}
+
 TEST(OpenApi, DescribesEachRoute_AndNothingElse) {
   std::set<std::pair<std::string, std::string>> served, described;
   for (const Route& route : routes()) {
@@ -131,7 +145,7 @@ TEST(OpenApi, BodiesAreThoseThatAreTaken) {
                                                : json("meadow");
     return body.dump();
   };
-  for (const char* path : {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair"}) {
+  for (const char* path : {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair", "/api/v1/sessions"}) {
     const Answer answer = answer_to({.method = "POST", .path = path, .body = keys(path)}, {});
     const auto* const refusal = std::get_if<HttpResponse>(&answer);
     EXPECT_EQ(refusal, nullptr) << refusal->body;
