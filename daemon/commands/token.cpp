@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <optional>
 #include <system_error>
 
 #include <fcntl.h>
@@ -55,7 +55,7 @@ struct TokenOptions {
   std::filesystem::path config_file;
   bool makes_new = false;
   bool lists_sessions = false;
-  std::string revoked_id;  ///< empty: none
+  std::optional<std::string> revoked_id;
   bool as_json = false;
 };
 
@@ -108,10 +108,10 @@ void handle_sessions(const TokenOptions& options, const std::string& listen, con
                                      ": has no [http] listen, so that no browser can be paired with this daemon");
   }
   PageRequest request{.listen = listen, .path = std::string(web::kSessionsPath), .token = token};
-  if (options.revoked_id.empty()) return show_sessions(request, options.as_json);
-  request.body = json_text(nlohmann::json{{"revoke", options.revoked_id}});
+  if (!options.revoked_id) return show_sessions(request, options.as_json);
+  request.body = json_text(nlohmann::json{{"revoke", *options.revoked_id}});
   ask_page(request);
-  fmt::print(stderr, "{}: revoked; the next request of this browser is refused\n", options.revoked_id);
+  fmt::print(stderr, "{}: revoked; the next request of this browser is refused\n", *options.revoked_id);
 }
 
 void show_token(const TokenOptions& options) {
@@ -127,8 +127,7 @@ void show_token(const TokenOptions& options) {
   if (!token)
     throw ExitError(kExitUnavailable, "token_file: " + token.error().message + "; `yuragi token --new` makes one");
 
-  if (options.lists_sessions || !options.revoked_id.empty())
-    return handle_sessions(options, config.http.listen, *token);
+  if (options.lists_sessions || options.revoked_id) return handle_sessions(options, config.http.listen, *token);
   const double utc_s = seconds(std::chrono::system_clock::now().time_since_epoch());
   const double step_s = web::Access::kCodeStep_s;
   const double left_s = 2.0 * step_s - std::fmod(utc_s, step_s);

@@ -223,6 +223,7 @@ class Service::Io {
       };
     }
     settings.log = options_.log_tail;
+    settings.faults = options_.fault_counter;
     return settings;
   }
 

@@ -52,7 +52,8 @@ Answer health(const HttpRequest& /*request*/, const Facts& facts) {
 Answer metrics(const HttpRequest& /*request*/, const Facts& facts) {
   if (const auto why = silence_of(facts)) return no_news(*why);
   return HttpResponse{.content_type = "text/plain; version=0.0.4; charset=utf-8",
-                      .body = metrics_text(*facts.sensors, facts.software, facts.counts)};
+                      .body = metrics_text(*facts.sensors, facts.software, facts.counts,
+                                           facts.faults ? facts.faults() : FaultCounts{})};
 }
 
 Answer status(const HttpRequest& /*request*/, const Facts& facts) {

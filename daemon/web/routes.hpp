@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "daemon/web/fault_counts.hpp"
 #include "daemon/web/http_server.hpp"
 #include "daemon/web/log_line.hpp"
 #include "daemon/web/pairings.hpp"
@@ -25,6 +26,7 @@ struct Facts {
   double age_s = 0.0;                      ///< of them
   double patience_s = 5.0;                 ///< news that are older are no news
   LogTail log = {};
+  FaultCounter faults = {};
   WebCounts counts = {};
   const Pairings* pairings = nullptr;  ///< null: no browser is paired
   double utc_s = 0.0;                  ///< now

@@ -188,6 +188,7 @@ class WebServer::Thread {
                       .age_s = news ? seconds(steady_clock::now() - news->at) : 0.0,
                       .patience_s = seconds(settings_.patience),
                       .log = settings_.log,
+                      .faults = settings_.faults,
                       .counts = counts_,
                       .pairings = &pairings_,
                       .utc_s = utc_s};

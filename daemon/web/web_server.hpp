@@ -11,6 +11,7 @@
 
 #include "daemon/stream/client_admission.hpp"
 #include "daemon/stream/transport.hpp"
+#include "daemon/web/fault_counts.hpp"
 #include "daemon/web/log_line.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/secret.hpp"
@@ -42,6 +43,8 @@ struct WebSettings {
   /// The last lines of the log, oldest first. Called on the web server's own thread; must not wait. Empty: there is
   /// none.
   LogTail log = {};
+  /// How many exceptions were contained. Called on the web server's own thread; must not wait. Empty: not counted.
+  FaultCounter faults = {};
   /// After so long without news of the daemon the page says that it hangs, and a question is given up.
   Nanoseconds patience = std::chrono::seconds(5);
 };

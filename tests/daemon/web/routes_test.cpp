@@ -68,6 +68,13 @@ TEST_F(RoutesTest, Metrics_NamesUnitsAndEscapedLabels) {
   EXPECT_THAT(text, HasSubstr(R"(driver="modbus",state="stale"} 0)"));
   EXPECT_THAT(text, HasSubstr("# TYPE yuragi_ticks_skipped_total counter\nyuragi_ticks_skipped_total 7\n"));
 }
+TEST_F(RoutesTest, Metrics_FaultsByKind) {
+  EXPECT_THAT(get("/metrics").body, HasSubstr("# TYPE yuragi_faults_total counter\n"));
+  facts_.faults = [] { return FaultCounts{{"a stream connection", 3}, {"an \"HTTP\" request", 1}}; };
+  const std::string text = get("/metrics").body;
+  EXPECT_THAT(text, HasSubstr("yuragi_faults_total{kind=\"a stream connection\"} 3\n"));
+  EXPECT_THAT(text, HasSubstr(R"(yuragi_faults_total{kind="an \"HTTP\" request"} 1)"));
+}
 TEST_F(RoutesTest, Status_IsJsonWhateverANameHolds) {
   sensors_.sensors[0].detail = "\xff\xfe";
   const json status = json::parse(get("/api/v1/status").body);
