@@ -187,7 +187,8 @@ void add_options(CLI::App& app, ViewerOptions& options) {
 
   app.footer(
       "In the window: F1 lists all keys; drag to turn (left button) or move (right), scroll to zoom. If the stream is\n"
-      "interrupted, its last seconds are replayed until it returns.\n"
+      "interrupted, its last seconds are replayed until it returns. The panel may change values of a daemon with a\n"
+      "token_file if the environment variable YURAGI_TOKEN_FILE names the file of its token.\n"
       "\n"
       "Examples:\n"
       "  yuragi run &                                    the daemon, with a synthetic wind\n"

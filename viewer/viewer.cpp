@@ -11,6 +11,7 @@
 #include "viewer/gl_renderer.hpp"
 #include "viewer/light/sky_keeper.hpp"
 #include "viewer/overlay.hpp"
+#include "viewer/own_token.hpp"
 #include "viewer/pace_keeper.hpp"
 #include "viewer/panel.hpp"
 #include "viewer/paused_moment.hpp"
@@ -56,7 +57,7 @@ stream::StreamOptions address_of(const ViewerOptions& options) {
   const auto address = parse_address(options.connect, wire::kDefaultPort);
   if (!address) throw ViewerExit(EX_USAGE, "--connect: " + address.error().message);
   if (address->port == 0) throw ViewerExit(EX_USAGE, "--connect: port 0 cannot be connected to");
-  return {.host = address->host, .port = address->port};
+  return {.host = address->host, .port = address->port, .token = own_token()};
 }
 
 /// What the configuration says of the wall; nothing where there is none.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <string_view>
 #include <system_error>
 
@@ -59,15 +58,6 @@ const settings::AlertConfig* find(const std::vector<settings::AlertConfig>& aler
 }
 
 }  // namespace
-
-std::filesystem::path alert_record_file(const std::filesystem::path& config_file) {
-  // systemd separates several folders by colons.
-  const char* const folders = std::getenv("STATE_DIRECTORY");  // NOLINT(concurrency-mt-unsafe): nobody changes it
-  const std::string_view first =
-      folders == nullptr ? "" : std::string_view(folders).substr(0, std::string_view(folders).find(':'));
-  if (!first.empty()) return std::filesystem::path(first) / "alerts.json";
-  return config_file.empty() ? std::filesystem::path() : std::filesystem::path(config_file.string() + ".alerts.json");
-}
 
 Alerts::Alerts(const std::vector<settings::AlertConfig>& alerts, std::string host,
                const std::filesystem::path& record_file, const Instant& now)

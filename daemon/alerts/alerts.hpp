@@ -17,10 +17,6 @@
 
 namespace yuragi::daemon::alerts {
 
-/// Returns the file in which alerts outlive the daemon: alerts.json in the folder that systemd provides
-/// (STATE_DIRECTORY), otherwise CONFIG.alerts.json beside the configuration. Empty if there is neither.
-std::filesystem::path alert_record_file(const std::filesystem::path& config_file);
-
 /// The [[alert]]s of an installation: what begins or ends is written into the log, and told by commands and webhooks,
 /// each of each alert on a thread of its own. Thread-safe: no.
 class Alerts {

@@ -37,7 +37,8 @@ void run_daemon(const RunOptions& options, const std::optional<std::filesystem::
                                   .duration_s = options.duration_s,
                                   .with_scenes = with_scenes,
                                   .set_log_level = [&log](settings::LogLevel level) { log.set_level(level); },
-                                  .log_tail = log.tail()};
+                                  .log_tail = log.tail(),
+                                  .fault_counter = service::DaemonLog::fault_counter()};
   if (options.config_file) {
     service.config_file = *options.config_file;
     service.read_config = [options] { return config_with_warnings(options); };

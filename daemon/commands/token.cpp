@@ -1,22 +1,27 @@
-// `yuragi token`: shows a code that lets a browser of another machine in, and makes the token behind it.
+// `yuragi token`: shows a code that lets a browser of another machine in, makes the token behind it, and lists and ends
+// the sessions of such browsers.
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <optional>
 #include <system_error>
 
 #include <fcntl.h>
+#include <fmt/chrono.h>
 #include <fmt/core.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "daemon/commands/ask_page.hpp"
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/web/access.hpp"
+#include "daemon/web/routes.hpp"
 #include "drivers/sensor/secret_source.hpp"
+#include "engine/base/json_text.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi::daemon::commands {
@@ -30,15 +35,27 @@ constexpr const char* kTokenFooter =
     "  yuragi token --config wall.toml --new      makes the file of the token; where there was one, it is replaced, "
     "and\n"
     "                                             all who knew it are out once the daemon has been started again\n"
-    "A file that is new can be read by its owner and by the group of the configuration's file.\n"
-    "--json: pairing_code, and for how long it is taken (valid_s).\n"
-    "Exit code 0: done; 69: there is no token yet; 73: its file cannot be written; 78: the configuration has a "
-    "mistake,\n"
-    "or names no file.";
+    "  yuragi token --config wall.toml --sessions        lists the browsers that were paired and are still let in\n"
+    "  yuragi token --config wall.toml --revoke ID       ends the session of one of them: its next request is "
+    "refused,\n"
+    "                                                    and the page offers to pair it again\n"
+    "A file that is new can be read by its owner and by the group of the configuration's file. --sessions and --revoke "
+    "ask\n"
+    "the running daemon at [http] listen, and show it the token: run them as a user who may read its file, which for "
+    "the\n"
+    "packaged service is root and the group yuragi.\n"
+    "--json: pairing_code, and for how long it is taken (valid_s); with --sessions: sessions, each with id, since_s,\n"
+    "last_use_s (both since 1970) and address. The last use is accurate to an hour.\n"
+    "Exit code 0: done; 69: there is no token yet, or no daemon answers; 70: the daemon refuses it, for example "
+    "because\n"
+    "there is no such session; 73: the token's file cannot be written; 77: the daemon has another token; 78: the\n"
+    "configuration has a mistake, or names no file.";
 
 struct TokenOptions {
   std::filesystem::path config_file;
   bool makes_new = false;
+  bool lists_sessions = false;
+  std::optional<std::string> revoked_id;
   bool as_json = false;
 };
 
@@ -68,6 +85,35 @@ void write_token(const std::filesystem::path& file, const std::filesystem::path&
              is_given ? "its owner and the configuration's group" : "its owner alone");
 }
 
+std::string time_text(const nlohmann::json& utc_s) {
+  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::gmtime(static_cast<std::time_t>(utc_s.get<std::int64_t>())));
+}
+
+void show_sessions(const PageRequest& request, bool as_json) {
+  const nlohmann::json answer = ask_page(request);
+  if (as_json) return print_json(answer);
+  const nlohmann::json& sessions = answer.at("sessions");
+  if (sessions.empty()) return fmt::print("no browser is paired\n");
+  fmt::print("{:<10}  {:<16}  {:<16}  {}\n", "id", "since (UTC)", "last use (UTC)", "address");
+  for (const nlohmann::json& session : sessions) {
+    fmt::print("{:<10}  {:<16}  {:<16}  {}\n", session.at("id").get<std::string>(), time_text(session.at("since_s")),
+               time_text(session.at("last_use_s")), session.at("address").get<std::string>());
+  }
+}
+
+/// Asks the running daemon for the sessions, or to end one.
+void handle_sessions(const TokenOptions& options, const std::string& listen, const Secret& token) {
+  if (listen.empty()) {
+    throw ExitError(kExitConfig, options.config_file.string() +
+                                     ": has no [http] listen, so that no browser can be paired with this daemon");
+  }
+  PageRequest request{.listen = listen, .path = std::string(web::kSessionsPath), .token = token};
+  if (!options.revoked_id) return show_sessions(request, options.as_json);
+  request.body = json_text(nlohmann::json{{"revoke", *options.revoked_id}});
+  ask_page(request);
+  fmt::print(stderr, "{}: revoked; the next request of this browser is refused\n", *options.revoked_id);
+}
+
 void show_token(const TokenOptions& options) {
   const settings::Config config = settings::load_config(options.config_file);
   const std::filesystem::path file = config.http.token_file;
@@ -81,6 +127,7 @@ void show_token(const TokenOptions& options) {
   if (!token)
     throw ExitError(kExitUnavailable, "token_file: " + token.error().message + "; `yuragi token --new` makes one");
 
+  if (options.lists_sessions || options.revoked_id) return handle_sessions(options, config.http.listen, *token);
   const double utc_s = seconds(std::chrono::system_clock::now().time_since_epoch());
   const double step_s = web::Access::kCodeStep_s;
   const double left_s = 2.0 * step_s - std::fmod(utc_s, step_s);
@@ -96,7 +143,13 @@ void add_token_command(CLI::App& app) {
       ->required()
       ->type_name("FILE")
       ->check(CLI::ExistingFile);
-  token->add_flag("--new", options->makes_new, "make a new token first");
+  CLI::Option* const makes_new = token->add_flag("--new", options->makes_new, "make a new token first");
+  CLI::Option* const sessions =
+      token->add_flag("--sessions", options->lists_sessions, "list the browsers that were paired")->excludes(makes_new);
+  token->add_option("--revoke", options->revoked_id, "end the session of a browser")
+      ->type_name("ID")
+      ->excludes(makes_new)
+      ->excludes(sessions);
   add_json(*token, options->as_json);
   token->footer(kTokenFooter);
   token->callback([options] { show_token(*options); });

@@ -19,13 +19,23 @@ namespace {
 
 constexpr const char* kPattern = "%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v";
 
+/// Of the whole process, as FaultReporter is. It is never destroyed: the web server's thread may still ask.
+struct Faults {
+  std::mutex mutex;
+  FaultLog log;
+};
+
+Faults& faults_of_process() {
+  static auto* const faults = new Faults;
+  return *faults;
+}
+
 void log_fault(std::string_view kind, const char* what) noexcept {
   try {
-    static std::mutex mutex;
-    static FaultLog faults;
-    const std::lock_guard lock(mutex);
+    Faults& faults = faults_of_process();
+    const std::lock_guard lock(faults.mutex);
     const auto now = MonoTime(std::chrono::steady_clock::now().time_since_epoch());
-    if (const auto line = faults.line_for(kind, what, now)) spdlog::error("{}", *line);
+    if (const auto line = faults.log.line_for(kind, what, now)) spdlog::error("{}", *line);
   } catch (...) {
     // There is no memory for the line.
   }
@@ -121,6 +131,14 @@ web::LogTail DaemonLog::tail() const {
                        .text = {message.payload.data(), size}});
     }
     return lines;
+  };
+}
+
+web::FaultCounter DaemonLog::fault_counter() {
+  return [] {
+    Faults& faults = faults_of_process();
+    const std::lock_guard lock(faults.mutex);
+    return faults.log.counts();
   };
 }
 

@@ -10,6 +10,7 @@
 #include <spdlog/sinks/ringbuffer_sink.h>
 
 #include "daemon/settings/log_config.hpp"
+#include "daemon/web/fault_counts.hpp"
 #include "daemon/web/log_line.hpp"
 
 namespace spdlog::details {
@@ -67,6 +68,9 @@ class DaemonLog {
   /// Gives the last lines, at most kMostKept, also those that nobody read. Thread-safe; may outlive this object.
   web::LogTail tail() const;
   static constexpr std::size_t kMostKept = 500;
+
+  /// Gives the number of contained exceptions by their kind. Thread-safe; may outlive this object.
+  static web::FaultCounter fault_counter();
 
   ~DaemonLog();  ///< writes what waits, as far as it is taken
   DaemonLog(const DaemonLog&) = delete;

@@ -15,6 +15,8 @@ constexpr stream::LogAllowance::Settings kOneEachInterval{
 }  // namespace
 
 std::optional<std::string> FaultLog::line_for(std::string_view kind, std::string_view what, MonoTime now) {
+  if (counts_.size() >= kMaxKinds && !counts_.contains(kind)) kind = kOtherKind;
+  ++counts_.try_emplace(std::string(kind)).first->second;
   auto found = allowances_.find(kind);
   if (found == allowances_.end()) found = allowances_.emplace(kind, stream::LogAllowance(kOneEachInterval, now)).first;
   stream::LogAllowance& allowance = found->second;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <optional>
@@ -8,20 +8,28 @@
 #include <string_view>
 
 #include "daemon/stream/log_allowance.hpp"
+#include "daemon/web/fault_counts.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi::daemon::service {
 
-/// Which contained exceptions are logged: the first of each kind at once, then one line a minute of that kind, with the
-/// number of those left out since the last line. Pure: time is a parameter. Thread-safe: no.
+/// Counts contained exceptions by their kind, and chooses which are logged: the first of each kind at once, then one
+/// line a minute of that kind, with the number of those left out since the last line. Memory is bounded: beyond
+/// kMaxKinds, further kinds are one, kOtherKind. Pure: time is a parameter. Thread-safe: no.
 class FaultLog {
  public:
   static constexpr Nanoseconds kInterval = std::chrono::minutes(1);
 
-  /// Returns the line to log for an exception of `kind` with the text `what`, or nullopt.
+  static constexpr std::size_t kMaxKinds = 64;
+  static constexpr std::string_view kOtherKind = "another task";
+
+  /// Counts an exception of `kind` with the text `what`. Returns the line to log for it, or nullopt.
   std::optional<std::string> line_for(std::string_view kind, std::string_view what, MonoTime now);
 
+  const web::FaultCounts& counts() const { return counts_; }
+
  private:
+  web::FaultCounts counts_;
   std::map<std::string, stream::LogAllowance, std::less<>> allowances_;
 };
 

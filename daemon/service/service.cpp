@@ -122,7 +122,7 @@ class Service::Io {
     for (const std::string& trouble : troubles()) spdlog::warn("{}; it is tried again", trouble);
     // What is replayed has happened already.
     if (!options.recorded_from) {
-      alerts_.emplace(config.alerts, asio::ip::host_name(), alerts::alert_record_file(options.config_file),
+      alerts_.emplace(config.alerts, asio::ip::host_name(), settings::state_file(options.config_file, "alerts.json"),
                       clock_.now());
     }
     if (options.record) {
@@ -208,6 +208,7 @@ class Service::Io {
                               .hosts = http_.hosts,
                               .takes_token = takes_token_,
                               .token = token_,
+                              .pairings_file = pairings_file(),
                               .reading_takes_token = http_.reading_takes_token,
                               .proxies = http_.proxies,
                               .software = with_version("yuragi"),
@@ -222,7 +223,14 @@ class Service::Io {
       };
     }
     settings.log = options_.log_tail;
+    settings.faults = options_.fault_counter;
     return settings;
+  }
+
+  /// A replay beside the daemon keeps its hands off the daemon's file.
+  std::filesystem::path pairings_file() const {
+    if (!takes_token_ || options_.recorded_from) return {};
+    return settings::state_file(options_.config_file, "pairings.json");
   }
 
   /// Reads what the daemon records itself; it owns all that it uses.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "daemon/settings/config.hpp"
+#include "daemon/web/fault_counts.hpp"
 #include "daemon/web/log_line.hpp"
 #include "engine/base/time.hpp"
 
@@ -29,6 +30,8 @@ struct ServiceOptions {
   std::function<void(settings::LogLevel)> set_log_level = {};
   /// The last lines of the log. Thread-safe. Empty: there is none.
   web::LogTail log_tail = {};
+  /// How many exceptions were contained. Empty: they are not counted.
+  web::FaultCounter fault_counter = {};
 };
 
 /// The daemon: joins sensors, wind, animation, stream and recording. The data flow:

@@ -1,5 +1,6 @@
 #include "daemon/settings/config_file.hpp"
 
+#include <cstdlib>
 #include <fstream>
 #include <system_error>
 
@@ -62,6 +63,16 @@ std::string absolute_path(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(file, error);
   return (error ? file : absolute).lexically_normal().string();
+}
+
+std::filesystem::path state_file(const std::filesystem::path& config_file, std::string_view name) {
+  // systemd separates several folders by colons.
+  const char* const folders = std::getenv("STATE_DIRECTORY");  // NOLINT(concurrency-mt-unsafe): nobody changes it
+  const std::string_view first =
+      folders == nullptr ? "" : std::string_view(folders).substr(0, std::string_view(folders).find(':'));
+  if (!first.empty()) return std::filesystem::path(first) / name;
+  if (config_file.empty()) return {};
+  return config_file.string() + '.' + std::string(name);
 }
 
 Result<std::filesystem::path, Failure> replace_config(const std::filesystem::path& file, std::string_view old_text,

@@ -12,6 +12,10 @@ namespace yuragi::daemon::settings {
 /// one. Links are not followed: what they lead to may change.
 std::string absolute_path(const std::filesystem::path& file);
 
+/// Returns the file NAME in which something outlives the daemon: in the folder that systemd provides (STATE_DIRECTORY),
+/// otherwise CONFIG.NAME beside the configuration. Empty if there is neither.
+std::filesystem::path state_file(const std::filesystem::path& config_file, std::string_view name);
+
 /// Replaces the text of a configuration file, as a whole or not at all. The new text is checked first: it must parse,
 /// and every sensor that could be constructed from the old text can be constructed from it. The old text is kept as
 /// FILE.bak. Permissions stay, and a symbolic link keeps pointing at its file.

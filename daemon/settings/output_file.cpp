@@ -63,9 +63,14 @@ Result<void, Failure> OutputFile::commit() {
   return {};
 }
 
-Result<void, Failure> write_whole(const std::filesystem::path& file, std::string_view text) {
+Result<void, Failure> write_whole(const std::filesystem::path& file, std::string_view text,
+                                  std::optional<std::filesystem::perms> permissions) {
   OutputFile output(file, true);
   std::ofstream out(output.working_path(), std::ios::binary);
+  if (std::error_code error; permissions) {
+    std::filesystem::permissions(output.working_path(), *permissions, error);
+    if (error) return Failure{file.string() + ": its permissions cannot be set: " + error.message()};
+  }
   out << text;
   out.close();
   if (!out) return Failure{file.string() + ": could not be written; is the disk full, or the folder not writable?"};

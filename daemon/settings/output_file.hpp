@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -34,7 +35,9 @@ class OutputFile {
   std::span<const std::string_view> side_suffixes_;
 };
 
-/// Writes a file whole or not at all, in place of one that exists. The failure names the file. Throws as OutputFile.
-Result<void, Failure> write_whole(const std::filesystem::path& file, std::string_view text);
+/// Writes a file whole or not at all, in place of one that exists. `permissions`: who may read and write it, at any
+/// moment; nullopt: by the process's umask. The failure names the file. Throws as OutputFile.
+Result<void, Failure> write_whole(const std::filesystem::path& file, std::string_view text,
+                                  std::optional<std::filesystem::perms> permissions = std::nullopt);
 
 }  // namespace yuragi::daemon::settings

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -20,6 +20,7 @@ constexpr std::size_t kTokenBytes = 32;
 constexpr std::size_t kDigestBytes = 32;
 constexpr std::size_t kCodeCharacters = 8;
 constexpr std::size_t kBitsACharacter = 5;
+constexpr std::size_t kMarkBytes = 16;
 // Without I, L, O and U, which are taken for others (D. Crockford, Base 32, 2002).
 constexpr std::string_view kCodeAlphabet = "0123456789ABCDEFGHJKMNPQRSTVWXYZ";
 
@@ -72,19 +73,24 @@ std::string typed_code(std::string_view given) {
   return code;
 }
 
-std::string session_of(const Secret& token, std::int64_t made_utc_s) {
-  const Digest digest = digest_of(token, "session", std::to_string(made_utc_s));
-  std::string session = std::to_string(made_utc_s) + ".";
-  for (const unsigned char byte : digest) session += fmt::format("{:02x}", byte);
-  return session;
+std::string hexadecimal(std::span<const unsigned char> bytes) {
+  std::string text;
+  for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+template <std::size_t Size>
+std::array<unsigned char, Size> random_bytes() {
+  std::array<unsigned char, Size> bytes{};
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1)
+    throw std::runtime_error("OpenSSL returns no random bytes");
+  return bytes;
 }
 
 }  // namespace
 
 Secret Access::new_token() {
-  std::array<unsigned char, kTokenBytes> bytes{};
-  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1)
-    throw std::runtime_error("OpenSSL has no randomness for a token");
+  const auto bytes = random_bytes<kTokenBytes>();
   // Base64 as it may stand in a header or an URL.
   std::string text(4 * ((kTokenBytes + 2) / 3), '\0');
   EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), bytes.data(), static_cast<int>(bytes.size()));
@@ -117,17 +123,23 @@ std::optional<std::int64_t> Access::pairing_step_of(std::string_view given, doub
   return found;
 }
 
-std::string Access::new_session(double utc_s) const {
-  return session_of(token_, static_cast<std::int64_t>(utc_s));
+std::string Access::new_session_id() {
+  return hexadecimal(random_bytes<kSessionIdCharacters / 2>());
 }
 
-bool Access::is_session(std::string_view given, double utc_s) const {
-  std::int64_t made_utc_s = 0;
-  const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), made_utc_s);
-  if (error != std::errc() || end == given.data() + given.size()) return false;
-  // One that seems to be of the future was made before the clock was set.
-  if (utc_s - static_cast<double>(made_utc_s) > kSession_s) return false;
-  return are_same(given, session_of(token_, made_utc_s));
+std::string Access::session_of(std::string_view id) const {
+  return std::string(id) + '.' + hexadecimal(digest_of(token_, "session", id));
+}
+
+std::optional<std::string> Access::session_id_of(std::string_view given) const {
+  const std::string_view id = given.substr(0, kSessionIdCharacters);
+  if (!are_same(given, session_of(id))) return std::nullopt;
+  return std::string(id);
+}
+
+std::string Access::mark() const {
+  const Digest digest = digest_of(token_, "mark", "");
+  return hexadecimal(std::span(digest).first<kMarkBytes>());
 }
 
 }  // namespace yuragi::daemon::web

@@ -140,6 +140,13 @@ void add_web(std::vector<MetricFamily>& all, const WebCounts& counts) {
   all.push_back(counter("yuragi_http_changes_total", "Requests that changed something").add(counts.changes).take());
 }
 
+void add_faults(std::vector<MetricFamily>& all, const FaultCounts& faults) {
+  Family family =
+      counter("yuragi_faults_total", "Requests, messages and steps that ended with an error of the program, by kind");
+  for (const auto& [kind, count] : faults) family.add(count, {{"kind", kind}});
+  all.push_back(family.take());
+}
+
 void add_recorder(std::vector<MetricFamily>& all, const wire::RecorderStatus& recorder) {
   all.push_back(gauge("yuragi_recorder_writing", "1 where the recording can be written")
                     .add(recorder.state == wire::RecorderState::kWriting ? 1.0 : 0.0)
@@ -153,7 +160,8 @@ void add_recorder(std::vector<MetricFamily>& all, const wire::RecorderStatus& re
 
 }  // namespace
 
-std::string metrics_text(const wire::Sensors& sensors, const std::string& software, const WebCounts& counts) {
+std::string metrics_text(const wire::Sensors& sensors, const std::string& software, const WebCounts& counts,
+                         const FaultCounts& faults) {
   std::vector<MetricFamily> all;
   all.push_back(gauge("yuragi_build_info", "The program").add(1.0, {{"software", software}}).take());
   add_wind(all, sensors);
@@ -162,6 +170,7 @@ std::string metrics_text(const wire::Sensors& sensors, const std::string& softwa
   if (sensors.animation) add_animation(all, *sensors.animation);
   add_clients(all, sensors);
   add_web(all, counts);
+  add_faults(all, faults);
   if (sensors.recorder) add_recorder(all, *sensors.recorder);
   return prometheus::TextSerializer().prometheus::Serializer::Serialize(all);
 }

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "daemon/web/fault_counts.hpp"
 #include "daemon/web/web_counts.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -9,6 +10,7 @@ namespace yuragi::daemon::web {
 
 /// The state of the daemon in the text format of Prometheus 0.0.4. Names have their unit at the end, in base units.
 /// Pure.
-std::string metrics_text(const wire::Sensors& sensors, const std::string& software, const WebCounts& counts = {});
+std::string metrics_text(const wire::Sensors& sensors, const std::string& software, const WebCounts& counts = {},
+                         const FaultCounts& faults = {});
 
 }  // namespace yuragi::daemon::web

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "daemon/web/access.hpp"
-
 namespace yuragi::daemon::web {
 
 bool PairingLimits::take(const std::string& address, double now_s) {
@@ -17,11 +15,6 @@ bool PairingLimits::take(const std::string& address, double now_s) {
   const bool is_allowed = left >= 1.0;
   allowance = {.left = is_allowed ? left - 1.0 : left, .at_s = now_s};
   return is_allowed;
-}
-
-bool PairingLimits::use(std::int64_t step) {
-  std::erase_if(used_, [step](std::int64_t used) { return used <= step - Access::kCodeSteps; });
-  return used_.insert(step).second;
 }
 
 }  // namespace yuragi::daemon::web

@@ -32,6 +32,13 @@ std::string_view cookie_named(std::string_view name, std::string_view cookies) {
 
 }  // namespace
 
+std::optional<std::string> session_shown(const HttpRequest& request, const Trust& trust, double utc_s) {
+  if (!trust.takes_token || trust.access == nullptr || trust.pairings == nullptr) return std::nullopt;
+  auto id = trust.access->session_id_of(cookie_named(kSessionCookie, request.cookie));
+  if (id && !trust.pairings->is_valid(*id, utc_s)) id.reset();
+  return id;
+}
+
 bool is_trusted(const HttpRequest& request, const Trust& trust, double utc_s) {
   if (!trust.takes_token) return request.client.is_local && !request.is_forwarded;
   const Access* const access = trust.access;
@@ -39,8 +46,7 @@ bool is_trusted(const HttpRequest& request, const Trust& trust, double utc_s) {
   if (request.authorization.starts_with(kBearer) &&
       access->is_token(std::string_view(request.authorization).substr(kBearer.size())))
     return true;
-  const std::string_view session = cookie_named(kSessionCookie, request.cookie);
-  return !session.empty() && access->is_session(session, utc_s);
+  return session_shown(request, trust, utc_s).has_value();
 }
 
 bool shows_credentials(const HttpRequest& request) {
@@ -63,7 +69,7 @@ std::optional<HttpResponse> permission_refusal(const HttpRequest& request, bool 
 }
 
 HttpResponse pairing_answer(const std::string& code, const HttpRequest& request, const std::string& address,
-                            const Trust& trust, PairingLimits& limits, double utc_s, double now_s) {
+                            const Trust& trust, PairingLimits& limits, Pairings& pairings, double utc_s, double now_s) {
   if (!trust.takes_token) return problem(409, "Not done", "the configuration has no [http] token_file");
   if (trust.access == nullptr) return problem(409, "Not done", "the token of this installation cannot be read");
   const Access* const access = trust.access;
@@ -76,11 +82,14 @@ HttpResponse pairing_answer(const std::string& code, const HttpRequest& request,
   if (!step)
     return problem(403, "Not the code",
                    "this is not the code that `yuragi token` shows, or it is older than 10 minutes");
-  if (!limits.use(*step)) return problem(403, "Used", "this code has been used: `yuragi token` shows another one");
+  if (!pairings.use_code(*step))
+    return problem(403, "Used", "this code has been used: `yuragi token` shows another one");
+  const std::string id = Access::new_session_id();
+  pairings.add(id, address, utc_s);
   HttpResponse response{.body = json_text(nlohmann::json({{"message", "paired"}})) + "\n"};
   response.fields.push_back(
-      {"Set-Cookie", fmt::format("{}={}; Path=/; Max-Age={:.0f}; HttpOnly; SameSite=Strict{}", kSessionCookie,
-                                 access->new_session(utc_s), Access::kSession_s, request.is_https ? "; Secure" : "")});
+      {"Set-Cookie", fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}", kSessionCookie,
+                                 access->session_of(id), Pairings::kSession_s, request.is_https ? "; Secure" : "")});
   return response;
 }
 

@@ -7,6 +7,7 @@
 #include "daemon/web/access.hpp"
 #include "daemon/web/http_server.hpp"
 #include "daemon/web/pairing_limits.hpp"
+#include "daemon/web/pairings.hpp"
 
 namespace yuragi::daemon::web {
 
@@ -16,7 +17,11 @@ inline constexpr const char* kSessionCookie = "yuragi_session";
 struct Trust {
   bool takes_token = false;        ///< by the token only, whatever its address; false: by being on this machine
   const Access* access = nullptr;  ///< of the token; nullptr: there is none, or it cannot be read: nobody can show it
+  const Pairings* pairings = nullptr;  ///< of the token; nullptr: no browser is paired
 };
+
+/// Returns the id of the valid session that the request shows, or nullopt. Pure.
+std::optional<std::string> session_shown(const HttpRequest& request, const Trust& trust, double utc_s);
 
 /// Returns true if the client may change something: it shows the token or a session, or, where that is not configured,
 /// it is on this machine and no proxy sends it for another. `utc_s`: now, seconds since 1970. Pure.
@@ -30,9 +35,10 @@ bool shows_credentials(const HttpRequest& request);
 std::optional<HttpResponse> permission_refusal(const HttpRequest& request, bool is_trusted, const Trust& trust,
                                                bool reading_takes_token);
 
-/// Returns the answer to a pairing code: the session as a cookie, or a refusal. `address`: of the client.
+/// Returns the answer to a pairing code: the session as a cookie, and adds it to `pairings`, or a refusal. `address`:
+/// of the client.
 HttpResponse pairing_answer(const std::string& code, const HttpRequest& request, const std::string& address,
-                            const Trust& trust, PairingLimits& limits, double utc_s, double now_s);
+                            const Trust& trust, PairingLimits& limits, Pairings& pairings, double utc_s, double now_s);
 
 /// Returns the address that a request comes from: that of the connection, or, if this is one of `proxies`, the last
 /// one that X-Forwarded-For names and that is none of them. Pure.

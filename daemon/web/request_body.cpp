@@ -103,6 +103,15 @@ Result<Pairing, Failure> pairing_of(std::string_view json) {
   return pairing;
 }
 
+Result<Revocation, Failure> revocation_of(std::string_view json) {
+  Body body(json);
+  Revocation revocation{.id = body.text("revoke", "")};
+  body.require(!revocation.id.empty(),
+               "revoke: is missing: the id of a session, which `yuragi token --sessions` lists");
+  if (auto mistake = body.mistake()) return std::move(*mistake);
+  return revocation;
+}
+
 Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json) {
   Body body(json);
   wire::PlayerCommand command;

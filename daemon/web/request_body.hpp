@@ -22,6 +22,14 @@ struct Pairing {
 /// {"code": "K7QM-2XPD"}
 Result<Pairing, Failure> pairing_of(std::string_view json);
 
+/// The id of a session that is to be ended.
+struct Revocation {
+  std::string id;
+};
+
+/// {"revoke": "3f9a0c77e1"}
+Result<Revocation, Failure> revocation_of(std::string_view json);
+
 /// {"action": "pause", "resume", "step", "seek" or "rate", "sensor": name, "count": 1, "place": "+30", "rate": 1}
 Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json);
 

@@ -52,7 +52,8 @@ Answer health(const HttpRequest& /*request*/, const Facts& facts) {
 Answer metrics(const HttpRequest& /*request*/, const Facts& facts) {
   if (const auto why = silence_of(facts)) return no_news(*why);
   return HttpResponse{.content_type = "text/plain; version=0.0.4; charset=utf-8",
-                      .body = metrics_text(*facts.sensors, facts.software, facts.counts)};
+                      .body = metrics_text(*facts.sensors, facts.software, facts.counts,
+                                           facts.faults ? facts.faults() : FaultCounts{})};
 }
 
 Answer status(const HttpRequest& /*request*/, const Facts& facts) {
@@ -113,6 +114,24 @@ Answer pair(const HttpRequest& request, const Facts& /*facts*/) {
   return std::move(*pairing);
 }
 
+Answer sessions(const HttpRequest& /*request*/, const Facts& facts) {
+  ordered_json sessions = ordered_json::array();
+  if (facts.pairings != nullptr) {
+    for (const PairedBrowser& browser : facts.pairings->browsers(facts.utc_s)) {
+      sessions.push_back({{"id", browser.id},
+                          {"since_s", browser.since_utc_s},
+                          {"last_use_s", browser.last_use_utc_s},
+                          {"address", browser.address}});
+    }
+  }
+  return json_response({{"sessions", std::move(sessions)}});
+}
+Answer revoke_session(const HttpRequest& request, const Facts& /*facts*/) {
+  auto revocation = revocation_of(request.body);
+  if (!revocation) return problem(400, "Not understood", revocation.error().message);
+  return std::move(*revocation);
+}
+
 Answer history(const HttpRequest& request, const Facts& /*facts*/) {
   const auto hours = number_in_query(request.query, {.name = "hours", .least = 1, .most = 168, .otherwise = 24});
   if (!hours) return problem(400, "Not understood", hours.error().message);
@@ -142,6 +161,8 @@ constexpr std::array kRoutes = {
     Route{"GET", "/api/v1/history", history},
     Route{"GET", kLogPath, log},
     Route{"POST", kPairPath, pair},
+    Route{"GET", kSessionsPath, sessions},
+    Route{"POST", kSessionsPath, revoke_session},
 };
 
 std::string_view method_of(const HttpRequest& request) {

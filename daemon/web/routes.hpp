@@ -7,8 +7,10 @@
 #include <string_view>
 #include <variant>
 
+#include "daemon/web/fault_counts.hpp"
 #include "daemon/web/http_server.hpp"
 #include "daemon/web/log_line.hpp"
+#include "daemon/web/pairings.hpp"
 #include "daemon/web/request_body.hpp"
 #include "daemon/web/web_counts.hpp"
 #include "engine/wire/wire.hpp"
@@ -24,7 +26,10 @@ struct Facts {
   double age_s = 0.0;                      ///< of them
   double patience_s = 5.0;                 ///< news that are older are no news
   LogTail log = {};
+  FaultCounter faults = {};
   WebCounts counts = {};
+  const Pairings* pairings = nullptr;  ///< null: no browser is paired
+  double utc_s = 0.0;                  ///< now
 };
 
 /// A request that the daemon has to carry out, and the answer that its reply becomes.
@@ -38,13 +43,16 @@ struct HistoryQuestion {
   unsigned hours = 0;
 };
 
-using Answer = std::variant<HttpResponse, Question, Pairing, HistoryQuestion>;
+using Answer = std::variant<HttpResponse, Question, Pairing, Revocation, HistoryQuestion>;
 
 /// What those may do, too, who are let in nowhere else yet.
 inline constexpr std::string_view kPairPath = "/api/v1/pair";
 
 /// What only those who may change something can read: the log names files and addresses.
 inline constexpr std::string_view kLogPath = "/api/v1/log";
+
+/// The browsers that were paired; only those who may change something can read it, too.
+inline constexpr std::string_view kSessionsPath = "/api/v1/sessions";
 
 /// What this machine can always read: service managers and monitors ask it.
 inline constexpr std::string_view kHealthPath = "/healthz";

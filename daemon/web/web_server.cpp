@@ -13,6 +13,7 @@
 #include "daemon/stream/client_log.hpp"
 #include "daemon/web/http_server.hpp"
 #include "daemon/web/page.hpp"
+#include "daemon/web/pairings_file.hpp"
 #include "daemon/web/permission.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/routes.hpp"
@@ -74,18 +75,28 @@ HttpResponse history_answer(const Result<std::string, Failure>& read, bool is_tr
                                                : problem(500, "The recording cannot be read", why);
 }
 
+/// Of a session that has ended.
+HttpResponse revocation_answer(const Result<void, Failure>& saved) {
+  if (saved) return {.body = "{\"message\": \"revoked\"}\n"};
+  return problem(500, "Not saved",
+                 "the session has ended, but it is valid again after a restart: " + saved.error().message +
+                     "; mend this and revoke it again");
+}
+
 }  // namespace
 
 class WebServer::Thread {
  public:
   explicit Thread(WebSettings settings)
       : settings_(std::move(settings)),
-        access_(settings_.token.is_empty() ? std::nullopt : std::optional<Access>(settings_.token)),
+        pairings_file_(settings_.pairings_file),
         server_(std::make_unique<HttpServer>(
             *io_, settings_.listen, HttpLimits{.clients = settings_.clients},
             [this](const HttpRequest& request, HttpReply reply) { answer(request, std::move(reply)); })),
-        endpoint_(server_->local_endpoint()),
-        thread_([this] { run(); }) {}
+        endpoint_(server_->local_endpoint()) {
+    if (!settings_.token.is_empty()) trust(settings_.token);
+    thread_ = std::thread([this] { run(); });
+  }
   ~Thread() {
     try {
       close();
@@ -108,7 +119,7 @@ class WebServer::Thread {
   }
 
   void set_token(const Secret& token) {
-    asio::post(*io_, [this, token] { access_.emplace(token); });
+    asio::post(*io_, [this, token] { trust(token); });
   }
 
   void close() {
@@ -125,6 +136,11 @@ class WebServer::Thread {
   void run() {
     while (!contain("a task of the web server", [this] { io_->run(); })) {
     }
+  }
+
+  void trust(const Secret& token) {
+    access_.emplace(token);
+    pairings_ = pairings_file_.read(access_->mark());
   }
 
   void answer(const HttpRequest& request, HttpReply reply) {
@@ -145,16 +161,21 @@ class WebServer::Thread {
       return reply(problem(415, "Not JSON", "the body is to be JSON: Content-Type: application/json"));
 
     const double utc_s = seconds(std::chrono::system_clock::now().time_since_epoch());
-    const Trust trust{.takes_token = settings_.takes_token, .access = access_ ? &*access_ : nullptr};
+    const Trust trust{
+        .takes_token = settings_.takes_token, .access = access_ ? &*access_ : nullptr, .pairings = &pairings_};
     const bool trusted = is_trusted(request, trust, utc_s);
     const std::string address = client_address(request, settings_.proxies);
     if (trust.takes_token && !trusted && shows_credentials(request)) {
       ++counts_.refused_tokens;
       log_.warn("http: {} shows a token or session that is not valid", address);
     }
+    if (const auto session = session_shown(request, trust, utc_s);
+        session && pairings_.note_use(*session, address, utc_s))
+      pairings_file_.save(pairings_);
     const bool is_own_health = request.path == kHealthPath && request.client.is_local && !request.is_forwarded;
     if (request.path != kPairPath && !(is_own_health && only_reads)) {
-      const bool takes_token = settings_.reading_takes_token || request.path == kLogPath;
+      const bool takes_token =
+          settings_.reading_takes_token || request.path == kLogPath || request.path == kSessionsPath;
       auto refusal = permission_refusal(request, trusted, trust, takes_token);
       if (refusal) return reply(std::move(*refusal));
     }
@@ -167,12 +188,17 @@ class WebServer::Thread {
                       .age_s = news ? seconds(steady_clock::now() - news->at) : 0.0,
                       .patience_s = seconds(settings_.patience),
                       .log = settings_.log,
-                      .counts = counts_};
+                      .faults = settings_.faults,
+                      .counts = counts_,
+                      .pairings = &pairings_,
+                      .utc_s = utc_s};
     Answer answer = answer_to(request, facts);
     if (auto* const response = std::get_if<HttpResponse>(&answer)) return reply(std::move(*response));
     if (const auto* const pairing = std::get_if<Pairing>(&answer)) {
       return reply(pair(pairing->code, request, address, trust, utc_s));
     }
+    if (const auto* const revocation = std::get_if<Revocation>(&answer))
+      return revoke(revocation->id, address, std::move(reply));
     if (const auto* const question = std::get_if<HistoryQuestion>(&answer))
       return read_history(question->hours, trusted, std::move(reply));
     if (!only_reads) {
@@ -188,15 +214,35 @@ class WebServer::Thread {
   HttpResponse pair(const std::string& code, const HttpRequest& request, const std::string& address, const Trust& trust,
                     double utc_s) {
     const double now_s = seconds(steady_clock::now().time_since_epoch());
-    HttpResponse response = pairing_answer(code, request, address, trust, pairing_limits_, utc_s, now_s);
+    HttpResponse response = pairing_answer(code, request, address, trust, pairing_limits_, pairings_, utc_s, now_s);
     const bool is_paired = response.status == 200;
     ++(is_paired ? counts_.pairings : counts_.failed_pairings);
     if (is_paired) {
+      pairings_file_.save(pairings_);
       log_.info("http: a browser at {} was paired", address);
     } else {
       log_.warn("http: a browser at {} was not paired ({})", address, response.status);
     }
     return response;
+  }
+
+  void revoke(const std::string& id, const std::string& address, HttpReply reply) {
+    if (!pairings_.revoke(id))
+      return reply(problem(404, "Not known", "there is no session with this id: `yuragi token --sessions` lists all"));
+    ++counts_.changes;
+    log_.info("http: {} revokes the session {}", address, id);
+    const auto pending = wait_for_reply(
+        std::move(reply), problem(503, "Not saved yet",
+                                  "the session has ended, but the disk does not take it: it is valid again if the "
+                                  "daemon is restarted before"));
+    pairings_file_.save(pairings_,
+                        [io = std::weak_ptr(io_), asked = std::weak_ptr(pending)](const Result<void, Failure>& saved) {
+                          const auto alive = io.lock();
+                          if (!alive) return;
+                          asio::post(*alive, [asked, saved] {
+                            if (const auto still = asked.lock()) still->answer(revocation_answer(saved));
+                          });
+                        });
   }
 
   void ask(Question question, bool is_local, HttpReply reply) {
@@ -240,7 +286,9 @@ class WebServer::Thread {
   }
 
   WebSettings settings_;
-  std::optional<Access> access_;  ///< of the thread
+  PairingsFile pairings_file_;
+  std::optional<Access> access_;  ///< of the thread, as all below
+  Pairings pairings_;             ///< of the token
   PairingLimits pairing_limits_;
   WebCounts counts_;
   stream::ClientLog log_{{}, [] { return MonoTime(steady_clock::now()); }};

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "daemon/stream/client_admission.hpp"
 #include "daemon/stream/transport.hpp"
+#include "daemon/web/fault_counts.hpp"
 #include "daemon/web/log_line.hpp"
 #include "engine/base/result.hpp"
 #include "engine/base/secret.hpp"
@@ -23,6 +25,8 @@ struct WebSettings {
       {};                    ///< names by which clients may call this machine, besides its own (is_known_host())
   bool takes_token = false;  ///< only who shows the token changes something; false: only this machine does
   Secret token = {};         ///< empty: there is none, or it cannot be read
+  /// Where pairings outlive the daemon (PairingsFile); empty: browsers have to be paired again after a restart.
+  std::filesystem::path pairings_file = {};
   bool reading_takes_token = false;       ///< nobody reads without it, either; but this machine reads kHealthPath
   std::vector<std::string> proxies = {};  ///< addresses whose X-Forwarded-For is believed, for the log and limits
   stream::AdmissionLimits clients = {};
@@ -39,6 +43,8 @@ struct WebSettings {
   /// The last lines of the log, oldest first. Called on the web server's own thread; must not wait. Empty: there is
   /// none.
   LogTail log = {};
+  /// How many exceptions were contained. Called on the web server's own thread; must not wait. Empty: not counted.
+  FaultCounter faults = {};
   /// After so long without news of the daemon the page says that it hangs, and a question is given up.
   Nanoseconds patience = std::chrono::seconds(5);
 };

@@ -132,6 +132,44 @@ class Http(unittest.TestCase):
         self.assertEqual(self.ask("/api/v1/scenes", **from_elsewhere, Cookie=session)[0], 200)
         self.assertEqual(self.ask("/api/v1/scenes", hide, **from_elsewhere, Cookie=session)[0], 200)
 
+    def test_paired_browsers_are_listed_and_revoked_also_after_a_restart(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        token_file = os.path.join(folder, "token")
+        http = f'[http]\nlisten = "127.0.0.1:{free_port()}"\ntoken_file = "{token_file}"\n'
+        file = self.write_config(http + '[[sensor]]\nname = "roof"\ndriver = "synthetic"\n' + SMALL_MEADOW)
+        token = [YURAGI, "token", "--config", file]
+        subprocess.run([*token, "--new"], capture_output=True, check=True)
+        asleep = subprocess.run([*token, "--sessions"], capture_output=True, text=True)
+        self.assertEqual(asleep.returncode, 69, asleep.stderr)
+        self.assertIn("is `yuragi run` running?", asleep.stderr)
+
+        daemon = self.start_daemon_with(file)
+        none = subprocess.run([*token, "--sessions"], capture_output=True, text=True, check=True)
+        self.assertEqual(none.stdout, "no browser is paired\n")
+        code = json.loads(subprocess.run([*token, "--json"], capture_output=True, check=True).stdout)["pairing_code"]
+        self.assertEqual(self.ask("/api/v1/pair", {"code": code}, X_Forwarded_For="192.0.2.7")[0], 200)
+        session = self.cookies.split(";")[0]
+        daemon.end()
+
+        self.start_daemon_with(file)
+        self.assertEqual(self.ask("/api/v1/pair", {"code": code})[0], 403, "it was used before the restart")
+        self.assertEqual(self.ask("/api/v1/sessions")[0], 401)
+        sessions = json.loads(subprocess.run([*token, "--sessions", "--json"], capture_output=True, check=True).stdout)["sessions"]
+        self.assertEqual([one["address"] for one in sessions], ["127.0.0.1"])
+        table = subprocess.run([*token, "--sessions"], capture_output=True, text=True, check=True)
+        self.assertRegex(table.stdout, rf"{sessions[0]['id']}  \d{{4}}-\d\d-\d\d \d\d:\d\d  .* 127.0.0.1\n")
+        hide = {"scene": "meadow", "shown": False, "over_s": 0}
+        self.assertEqual(self.ask("/api/v1/scenes", hide, Cookie=session)[0], 200)
+        unknown = subprocess.run([*token, "--revoke", "0000000000"], capture_output=True, text=True)
+        self.assertEqual(unknown.returncode, 70, unknown.stderr)
+        subprocess.run([*token, "--revoke", sessions[0]["id"]], capture_output=True, check=True)
+        self.assertEqual(self.ask("/api/v1/scenes", hide, Cookie=session)[0], 401)
+
+        with open(token_file, "w", encoding="ascii") as other:
+            other.write("another token than the daemon's\n")
+        refused = subprocess.run([*token, "--sessions"], capture_output=True, text=True)
+        self.assertEqual(refused.returncode, 77, refused.stderr)
+
     def test_what_cannot_be_opened_at_the_start_is_tried_again(self):
         folder = self.enterContext(tempfile.TemporaryDirectory())
         token_file = os.path.join(folder, "token")

@@ -328,11 +328,11 @@ driver = "synthetic"
   token("--new");
   await startDaemon(file);
   const page = await open(`http://127.0.0.1:${port}/`, { extraHTTPHeaders: { "X-Forwarded-For": "192.0.2.7" } });
-  return { page, code: () => JSON.parse(token("--json")).pairing_code };
+  return { page, token, code: () => JSON.parse(token("--json")).pairing_code };
 }
 
 test("another machine reads, and pairs before it changes something; hostile names stay text", { timeout: 2 * HANG_MS }, async () => {
-  const { page, code } = await openFromElsewhere(pairingPort, "");
+  const { page, token, code } = await openFromElsewhere(pairingPort, "");
   await waitForSentence(page, /^Synthetic wind, not measured: <img/);
   assert.ok((await sentence(page)).includes(HOSTILE));
   assert.equal(await page.textContent("#sensors h3"), HOSTILE);
@@ -350,6 +350,10 @@ test("another machine reads, and pairs before it changes something; hostile name
   const done = page.waitForResponse((response) => response.url().endsWith("/scenes") && response.request().method() === "POST" && response.ok());
   await page.click("#pairing button.primary");
   assert.equal((await (await done).json()).scenes[0].is_shown, false);
+
+  for (const session of JSON.parse(token("--sessions", "--json")).sessions) token("--revoke", session.id);
+  await page.getByRole("switch", { name: /meadow/ }).click();
+  await page.waitForSelector("#pairing-code", { state: "visible" }); // it may be paired again
   await page.context().close();
 });
 

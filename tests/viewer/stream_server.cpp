@@ -54,8 +54,9 @@ void StreamServer::read_subscription(const std::shared_ptr<Client>& client) {
     while (auto message = client->reader.next()) {
       if (!*message) continue;
       const std::lock_guard lock(mutex_);
-      if (std::holds_alternative<wire::Subscribe>(**message)) {
+      if (const auto* subscribe = std::get_if<wire::Subscribe>(&**message)) {
         client->has_subscribed = true;
+        token_ = subscribe->token;
         ++subscriptions_;
       } else if (const auto* control = std::get_if<wire::Control>(&**message)) {
         controls_.push_back(*control);

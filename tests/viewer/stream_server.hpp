@@ -37,6 +37,12 @@ class StreamServer {
   /// Waits (up to half a minute) until as many subscriptions as this have come in all.
   bool wait_for_subscriptions(std::size_t count);
 
+  /// The token of the last subscription.
+  Secret token() {
+    const std::lock_guard lock(mutex_);
+    return token_;
+  }
+
   /// Waits (up to half a minute) until as many Controls as this have come in all, and returns them.
   std::vector<wire::Control> wait_for_controls(std::size_t count);
 
@@ -56,6 +62,7 @@ class StreamServer {
   std::condition_variable subscribed_;
   std::size_t subscriptions_ = 0;
   std::vector<wire::Control> controls_;
+  Secret token_;
 
   std::thread thread_;
 };

@@ -31,8 +31,8 @@ using boost::system::error_code;
 class StreamConnection::Session {
  public:
   explicit Session(StreamOptions options) : options_(std::move(options)), backoff_(options_.min_backoff) {
-    subscription_ = wire::encode(
-        wire::Subscribe{.poses = true, .sensors = true, .client = "yuragi-viewer", .takes_new_scenes = true});
+    subscription_ = wire::encode(wire::Subscribe{
+        .poses = true, .sensors = true, .client = "yuragi-viewer", .takes_new_scenes = true, .token = options_.token});
     connect();
     thread_ = std::thread([this] { serve(); });
   }

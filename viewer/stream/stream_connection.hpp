@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/secret.hpp"
 #include "engine/base/time.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -36,6 +37,7 @@ struct StreamStatus {
 struct StreamOptions {
   std::string host = "127.0.0.1";
   std::uint16_t port = wire::kDefaultPort;
+  Secret token = {};                                         ///< of the daemon's installation; empty: none is shown
   Nanoseconds min_backoff = std::chrono::milliseconds(200);  ///< before the first new attempt; doubles
   Nanoseconds max_backoff = std::chrono::seconds(3);
   Nanoseconds silence_limit = std::chrono::seconds(6);  ///< after so long without a byte, or a reply: connect again

@@ -69,14 +69,5 @@ TEST_F(AlertsTest, DeliversAfterARestartWhatTheConfigurationStillHas) {
   for (const auto& [way, news] : AlertLedger(record_).record().undelivered) EXPECT_EQ(news.alert, "known");
 }
 
-TEST(AlertRecordFile, IsWhereSystemdOrTheConfigurationIs) {
-  unsetenv("STATE_DIRECTORY");  // NOLINT(concurrency-mt-unsafe): no other thread
-  EXPECT_EQ(alert_record_file({}), "");
-  EXPECT_EQ(alert_record_file("/home/a/wall.toml"), "/home/a/wall.toml.alerts.json");
-  setenv("STATE_DIRECTORY", "/var/lib/yuragi:/b", 1);  // NOLINT(concurrency-mt-unsafe)
-  EXPECT_EQ(alert_record_file("/home/a/wall.toml"), "/var/lib/yuragi/alerts.json");
-  unsetenv("STATE_DIRECTORY");  // NOLINT(concurrency-mt-unsafe)
-}
-
 }  // namespace
 }  // namespace yuragi::daemon::alerts

@@ -154,6 +154,12 @@ TEST(DaemonLog, ContainedExceptionsAreInTheLog) {
   EXPECT_TRUE(lines[0].text.starts_with("a task of the test failed")) << lines[0].text;
   EXPECT_EQ(lines[0].level, "error");
 }
+TEST(DaemonLog, ContainedExceptionsAreCounted) {
+  const DaemonLog log(false);
+  const web::FaultCounter counter = DaemonLog::fault_counter();
+  for (int fault = 0; fault < 3; ++fault) EXPECT_FALSE(contain("a counted task of the test", [] { throw 1; }));
+  EXPECT_EQ(counter().at("a counted task of the test"), 3U);
+}
 
 }  // namespace
 }  // namespace yuragi::daemon::service

@@ -30,5 +30,16 @@ TEST(FaultLog, FurtherOnesAreCountedAndLoggedOnceAMinute) {
   EXPECT_EQ(last, "an HTTP request failed: bad (59 more since the last such line); this is a fault of the program");
 }
 
+TEST(FaultLog, FaultsAreCountedByKind_AndKindsAreBounded) {
+  FaultLog log;
+  for (int request = 0; request < 5; ++request) log.line_for("an HTTP request", "bad", MonoTime{1h});
+  EXPECT_EQ(log.counts(), (web::FaultCounts{{"an HTTP request", 5}}));
+  for (int kind = 0; kind < 1000; ++kind) log.line_for(std::to_string(kind), "bad", MonoTime{1h});
+  EXPECT_EQ(log.counts().size(), FaultLog::kMaxKinds + 1);
+  EXPECT_EQ(log.counts().at(std::string(FaultLog::kOtherKind)), 1001 - FaultLog::kMaxKinds);
+  log.line_for("an HTTP request", "bad", MonoTime{1h});
+  EXPECT_EQ(log.counts().at("an HTTP request"), 6U);
+}
+
 }  // namespace
 }  // namespace yuragi::daemon::service

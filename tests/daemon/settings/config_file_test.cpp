@@ -81,5 +81,14 @@ TEST_F(ConfigFile, ThatIsNotThereIsTold) {
   EXPECT_EQ(replace_config(folder_ / "none.toml", "", kNewWall).error().kind, FailureKind::kCannotCreate);
 }
 
+TEST(StateFile, IsWhereSystemdOrTheConfigurationIs) {
+  unsetenv("STATE_DIRECTORY");  // NOLINT(concurrency-mt-unsafe): no other thread
+  EXPECT_EQ(state_file({}, "alerts.json"), "");
+  EXPECT_EQ(state_file("/home/a/wall.toml", "alerts.json"), "/home/a/wall.toml.alerts.json");
+  setenv("STATE_DIRECTORY", "/var/lib/yuragi:/b", 1);  // NOLINT(concurrency-mt-unsafe)
+  EXPECT_EQ(state_file("/home/a/wall.toml", "alerts.json"), "/var/lib/yuragi/alerts.json");
+  unsetenv("STATE_DIRECTORY");  // NOLINT(concurrency-mt-unsafe)
+}
+
 }  // namespace
 }  // namespace yuragi::daemon::settings

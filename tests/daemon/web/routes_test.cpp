@@ -68,6 +68,13 @@ TEST_F(RoutesTest, Metrics_NamesUnitsAndEscapedLabels) {
   EXPECT_THAT(text, HasSubstr(R"(driver="modbus",state="stale"} 0)"));
   EXPECT_THAT(text, HasSubstr("# TYPE yuragi_ticks_skipped_total counter\nyuragi_ticks_skipped_total 7\n"));
 }
+TEST_F(RoutesTest, Metrics_FaultsByKind) {
+  EXPECT_THAT(get("/metrics").body, HasSubstr("# TYPE yuragi_faults_total counter\n"));
+  facts_.faults = [] { return FaultCounts{{"a stream connection", 3}, {"an \"HTTP\" request", 1}}; };
+  const std::string text = get("/metrics").body;
+  EXPECT_THAT(text, HasSubstr("yuragi_faults_total{kind=\"a stream connection\"} 3\n"));
+  EXPECT_THAT(text, HasSubstr(R"(yuragi_faults_total{kind="an \"HTTP\" request"} 1)"));
+}
 TEST_F(RoutesTest, Status_IsJsonWhateverANameHolds) {
   sensors_.sensors[0].detail = "\xff\xfe";
   const json status = json::parse(get("/api/v1/status").body);
@@ -104,6 +111,20 @@ TEST_F(RoutesTest, PlayersOfADaemonThatPlaysNothing_AreNone) {
   EXPECT_EQ(json::parse(none.body)["players"], json::array());
 }
 
+TEST_F(RoutesTest, Sessions_AreListedWhileTheyAreValid) {
+  EXPECT_EQ(json::parse(get("/api/v1/sessions").body)["sessions"], json::array());
+  Pairings pairings;
+  pairings.add("0123456789", "192.168.1.30", 1.8e9);
+  facts_.pairings = &pairings;
+  facts_.utc_s = 1.8e9;
+  EXPECT_EQ(json::parse(get("/api/v1/sessions").body)["sessions"][0], json({{"id", "0123456789"},
+                                                                            {"since_s", 1'800'000'000},
+                                                                            {"last_use_s", 1'800'000'000},
+                                                                            {"address", "192.168.1.30"}}));
+  facts_.utc_s = 1.9e9;
+  EXPECT_EQ(json::parse(get("/api/v1/sessions").body)["sessions"], json::array());
+}
+
 TEST(OpenApi, DescribesEachRoute_AndNothingElse) {
   std::set<std::pair<std::string, std::string>> served, described;
   for (const Route& route : routes()) {
@@ -131,7 +152,7 @@ TEST(OpenApi, BodiesAreThoseThatAreTaken) {
                                                : json("meadow");
     return body.dump();
   };
-  for (const char* path : {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair"}) {
+  for (const char* path : {"/api/v1/scenes", "/api/v1/player", "/api/v1/pair", "/api/v1/sessions"}) {
     const Answer answer = answer_to({.method = "POST", .path = path, .body = keys(path)}, {});
     const auto* const refusal = std::get_if<HttpResponse>(&answer);
     EXPECT_EQ(refusal, nullptr) << refusal->body;

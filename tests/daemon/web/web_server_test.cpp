@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -19,8 +20,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "daemon/web/access.hpp"
 #include "daemon/web/http_server.hpp"
 #include "engine/base/address.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::daemon::web {
 namespace {
@@ -228,6 +231,70 @@ TEST_F(WebServerTest, WithATokenRightsComeFromItWhateverTheAddress) {
   EXPECT_THAT(metrics, HasSubstr("yuragi_http_refused_tokens_total 2\n"));
   EXPECT_THAT(metrics, HasSubstr("yuragi_http_pairings_total{result=\"refused\"} 2\n"));
   EXPECT_THAT(metrics, HasSubstr("yuragi_http_changes_total 2\n"));
+}
+/// A daemon with a token that keeps its pairings in a file.
+class PairedBrowserTest : public WebServerTest {
+ protected:
+  std::unique_ptr<WebServer> start() {
+    WebSettings with_token = settings();
+    with_token.takes_token = true;
+    with_token.token = kToken;
+    with_token.pairings_file = file_;
+    return std::make_unique<WebServer>(std::move(with_token));
+  }
+  /// The field of the header by which the browser that was paired is known.
+  static std::string cookie_in(const std::string& answer) {
+    const std::size_t begin = answer.find("yuragi_session=");
+    return "Cookie: " + answer.substr(begin, answer.find(';', begin) - begin) + "\r\n";
+  }
+  static std::string change(const WebServer& server, const std::string& fields) {
+    return Client(server.local_endpoint()).post("/api/v1/scenes", R"({"scene":"meadow"})", kJson + fields);
+  }
+
+  const Secret kToken{"correct horse battery staple"};
+  const std::string kBearer = "Authorization: Bearer " + kToken.reveal() + "\r\n";
+  const std::string code_ = R"({"code":")" +
+                            Access(kToken).pairing_code(seconds(std::chrono::system_clock::now().time_since_epoch())) +
+                            "\"}";
+  test::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_.path() / "pairings.json";
+};
+TEST_F(PairedBrowserTest, ASessionAndAUsedCodeOutliveARestart_AndARevocationDoes) {
+  auto server = start();
+  const std::string cookie = cookie_in(Client(server->local_endpoint()).post("/api/v1/pair", code_, kJson));
+  EXPECT_THAT(change(*server, cookie), StartsWith("HTTP/1.1 200"));
+
+  server.reset();
+  server = start();
+  EXPECT_THAT(change(*server, cookie), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(Client(server->local_endpoint()).post("/api/v1/pair", code_, kJson), HasSubstr("has been used"));
+
+  Client owner(server->local_endpoint());
+  EXPECT_THAT(owner.get("/api/v1/sessions"), StartsWith("HTTP/1.1 401")) << "reading others is free, this is not";
+  const std::string list = owner.get("/api/v1/sessions", kBearer);
+  const std::string id = list.substr(list.find("\"id\": \"") + 7, Access::kSessionIdCharacters);
+  const std::string revoke = R"({"revoke":")" + id + "\"}";
+  EXPECT_THAT(owner.post("/api/v1/sessions", revoke, kJson), StartsWith("HTTP/1.1 401"));
+  EXPECT_THAT(change(*server, cookie), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(owner.post("/api/v1/sessions", revoke, kJson + kBearer), StartsWith("HTTP/1.1 200"));
+  EXPECT_THAT(owner.post("/api/v1/sessions", revoke, kJson + kBearer), StartsWith("HTTP/1.1 404"));
+  EXPECT_THAT(change(*server, cookie), StartsWith("HTTP/1.1 401"));
+
+  server.reset();
+  server = start();
+  EXPECT_THAT(change(*server, cookie), StartsWith("HTTP/1.1 401"));
+}
+TEST_F(PairedBrowserTest, ARevocationThatCannotBeSavedHoldsUntilTheRestart_AndIsReported) {
+  file_ = folder_.path() / "nowhere" / "pairings.json";
+  const auto server = start();
+  const std::string cookie = cookie_in(Client(server->local_endpoint()).post("/api/v1/pair", code_, kJson));
+  EXPECT_THAT(change(*server, cookie), StartsWith("HTTP/1.1 200"));
+  Client owner(server->local_endpoint());
+  const std::string list = owner.get("/api/v1/sessions", kBearer);
+  const std::string id = list.substr(list.find("\"id\": \"") + 7, Access::kSessionIdCharacters);
+  EXPECT_THAT(owner.post("/api/v1/sessions", R"({"revoke":")" + id + "\"}", kJson + kBearer),
+              AllOf(StartsWith("HTTP/1.1 500"), HasSubstr("after a restart")));
+  EXPECT_THAT(change(*server, cookie), StartsWith("HTTP/1.1 401"));
 }
 TEST_F(WebServerTest, WithATokenThatCannotBeReadNobodyChangesAnything) {
   WebSettings locked = settings();

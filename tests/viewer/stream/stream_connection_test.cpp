@@ -174,6 +174,18 @@ TEST(StreamConnection, SendsControlsInOrderAndHandsOverTheReplies) {
   ASSERT_TRUE(viewer.wait_until([&] { return viewer.has_new_connection; }));
 }
 
+TEST(StreamConnection, ShowsTheTokenWithEachSubscription) {
+  StreamServer server(kHello);
+  StreamOptions options = options_for(server.port());
+  options.token = Secret("correct horse battery staple");
+  const Viewer viewer(options);
+  ASSERT_TRUE(server.wait_for_subscriptions(1));
+  EXPECT_EQ(server.token(), options.token);
+  server.cut();
+  ASSERT_TRUE(server.wait_for_subscriptions(2));
+  EXPECT_EQ(server.token(), options.token);
+}
+
 TEST(StreamConnection, WithoutAConnectionAControlIsDropped) {
   std::uint16_t port = 0;
   {
