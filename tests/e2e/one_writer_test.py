@@ -18,7 +18,9 @@ import unittest
 
 from programs import HANG_S, Program
 
-YURAGI = os.path.join(os.path.abspath(sys.argv.pop(1)), "yuragi")
+PROGRAMS = os.path.abspath(sys.argv.pop(1))
+YURAGI = os.path.join(PROGRAMS, "yuragi")
+SIMULATOR = os.path.join(PROGRAMS, "yuragi-sim")
 # A file is completed after each second: any is larger than this.
 CONFIG = """\
 [recording]
@@ -113,9 +115,18 @@ class OneWriter(unittest.TestCase):
         status = run("status", "--connect", second.address())
         self.assertEqual(status.returncode, 1)
         self.assertIn(reason, status.stdout)
-        for command in (["clean-secrets", self.wall], ["import", self.config, "-o", self.wall, "--force"]):
-            refused = run(*command)
-            self.assertEqual((refused.returncode, reason in refused.stderr), (69, True), refused.stderr)
+        noise = os.path.join(self.folder, "noise.windlog")
+        subprocess.run([SIMULATOR, "recording", "-o", noise, "--duration", "60"], check=True, timeout=HANG_S)
+        onto_it = ["-o", self.wall, "--force"]
+        for command in (["clean-secrets", self.wall], ["import", self.config, *onto_it], ["export", noise, *onto_it],
+                        ["wind", noise, *onto_it], ["report", noise, *onto_it], ["support-bundle", *onto_it],
+                        ["field", "--speed", "5", "--size", "8", *onto_it]):
+            with self.subTest(command[0]):
+                refused = run(*command)
+                self.assertEqual((refused.returncode, reason in refused.stderr), (69, True), refused.stderr)
+        refused = subprocess.run([SIMULATOR, "recording", *onto_it], capture_output=True, text=True, timeout=HANG_S)
+        self.assertEqual((refused.returncode, reason in refused.stderr), (69, True), refused.stderr)
+        os.remove(noise)
 
         first.end(signal.SIGKILL)
         shown = self.wait_for_recorder(second, lambda recorder: recorder["state"] == "writing" and recorder["written"] > 100)
