@@ -7,6 +7,8 @@
 #include <system_error>
 #include <vector>
 
+#include "drivers/windlog/recording_files.hpp"
+#include "drivers/windlog/series_lock.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "engine/base/version.hpp"
 #include "simulators/commands.hpp"
@@ -82,12 +84,14 @@ void write_readings(drivers::windlog::WindlogWriter& writer, std::vector<Recorde
   }
 }
 
-/// Writes the recording beside its place first: it is there whole, or not at all.
+/// Writes the recording beside its place first: it is there whole, or not at all. Fails if another program records to
+/// the file.
 void make_recording(const RecordingOptions& options) {
   const std::filesystem::path file = options.output;
   if (std::filesystem::exists(file) && !options.overwrites) {
     throw CLI::ValidationError("--output", options.output + " exists; --force overwrites it");
   }
+  const auto lock = drivers::windlog::SeriesLock::take(file).value();
   std::vector<RecordedSensor> sensors;
   for (const std::string& text : options.sensors) sensors.push_back(parse_sensor(text));
   MeasuredWind wind = options.common.make_wind();
@@ -100,6 +104,7 @@ void make_recording(const RecordingOptions& options) {
     auto writer = drivers::windlog::WindlogWriter::open(working).value();
     write_readings(writer, sensors, wind, faults, options);
     writer.close().value();
+    drivers::windlog::remove_recording(file);  // with what SQLite left beside it: it would take that for the new one's
     std::filesystem::rename(working, file);
   } catch (...) {
     std::error_code ignored;

@@ -18,6 +18,7 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/installation.hpp"
 #include "daemon/commands/json_output.hpp"
+#include "daemon/commands/lock_recording.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/commands/simulator_process.hpp"
 #include "daemon/sensing/system_clock.hpp"
@@ -209,6 +210,7 @@ void run_accept(const AcceptOptions& options) {
   const auto file = installed_config(options.config_file);
   const settings::Config config = file ? settings::load_config(*file) : settings::default_config();
   service::check(config);
+  const auto lock = lock_output(options.output);
   settings::OutputFile output(options.output, options.force);  // checked before the work
   refuse_beside_a_daemon(config);
 

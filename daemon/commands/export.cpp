@@ -167,6 +167,7 @@ void run_export(const ExportOptions& options) {
   }
   if (options.output == "-") return export_as_csv(*reader, options, stdout);
 
+  const auto lock = lock_output(options.output);
   settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   if (std::filesystem::path(options.output).extension() == ".windlog") {
     if (!options.from.empty() || !options.to.empty() || !options.since.empty() || !options.until.empty() ||
@@ -176,7 +177,6 @@ void run_export(const ExportOptions& options) {
           "--from, --to, --since, --until, --resample and --quantities are for CSV output; a copy is always "
           "of the whole recording");
     }
-    const auto lock = lock_recording(options.output);
     if (const auto copied = reader->copy_to(output.working_path()); !copied) {
       throw ExitError(kExitCannotCreate, options.output + ": cannot be written: " + copied.error().message);
     }

@@ -16,6 +16,7 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/lock_recording.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/tools/offline/field_frames.hpp"
 #include "daemon/tools/offline/npy.hpp"
@@ -263,6 +264,7 @@ void run_field(FieldOptions options) {
   }
 
   nlohmann::ordered_json description = description_of(options, grid, shape);
+  const auto lock = lock_output(options.output);
   settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   if (!options.force && std::filesystem::exists(beside)) {
     throw ExitError(kExitCannotCreate, beside.string() + ": exists already; --force overwrites it");

@@ -18,4 +18,9 @@ inline std::optional<drivers::windlog::SeriesLock> lock_recording(const std::fil
   return std::nullopt;
 }
 
+/// As lock_recording(), for a command that can write any kind of file: nullopt if `output` is not named as a recording.
+inline std::optional<drivers::windlog::SeriesLock> lock_output(const std::filesystem::path& output) {
+  return output.extension() == ".windlog" ? lock_recording(output) : std::nullopt;
+}
+
 }  // namespace yuragi::daemon::commands

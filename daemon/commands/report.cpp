@@ -12,6 +12,7 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/lock_recording.hpp"
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "daemon/settings/site_octaves.hpp"
@@ -133,7 +134,9 @@ void run_report(const ReportOptions& options) {
     throw ExitError(kExitUsage, "--json: is the name of the page; choose another file");
   }
   // Checked before hours of work.
+  const auto page_lock = lock_output(options.output);
   settings::OutputFile page_file(options.output, options.force, drivers::windlog::kSideSuffixes);
+  const auto json_lock = lock_output(options.json);
   std::optional<settings::OutputFile> json_file;
   if (!options.json.empty()) json_file.emplace(options.json, options.force, drivers::windlog::kSideSuffixes);
 

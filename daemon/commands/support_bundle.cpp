@@ -10,6 +10,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/installation.hpp"
+#include "daemon/commands/lock_recording.hpp"
 #include "daemon/settings/output_file.hpp"
 #include "engine/base/count_text.hpp"
 
@@ -31,6 +32,7 @@ void make_bundle(const BundleOptions& options) {
   const std::string folder =
       "yuragi-support-" + date::format("%Y%m%dT%H%M%SZ", std::chrono::floor<std::chrono::seconds>(request.now));
   const std::string name = options.output.empty() ? folder + ".tar.gz" : options.output;
+  const auto lock = lock_output(name);
   settings::OutputFile output(name, options.force);  // checked before the work
   request.examination = examination_of(options.config_file, options.address, "support-bundle");
   request.findings = tools::doctor::examine(request.examination);

@@ -17,6 +17,7 @@
 
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
+#include "daemon/commands/lock_recording.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/output_file.hpp"
@@ -269,6 +270,7 @@ void run_wind(WindOptions options) {
   options.offline.judge = config.sensors[0].judge;
 
   if (options.output == "-") return write_wind(options, config, stdout);
+  const auto lock = lock_output(options.output);
   settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(output.working_path().c_str(), "we"),
                                                              &std::fclose);

@@ -29,7 +29,8 @@ class Recorder {
   /// of an older format is renamed first (set_older_recording_aside). `report` is called on the recorder's thread, in
   /// the constructor, or in close(). If it cannot, it throws FailureError (kCannotCreate) or, as `start` says, retries;
   /// a damaged or foreign file is never overwritten. If another program records to it (SeriesLock) it retries, and
-  /// takes over when that program has ended. `rules`: when a new file is begun, and what is deleted; its `file` is not
+  /// takes over when that program has ended; readings that the other program recorded are not written again
+  /// (RecorderStatus::recorded_elsewhere). `rules`: when a new file is begun, and what is deleted; its `file` is not
   /// looked at. `synchronized_file`: for is_synchronized(). While the date of what is pushed is doubted (ClockJudge)
   /// age deletes nothing, and FILE-clock exists.
   Recorder(const std::filesystem::path& file, RecordingInfo info, RecorderReport report = {},

@@ -113,12 +113,42 @@ Result<void, Failure> RecorderWorker::hold_lock() {
   if (lock_ && lock_->is_of(file_)) return {};
   lock_.reset();
   auto taken = drivers::windlog::SeriesLock::take(file_);
-  if (!taken) return taken.error();
+  if (!taken) {
+    was_held_elsewhere_ = was_held_elsewhere_ || taken.error().kind == FailureKind::kUnavailable;
+    return taken.error();
+  }
   lock_.emplace(std::move(*taken));
   if (!lock_->is_effective() && !std::exchange(has_reported_no_locks_, true)) {
     report(file_.string() + ": this file system has no locks: make sure that no other program records to it");
   }
   return {};
+}
+
+/// Leaves out those of the pending readings that another program, which held the lock until now, has recorded: a span
+/// is in the recording once. What is newer than its last commit was recorded by nobody, and is written.
+Result<void, Failure> RecorderWorker::leave_what_is_recorded() {
+  if (auto opened = open_file(); !opened) return opened;
+  auto recorded = writer_->last_time();
+  writer_.reset();
+  const auto parts = drivers::windlog::completed_parts(file_);
+  if (recorded && !*recorded && !parts.empty()) {  // it ended where it had completed a file and not yet begun the next
+    auto part = drivers::windlog::WindlogWriter::open(parts.back().file);
+    if (!part) return part.error();
+    recorded = part->last_time();
+  }
+  if (!recorded) return recorded.error();
+  if (*recorded) leave_to_other(**recorded);
+  return {};
+}
+
+/// Drops what arrived until then, since another program records it.
+void RecorderWorker::leave_to_other(UtcTime until) {
+  const std::size_t left = std::erase_if(pending_, [until](const Entry& entry) {
+    return entry.sensor != kNextSession && entry.reading.time.utc <= until;
+  });
+  recorded_elsewhere_.fetch_add(left, std::memory_order_relaxed);
+  std::erase_if(pending_quantities_,
+                [until](const QuantitiesEntry& entry) { return entry.quantities.time.utc <= until; });
 }
 
 bool RecorderWorker::push(std::size_t sensor, const wind::WindReading& reading) noexcept {
@@ -174,10 +204,11 @@ RecorderStatus RecorderWorker::locked_status() const {
                         .written = written_.load(std::memory_order_relaxed),
                         .waiting = 0,
                         .lost = lost_.load(std::memory_order_relaxed) + given_up_.load(std::memory_order_relaxed),
+                        .recorded_elsewhere = recorded_elsewhere_.load(std::memory_order_relaxed),
                         .error = error_.empty() ? error_ : error_ + since_text(failing_since_),
                         .free_bytes = free_bytes_,
                         .clock_doubt = clock_doubt_};
-  const std::uint64_t done = status.written + given_up_.load(std::memory_order_relaxed);
+  const std::uint64_t done = status.written + status.recorded_elsewhere + given_up_.load(std::memory_order_relaxed);
   status.waiting = std::max(pushed_.load(std::memory_order_relaxed), done) - done;
   if (writing_since_ && std::chrono::steady_clock::now() - *writing_since_ >= limits_.hang_after) {
     status.state = RecorderState::kHanging;
@@ -232,13 +263,19 @@ void RecorderWorker::finish() {
     if (!closed) set_status(closed.error().message);
   }
   if (clock_ && clock_->doubt()) write_clock_doubt(clock_doubt_file(file_), clock_->doubt());
+  give_up_pending();
   lock_.reset();
+}
+
+/// Counts what was not written by the end.
+void RecorderWorker::give_up_pending() {
   ring_.drain([this](const Entry& entry) { pending_.push_back(entry); });
+  quantities_ring_.drain([this](const QuantitiesEntry& entry) { pending_quantities_.push_back(entry); });
+  if (!lock_ && was_held_elsewhere_) leave_to_other(UtcTime::max());
   const auto given_up = static_cast<std::size_t>(
       std::ranges::count_if(pending_, [](const Entry& entry) { return entry.sensor != kNextSession; }));
   given_up_.fetch_add(given_up, std::memory_order_relaxed);
   if (given_up > 0) report("ended with " + count_text(given_up, "reading") + " that could not be written");
-  quantities_ring_.drain([this](const QuantitiesEntry& entry) { pending_quantities_.push_back(entry); });
   const std::uint64_t lost = lost_quantities_.load(std::memory_order_relaxed) + pending_quantities_.size();
   if (lost > 0) report(count_text(lost, "message") + " of stations, besides the wind, could not be recorded");
 }
@@ -283,7 +320,11 @@ std::optional<std::uint64_t> RecorderWorker::measure_free_space() {
 
 Result<void, Failure> RecorderWorker::try_to_write() {
   try {
-    if (auto held = hold_lock(); !held) return held;
+    if (auto held = hold_lock(); !held) {
+      const bool is_full = pending_.size() >= kMaxPending || pending_quantities_.size() >= kQuantitiesCapacity;
+      if (is_full && held.error().kind == FailureKind::kUnavailable) leave_to_other(UtcTime::max());
+      return held;
+    }
     return write_pending();
   } catch (const std::exception& error) {
     return Failure{file_.string() + ": " + error.what()};
@@ -292,6 +333,10 @@ Result<void, Failure> RecorderWorker::try_to_write() {
 
 /// Writes session by session, and keeps what could not be written.
 Result<void, Failure> RecorderWorker::write_pending() {
+  if (was_held_elsewhere_ && !(pending_.empty() && pending_quantities_.empty())) {
+    if (auto left = leave_what_is_recorded(); !left) return left;
+  }
+  was_held_elsewhere_ = false;
   while (!pending_.empty()) {
     const auto mark = std::ranges::find(pending_, kNextSession, &Entry::sensor);
     if (mark == pending_.begin()) {
@@ -493,7 +538,7 @@ Result<void, Failure> RecorderWorker::check_name() const {
   return {};
 }
 
-Result<void, Failure> RecorderWorker::open_session(Instant started) {
+Result<void, Failure> RecorderWorker::open_file() {
   if (auto held = hold_lock(); !held) return held;  // a link that was renamed refers to another file by now
   drivers::windlog::finish_rename_to_part(file_);
   const auto aside = drivers::windlog::set_older_recording_aside(file_);
@@ -507,6 +552,11 @@ Result<void, Failure> RecorderWorker::open_session(Instant started) {
   identity_ = *identity;
   writer_.emplace(std::move(*opened));
   commits_ = 0;
+  return {};
+}
+
+Result<void, Failure> RecorderWorker::open_session(Instant started) {
+  if (auto opened = open_file(); !opened) return opened;
   if (auto begun = begin_session_at(started); !begun) return begun;
   const bool is_continued = writer_->last_before_session().has_value();
   const auto began = writer_->began();
@@ -544,7 +594,10 @@ void RecorderWorker::set_status(const std::string& error) {
   if (!error.empty()) {
     report("interrupted, trying again: " + error);
   } else {
-    report("resumed; " + count_text(status().lost, "reading") + " lost");
+    const RecorderStatus now = status();
+    report("resumed; " + count_text(now.lost, "reading") + " lost" +
+           (now.recorded_elsewhere > 0 ? ", " + std::to_string(now.recorded_elsewhere) + " recorded by another process"
+                                       : ""));
   }
 }
 

@@ -99,6 +99,7 @@ class RecorderWorker {
   using SteadyTime = std::chrono::steady_clock::time_point;
 
   void finish();
+  void give_up_pending();
   void flush();
   Result<void, Failure> try_to_write();
   Result<void, Failure> write_pending();
@@ -108,6 +109,8 @@ class RecorderWorker {
   void forget_quantities(MonoTime before);
   Result<void, Failure> learn_begin();
   Result<void, Failure> hold_lock();
+  Result<void, Failure> leave_what_is_recorded();
+  void leave_to_other(UtcTime until);
   Result<void, Failure> begin_recording(Instant started);
   Instant begin_of_pending(Instant first) const;
   Result<void, Failure> prepare_file(Instant first, Instant earliest);
@@ -117,6 +120,7 @@ class RecorderWorker {
   void push_marks() noexcept;
   Result<void, Failure> commit();
   Result<void, Failure> check_name() const;
+  Result<void, Failure> open_file();
   Result<void, Failure> open_session(Instant started);
   Result<void, Failure> complete_file(UtcTime now);
   Result<void, Failure> make_room(UtcTime now);
@@ -141,7 +145,8 @@ class RecorderWorker {
   std::atomic<std::uint64_t> written_{0};
   std::atomic<std::uint64_t> lost_{0};
   std::atomic<std::uint64_t> lost_quantities_{0};
-  std::atomic<std::uint64_t> given_up_{0};  ///< of those that were pushed, the lost ones
+  std::atomic<std::uint64_t> given_up_{0};            ///< of those that were pushed, the lost ones
+  std::atomic<std::uint64_t> recorded_elsewhere_{0};  ///< of those that were pushed, the ones left to another program
 
   std::size_t marks_due_ = 0;  ///< of the thread that pushes: sessions whose place is not in the ring yet
   std::mutex sessions_mutex_;
@@ -164,6 +169,7 @@ class RecorderWorker {
   std::vector<Entry> pending_;
   std::vector<QuantitiesEntry> pending_quantities_;
   std::optional<drivers::windlog::SeriesLock> lock_;  ///< held while anything is opened, written or renamed
+  bool was_held_elsewhere_ = false;  ///< the lock, so that what is pending may be in the recording already
   bool has_reported_no_locks_ = false;
   std::optional<drivers::windlog::WindlogWriter> writer_;
   drivers::windlog::FileIdentity identity_;  ///< of the file that writer_ writes

@@ -73,7 +73,8 @@ wire::RecorderStatus to_wire(const recording::RecorderStatus& status) {
           .lost = status.lost,
           .free_bytes = status.free_bytes,
           .error = status.error,
-          .clock_doubt = status.clock_doubt ? recording::text_of(*status.clock_doubt) : std::string()};
+          .clock_doubt = status.clock_doubt ? recording::text_of(*status.clock_doubt) : std::string(),
+          .recorded_elsewhere = status.recorded_elsewhere};
 }
 
 std::vector<look::Camera> cameras_of(const settings::Config& config) {
@@ -654,6 +655,8 @@ void Service::Io::log_summary() const {
   if (recorder_) {
     const recording::RecorderStatus status = recorder_->status();
     spdlog::info("recorded {}, lost {}", count_text(status.written, "reading"), status.lost);
+    if (status.recorded_elsewhere > 0)
+      spdlog::info("{} recorded by another process", count_text(status.recorded_elsewhere, "reading"));
   }
   if (!loop_) return;
   const animation::LoopCounters& counters = loop_->counters();

@@ -104,6 +104,7 @@ ordered_json json_of_recorder(const std::optional<wire::RecorderStatus>& recorde
           {"written", recorder->written},
           {"waiting", recorder->waiting},
           {"lost", recorder->lost},
+          {"recorded_elsewhere", recorder->recorded_elsewhere},
           {"free_bytes", json_or_null(recorder->free_bytes)},
           {"error", recorder->error},
           {"clock_doubt", recorder->clock_doubt}};

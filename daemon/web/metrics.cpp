@@ -153,6 +153,9 @@ void add_recorder(std::vector<MetricFamily>& all, const wire::RecorderStatus& re
                     .take());
   all.push_back(counter("yuragi_recorder_written_total", "Readings on the disk").add(recorder.written).take());
   all.push_back(counter("yuragi_recorder_lost_total", "Readings that were dropped").add(recorder.lost).take());
+  all.push_back(counter("yuragi_recorder_elsewhere_total", "Readings recorded by another process")
+                    .add(recorder.recorded_elsewhere)
+                    .take());
   all.push_back(gauge("yuragi_recorder_waiting", "Readings that are not written yet").add(recorder.waiting).take());
   if (recorder.free_bytes)
     all.push_back(gauge("yuragi_recorder_free_bytes", "Free space on its disk").add(*recorder.free_bytes).take());

@@ -58,6 +58,10 @@ Result<bool, Failure> is_new(sqlite::Database& database) {
   return false;
 }
 
+Failure no_room(const sqlite::Database& database) {
+  return Failure{database.file().string() + ": its times leave no room for another session; choose another file"};
+}
+
 }  // namespace
 
 bool is_recordable(const wind::WindReading& reading) noexcept {
@@ -163,12 +167,11 @@ Result<void, Failure> WindlogWriter::write_counts() {
   return {};
 }
 
-/// Where a session begins on the recording's time line: after all that is there, by the UTC gap to the last reading or
-/// the last beginning.
-Result<std::int64_t, Failure> WindlogWriter::begin_of_next_session(UtcTime started) {
+/// Where the last reading or the last beginning of a session is; nullopt if there is no session.
+Result<std::optional<WindlogWriter::Place>, Failure> WindlogWriter::last_place() {
   const auto sessions = database_.integer("SELECT count(*) FROM session");
   if (!sessions) return sessions.error();
-  if (*sessions == 0) return 0;
+  if (*sessions == 0) return std::optional<Place>{};
   const auto count = database_.integer("SELECT count(*) FROM series");
   if (!count) return count.error();
 
@@ -187,14 +190,32 @@ Result<std::int64_t, Failure> WindlogWriter::begin_of_next_session(UtcTime start
   if (row->step() != sqlite::Statement::Step::kRow) return undo().error();
   const std::int64_t time_ns = row->integer(0);
   std::int64_t utc_ns = 0;
+  if (__builtin_add_overflow(row->integer(2) + (time_ns - row->integer(1)), row->integer(3), &utc_ns)) {
+    return no_room(database_);
+  }
+  return std::optional(Place{time_ns, UtcTime(Nanoseconds(utc_ns))});
+}
+
+Result<std::optional<UtcTime>, Failure> WindlogWriter::last_time() {
+  const auto last = last_place();
+  if (!last) return last.error();
+  return *last ? std::optional((*last)->utc) : std::nullopt;
+}
+
+/// Where a session begins on the recording's time line: after all that is there, by the UTC gap to the last reading or
+/// the last beginning.
+Result<std::int64_t, Failure> WindlogWriter::begin_of_next_session(UtcTime started) {
+  const auto last = last_place();
+  if (!last) return last.error();
+  if (!*last) return 0;
   std::int64_t gap_ns = 0;
   std::int64_t begin_ns = 0;
-  if (__builtin_add_overflow(row->integer(2) + (time_ns - row->integer(1)), row->integer(3), &utc_ns) ||
-      __builtin_sub_overflow(nanoseconds(started), utc_ns, &gap_ns) ||
-      __builtin_add_overflow(time_ns, std::max<std::int64_t>(gap_ns, 1), &begin_ns) || begin_ns >= kMaxTime_ns) {
-    return Failure{database_.file().string() + ": its times leave no room for another session; choose another file"};
+  if (__builtin_sub_overflow(nanoseconds(started), nanoseconds((*last)->utc), &gap_ns) ||
+      __builtin_add_overflow((*last)->time_ns, std::max<std::int64_t>(gap_ns, 1), &begin_ns) ||
+      begin_ns >= kMaxTime_ns) {
+    return no_room(database_);
   }
-  last_before_session_ = UtcTime(Nanoseconds(utc_ns));
+  last_before_session_ = (*last)->utc;
   // Nor before what stations said last: the clock may have been set back since.
   if (const auto said_ns = last_quantities_ns(); said_ns && *said_ns < kMaxTime_ns - 1) {
     begin_ns = std::max(begin_ns, *said_ns + 1);

@@ -67,6 +67,10 @@ class WindlogWriter {
   /// this is later in the recording. Nullopt if there was no session.
   std::optional<UtcTime> last_before_session() const { return last_before_session_; }
 
+  /// The time of the last reading in the file, or when its last session was begun if that is later in the recording.
+  /// Nullopt if the file has no session.
+  Result<std::optional<UtcTime>, Failure> last_time();
+
   /// Makes everything so far durable.
   Result<void, Failure> commit();
 
@@ -86,9 +90,16 @@ class WindlogWriter {
     std::int64_t last_since_ns = -1;  ///< of the latest reading, since the session's start
   };
 
+  /// A place on the recording's time line, and the date there.
+  struct Place {
+    std::int64_t time_ns = 0;
+    UtcTime utc;
+  };
+
   explicit WindlogWriter(sqlite::Database database) : database_(std::move(database)) {}
 
   Result<void, Failure> prepare_file();
+  Result<std::optional<Place>, Failure> last_place();
   Result<std::int64_t, Failure> begin_of_next_session(UtcTime started);
   Result<std::int64_t, Failure> series_named(std::string_view name);
   Result<void, Failure> make_series(std::int64_t series);

@@ -208,6 +208,7 @@ bool read(const fb::Recorder* from, std::optional<RecorderStatus>& to) {
                       .written = from->written(),
                       .waiting = from->waiting(),
                       .lost = from->lost()};
+  to->recorded_elsewhere = from->recorded_elsewhere();
   if (const auto free_bytes = from->free_bytes()) to->free_bytes = *free_bytes;
   return read_text(from->error(), to->error) && read_text(from->clock_doubt(), to->clock_doubt);
 }

@@ -180,6 +180,7 @@ flatbuffers::Offset<fb::Recorder> add_recorder(Builder& builder, const RecorderS
   if (recorder.free_bytes) table.add_free_bytes(*recorder.free_bytes);
   table.add_error(error);
   table.add_clock_doubt(clock_doubt);
+  table.add_recorded_elsewhere(recorder.recorded_elsewhere);
   return table.Finish();
 }
 

@@ -188,6 +188,7 @@ struct RecorderStatus {
   std::optional<std::uint64_t> free_bytes = std::nullopt;  ///< on its disk
   std::string error = {};                                  ///< why it cannot write at present; empty: it can
   std::string clock_doubt = {};                            ///< why the date is doubted; empty: it is believed
+  std::uint64_t recorded_elsewhere = 0;                    ///< readings left to another process that recorded
 };
 
 /// How long one scene takes of each tick of the animation: a mean of the last seconds. One that is hidden takes

@@ -13,6 +13,7 @@ import client_rows  # noqa: F401  (the order of the rows)
 import recording_rows  # noqa: F401
 import sensor_rows  # noqa: F401
 import station_rows  # noqa: F401
+import start_rows  # noqa: F401
 import daemon_rows  # noqa: F401
 import endurance_rows  # noqa: F401
 

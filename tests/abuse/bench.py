@@ -418,10 +418,10 @@ class Faults:
 class SmallDisk:
     """A tmpfs in a mount namespace of its own, which nobody else sees and which ends with the row."""
 
-    def __init__(self, bench, size_bytes):
+    def __init__(self, bench, size_bytes, name="disk"):
         self.bench = bench
         self.size_bytes = size_bytes
-        self.folder = os.path.join(bench.folder, "disk")
+        self.folder = os.path.join(bench.folder, name)
         os.mkdir(self.folder)
         try_out = subprocess.run(["unshare", "--mount", "mount", "-t", "tmpfs", "none", self.folder], capture_output=True,
                                  check=False)
@@ -451,6 +451,9 @@ class SmallDisk:
 
     def empty(self):
         self.inside("rm", f"{self.folder}/ballast")
+
+    def allow_writing(self, is_allowed):
+        self.inside("mount", "-o", f"remount,{'rw' if is_allowed else 'ro'}", self.folder)
 
 
 # ---- the table ----

@@ -188,3 +188,26 @@ def day_at_max_rate(bench):
     bench.count(hours, f"hours at {rate} ticks a second, twice")
     bench.expect(hashes[0] is not None and hashes[0] == hashes[1], f"the hashes differ: {hashes}")
     bench.figure(f"hash {hashes[0]} both times")
+
+
+@row("scenes exchanged by reloads, again and again", short_s=13)
+def scene_exchanges(bench):
+    exchanges = bench.choose(250, 5)
+    scenes = '[[scene]]\nkind = "grass"\nblades_across = {}\nblades_deep = 20\n[[scene]]\nkind = "tree"\nname = "tree"\n' + FLAG
+    config = bench.file("scenes.toml", scenes.format(20))
+    daemon = bench.start(bench.settings.yuragi, "run", "--listen", "127.0.0.1:0", "--config", config)
+    address = daemon.address()  # it has read the file
+    samples = Sampler(daemon.process.pid, every_s=bench.choose(1.0, 0.2))
+    for number in range(exchanges):  # each waits until the one before has faded
+        os.rename(bench.file("next.toml", scenes.format(21 - number % 2)), config)
+        done = bench.run("reload", "--connect", address)
+        bench.expect(done.returncode == 0 and "blades_across" in done.stdout, f"reload {number + 1}: {done.stdout}{done.stderr}")
+    samples.end()
+    memory_kib, descriptors, threads = (samples.growth(column) / (0.75 * exchanges) for column in (1, 3, 4))
+    bench.count(exchanges, "exchanges")
+    bench.expect(memory_kib < bench.choose(10.0, 2048.0), f"memory grows: {memory_kib:.1f} KiB for each")
+    bench.expect(descriptors < bench.choose(0.02, 1.0), f"descriptors grow: {descriptors:.2f} for each")
+    bench.expect(threads < bench.choose(0.02, 1.0), f"threads grow: {threads:.2f} for each")
+    bench.expect_alive(daemon)
+    bench.expect_ends(daemon)
+    bench.figure(f"for each along the fitted line: memory {memory_kib:+.1f} KiB, descriptors {descriptors:+.2f}, threads {threads:+.2f}")

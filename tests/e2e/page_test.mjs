@@ -144,7 +144,7 @@ test("24 hours: says what to do where nothing is recorded, and draws what is", {
   await page.route("**/api/v1/history?hours=24", (route) =>
     asked++ === 0 ? route.fulfill({ status: 503, json: { detail: "busy" } }) : route.fulfill({ json: history }));
   const status = await (await fetch(url + "api/v1/status")).json();
-  const recorder = { state: "writing", written: 1, waiting: 0, lost: 0, free_bytes: null, error: "", clock_doubt: "" };
+  const recorder = { state: "writing", written: 1, waiting: 0, lost: 0, recorded_elsewhere: 0, free_bytes: null, error: "", clock_doubt: "" };
   await page.route("**/api/v1/status", (route) => route.fulfill({ json: { ...status, recorder } }));
   await page.reload();
   await page.waitForSelector("#history canvas");

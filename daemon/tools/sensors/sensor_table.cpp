@@ -89,6 +89,7 @@ std::string recorder_text(const wire::Sensors& sensors) {
   const wire::RecorderStatus& recorder = *sensors.recorder;
   std::string text = fmt::format("recorded {}, waiting {}, lost {}", count_text(recorder.written, "reading"),
                                  recorder.waiting, recorder.lost);
+  if (recorder.recorded_elsewhere > 0) text += fmt::format(", by another process {}", recorder.recorded_elsewhere);
   if (recorder.free_bytes) text += fmt::format("; {:.1f} GB free", 1e-9 * static_cast<double>(*recorder.free_bytes));
   switch (recorder.state) {
     case wire::RecorderState::kWriting:

@@ -46,6 +46,7 @@ export interface Recorder {
   written: number;
   waiting: number;
   lost: number;
+  recorded_elsewhere: number;
   free_bytes: number | null;
   error: string;
   clock_doubt: string;

@@ -19,6 +19,7 @@
 #include <unistd.h>
 
 #include "drivers/windlog/recording_parts.hpp"
+#include "drivers/windlog/series_lock.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/places.hpp"
@@ -133,7 +134,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& file) {
 TEST(Recorder, WaitsWhileAnotherOneRecordsToTheSameSeriesAndTakesOverWhenThatHasEnded) {
   const test::TemporaryFolder folder;
   const auto file = folder / "a.windlog";
-  const auto readings = test::numbered_readings(30);
+  const auto readings = test::numbered_readings(40);
   std::optional<Recorder> first(std::in_place, file, info_of({{"mast", "", ""}}), RecorderReport(), RecorderLimits(),
                                 settings::RecordingConfig{.most_file_bytes = 1});
   std::vector<std::string> reports;
@@ -151,11 +152,73 @@ TEST(Recorder, WaitsWhileAnotherOneRecordsToTheSameSeriesAndTakesOverWhenThatHas
   EXPECT_EQ(second.status().written, 0U);
   EXPECT_EQ(second.status().waiting, 10U);
   first.reset();
+  wait_for(second, [](const RecorderStatus& status) { return status.recorded_elsewhere == 10; });
+  for (std::size_t i = 30; i < 40; ++i) second.push(0, readings[i]);
   wait_for(second, [](const RecorderStatus& status) { return status.written == 10; });
+  EXPECT_EQ(second.status().waiting, 0U);
+  EXPECT_EQ(second.status().lost, 0U);
   second.close();
-  EXPECT_EQ(test::read_all(file).size(), readings.size());
+  const auto logged = test::read_all(file);
+  ASSERT_EQ(logged.size(), 30U) << "10 to 29 by the first, 30 to 39 by the second";
+  for (std::size_t i = 0; i < logged.size(); ++i) test::expect_same(logged[i].reading, readings[i + 10]);
   ASSERT_EQ(reports.size(), 2U);
-  EXPECT_EQ(reports[1], "resumed; 0 readings lost");
+  EXPECT_EQ(reports[1], "resumed; 0 readings lost, 10 recorded by another process");
+}
+
+TEST(Recorder, WritesWhatTheOneBeforeItHadNotCommittedWhenItEnded) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  const auto readings = test::numbered_readings(20);
+  std::optional<Recorder> first(std::in_place, file, info_of({{"mast", "", ""}}));
+  Recorder second(file, info_of({{"mast", "", ""}}));
+  for (std::size_t i = 0; i < 10; ++i) first->push(0, readings[i]);
+  for (std::size_t i = 0; i < 20; ++i) second.push(0, readings[i]);
+  first.reset();
+  wait_for(second, [](const RecorderStatus& status) { return status.written > 0; });
+  EXPECT_EQ(second.status().written, 10U);
+  EXPECT_EQ(second.status().recorded_elsewhere, 10U);
+  second.close();
+  const auto logged = test::read_all(file);
+  ASSERT_EQ(logged.size(), readings.size());
+  for (std::size_t i = 0; i < logged.size(); ++i) test::expect_same(logged[i].reading, readings[i]);
+}
+
+TEST(Recorder, DoublesNothingWhereTheOneBeforeItEndedBetweenTwoFiles) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  const auto readings = test::numbered_readings(20);
+  std::optional<drivers::windlog::SeriesLock> other(drivers::windlog::SeriesLock::take(file).value());
+  Recorder second(file, info_of({{"mast", "", ""}}));
+  for (const auto& reading : readings) second.push(0, reading);
+  test::write_session(drivers::windlog::part_name(file, readings.front().time.utc), test::numbered_readings(15));
+  other.reset();
+  wait_for(second, [](const RecorderStatus& status) { return status.written > 0; });
+  EXPECT_EQ(second.status().written, 5U);
+  EXPECT_EQ(second.status().recorded_elsewhere, 15U);
+}
+
+TEST(Recorder, WritesWhatArrivedWhileAProgramHeldTheLockThatRecordedNothing) {
+  const test::TemporaryFolder folder;
+  const auto file = folder / "a.windlog";
+  std::optional<drivers::windlog::SeriesLock> other(drivers::windlog::SeriesLock::take(file).value());
+  Recorder second(file, info_of({{"mast", "", ""}}));
+  for (const auto& reading : test::numbered_readings(20)) second.push(0, reading);
+  other.reset();  // yuragi clean-secrets, say
+  wait_for(second, [](const RecorderStatus& status) { return status.written == 20; });
+  EXPECT_EQ(second.status().recorded_elsewhere, 0U);
+}
+
+TEST(Recorder, LosesNothingAtItsEndWhileAnotherOneRecords) {
+  const test::TemporaryFolder folder;
+  const auto other = drivers::windlog::SeriesLock::take(folder / "a.windlog");
+  std::vector<std::string> reports;
+  Recorder second(folder / "a.windlog", info_of({{"mast", "", ""}}),
+                  [&](std::string_view sentence) { reports.emplace_back(sentence); });
+  for (const auto& reading : test::numbered_readings(20)) second.push(0, reading);
+  second.close();
+  EXPECT_EQ(second.status().lost, 0U);
+  EXPECT_EQ(second.status().recorded_elsewhere, 20U);
+  EXPECT_EQ(reports.size(), 1U) << "that another one records";
 }
 
 TEST(Recorder, ShowsThatItCanRecordAlsoBeforeTheFirstReadingAfterAnotherOneHasEnded) {

@@ -15,8 +15,10 @@ TEST(SensorJson, HasNumbersAsNumbersAndNullWhereNothingIsKnown) {
   wire::Sensors sensors;
   sensors.sensors = {sensor};
   sensors.wind.wind = {.u_m_s = -4.0, .v_m_s = 0.0};
-  sensors.recorder = wire::RecorderStatus{
-      .state = wire::RecorderState::kHanging, .written = 12, .clock_doubt = "the clock is doubted"};
+  sensors.recorder = wire::RecorderStatus{.state = wire::RecorderState::kHanging,
+                                          .written = 12,
+                                          .clock_doubt = "the clock is doubted",
+                                          .recorded_elsewhere = 3};
 
   const auto json = nlohmann::ordered_json::parse(sensors_json(sensors).dump());
   const auto& first = json["sensors"].at(0);
@@ -33,6 +35,7 @@ TEST(SensorJson, HasNumbersAsNumbersAndNullWhereNothingIsKnown) {
   EXPECT_EQ(json["recorder"]["state"], "hanging");
   EXPECT_TRUE(json["recorder"]["free_bytes"].is_null());
   EXPECT_EQ(json["recorder"]["clock_doubt"], "the clock is doubted");
+  EXPECT_EQ(json["recorder"]["recorded_elsewhere"], 3);
   EXPECT_TRUE(json["io_lateness"].is_null());
   EXPECT_TRUE(json["animation"].is_null());
   EXPECT_TRUE(sensors_json(wire::Sensors{})["recorder"].is_null());

@@ -411,6 +411,7 @@ TEST(WireRoundTrip, HowTheDaemonDoesComesBack) {
   EXPECT_EQ(sensors.recorder->free_bytes, 0U);
   EXPECT_EQ(sensors.recorder->error, "wall.windlog: the disk is full");
   EXPECT_EQ(sensors.recorder->clock_doubt, "the clock is doubted: it jumped");
+  EXPECT_EQ(sensors.recorder->recorded_elsewhere, 12U);
   ASSERT_TRUE(sensors.animation);
   EXPECT_EQ(sensors.animation->running_s, 3600.5);
   EXPECT_EQ(sensors.animation->period_s, 0.015625);
