@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <memory>
 #include <mutex>
-#include <utility>
 
 #include <spdlog/sinks/ansicolor_sink.h>
 #include <spdlog/sinks/ringbuffer_sink.h>

@@ -36,8 +36,10 @@ class Transport {
   /// that would need it waits for the next one.
   virtual void publish_sensors(SharedBytes here, SharedBytes elsewhere) = 0;
 
-  /// Clients connected now; and is any of them on another machine?
+  /// Returns the number of clients that are connected.
   virtual std::size_t client_count() const = 0;
+  /// Returns true if any of them has not the rights of this machine: it is on another one, or shows no token if one is
+  /// required.
   virtual bool has_untrusted_clients() const = 0;
 
   /// Closes all connections and accepts no more. A second call does nothing.

@@ -30,11 +30,7 @@ class Listener {
   }
 
   void take(udp::socket& sender, boost::asio::const_buffer datagram) {
-    sink_.readings.clear();
-    sink_.station_quantities.clear();
-    sink_.refusals.clear();
-    sink_.links.clear();
-    sink_.raws.clear();
+    sink_.clear();
     clock_.advance(std::chrono::seconds(1));
     boost::system::error_code too_long;
     sender.send_to(datagram, udp::endpoint(boost::asio::ip::address_v4::loopback(), port_), 0, too_long);

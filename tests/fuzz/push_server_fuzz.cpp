@@ -35,11 +35,7 @@ class Station {
   /// Sends these bytes and no more, and returns the answer until the driver closes the connection.
   std::string answer_to(std::string_view bytes) {
     clock_.advance(std::chrono::seconds(16));
-    sink_.readings.clear();
-    sink_.station_quantities.clear();
-    sink_.refusals.clear();
-    sink_.links.clear();
-    sink_.raws.clear();
+    sink_.clear();
     boost::asio::io_context io;
     tcp::socket client(io);
     boost::system::error_code gone;

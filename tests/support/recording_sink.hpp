@@ -42,6 +42,16 @@ struct RecordingSink final : drivers::sensor::SensorSink {
     raws.push_back({direction, {message.begin(), message.end()}});
   }
 
+  /// Forgets what was kept; what the judge knows stays.
+  void clear() {
+    readings.clear();
+    believed.clear();
+    station_quantities.clear();
+    refusals.clear();
+    links.clear();
+    raws.clear();
+  }
+
   std::ptrdiff_t count(drivers::decode::Refusal why) const { return std::ranges::count(refusals, why); }
   wind::LinkState last_state() const { return links.empty() ? wind::LinkState::kConnecting : links.back().state; }
   std::string last_detail() const { return links.empty() ? "" : links.back().detail; }
