@@ -451,13 +451,20 @@ port = {port}
         self.assertIn("warning", told[0])
 
     def test_a_probe_finds_the_simulator_and_what_it_prints_is_a_right_configuration(self):
-        simulator = self.start(SIMULATOR, "modbus", "--tcp", "127.0.0.1:0", "--device", "thies-clima-sensor-us@3")
+        simulator = self.start(SIMULATOR, "modbus", "--tcp", "127.0.0.1:0", "--device", "thies-clima-sensor-us@3", "--device", "calypso-ulp@5")
         done = run("sensors", "probe", "modbus", simulator.address(), "--id", "1-5")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("slave 3 at", done.stdout)
         self.assertIn("fits thies-clima-sensor-us", done.stdout)
-        table = done.stdout[done.stdout.index("[[sensor]]"):]
-        self.assertEqual(run("check-config", self.file("found.toml", table)).returncode, 0)
+        # All of it is one configuration: what is not a table is a comment.
+        checked = run("check-config", self.file("found.toml", done.stdout))
+        self.assertEqual(checked.returncode, 0, checked.stderr + done.stdout)
+        self.assertEqual(re.findall(r'^name = "(.*)"$', done.stdout, re.MULTILINE), ["wind-3", "wind-5"])
+        # The block has the best profile; a comment below it names each other one that fits.
+        for device in done.stdout.split("# slave ")[1:]:
+            fits = re.findall(r"^#   fits (\S+)", device, re.MULTILINE)
+            self.assertEqual(re.findall(r'^profile = "(.*)"$', device, re.MULTILINE), fits[:1])
+            self.assertEqual(re.findall(r'^# profile = "(.*)"$', device, re.MULTILINE), fits[1:])
 
         nobody = run("sensors", "probe", "modbus", simulator.address(), "--id", "4")
         self.assertEqual(nobody.returncode, 69)
