@@ -175,10 +175,10 @@ class DaemonTest(unittest.TestCase):
     def start_daemon(self, *arguments):
         return self.start(YURAGI, "run", "--listen", "127.0.0.1:0", *arguments)
 
-    def simulated_recording(self, duration_s):
+    def simulated_recording(self, duration_s, *options):
         log = self.file("storm.windlog")
-        subprocess.run([SIMULATOR, "recording", "-o", log, "--interval", "0.25", "--duration", str(duration_s)], check=True,
-                       capture_output=True, timeout=HANG_S)
+        subprocess.run([SIMULATOR, "recording", "-o", log, "--interval", "0.25", "--duration", str(duration_s), *options],
+                       check=True, capture_output=True, timeout=HANG_S)
         return log
 
     # ---- run ----
@@ -514,6 +514,31 @@ port = {port}
         self.assertEqual(runs[0].returncode, 0, runs[0].stderr)
         self.assertRegex(runs[0].stdout, r"pose hash  [0-9a-f]{16}")
         self.assertEqual(runs[0].stdout, runs[1].stdout)
+
+    def test_a_replay_explains_the_difference_that_the_ceiling_makes(self):
+        log = self.simulated_recording(10, "--speed", "30")
+        def replay(shaping):
+            config = self.file("patch.toml", f"[shaping]\n{shaping}\n" + SMALL_MEADOW)
+            return run("replay", log, "--rate", "max", "--config", config).stdout
+        held = replay("ceiling = 12\nceiling_most = 20")
+        free = replay("ceiling = 0")
+        told = re.search(r"ceiling +held the wind back for (\S+) % of the time .*the mean is (\S+) m/s, the max (\S+) m/s", held)
+        self.assertIsNotNone(told, held)
+        self.assertGreater(float(told.group(1)), 50)
+        self.assertNotIn("ceiling", free)
+        mean, largest = re.search(r"replayed +mean (\S+) m/s, max (\S+) m/s", free).groups()
+        self.assertAlmostEqual(float(told.group(2)), float(mean), delta=0.02)
+        self.assertAlmostEqual(float(told.group(3)), float(largest), delta=0.02)
+
+    def test_what_a_command_waits_for_is_announced(self):
+        # It accepts, and never replies.
+        with socket.create_server(("127.0.0.1", 0)) as mute:
+            address = f"127.0.0.1:{mute.getsockname()[1]}"
+            done = run("status", "--connect", address)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"waiting for the daemon at {address}", done.stderr)
+            self.assertNotIn("waiting for", run("status", "--quiet", "--connect", address).stderr)
+            self.assertIn("examining the daemon that runs", run("doctor", "--connect", address).stderr)
 
     def test_a_real_recorded_wind_is_replayed_as_it_blew(self):
         csv = shared_data("sonic", "finse_csat3_10hz_20180720T140000.csv")
