@@ -242,7 +242,9 @@ void run_accept(const AcceptOptions& options) {
   } else {
     settings::write_at_once(tools::acceptance::acceptance_text(acceptance));
   }
-  fmt::print(stderr, "{}: print it and sign it\n", options.output);
+  fmt::print(stderr, "{}: {}\n", options.output,
+             is_rehearsal(acceptance) ? "a rehearsal; for the hand-over run it again without --simulated-only"
+                                      : "print it and sign it");
   if (outcome_of(acceptance) == tools::acceptance::Outcome::kFailed) throw ExitError(kExitAttention, "");
 }
 
@@ -275,7 +277,8 @@ void add_accept(CLI::App& app) {
       "speed\n"
       "that is half or twice that of the others.\n"
       "Exit code 0: passed, with remarks at most; 1: failed; 69: a daemon runs; 73: the page cannot be written.\n"
-      "--json: verdict (\"passed\", \"remark\" or \"failed\"), site, configuration, software, system, begun, "
+      "--json: verdict (\"passed\", \"remark\" or \"failed\"), is_rehearsal (simulated devices only), site, "
+      "configuration, software, system, begun, "
       "simulated\n"
       "and sensors (both with name, driver, verdict, remarks, state, readings, measured_s, first_reading_s, "
       "interval_s,\n"
@@ -294,7 +297,7 @@ void add_accept(CLI::App& app) {
   CLI::Option* real = command->add_flag("--real-only", options->is_real_only, "measure the real devices only");
   command
       ->add_flag("--simulated-only", options->is_simulated_only,
-                 "measure simulated devices only: nothing need be connected")
+                 "a rehearsal: measure simulated devices only; nothing need be connected")
       ->excludes(real);
   command->add_flag("--ask", options->asks, "ask the technician to hold each vane to the north");
   add_json(*command, options->as_json);

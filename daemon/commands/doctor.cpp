@@ -1,5 +1,7 @@
 // `yuragi doctor`: what is wrong with an installation, and the commands that mend it.
 #include <memory>
+#include <optional>
+#include <string_view>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -8,6 +10,7 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/installation.hpp"
 #include "daemon/commands/json_output.hpp"
+#include "daemon/commands/slow_notice.hpp"
 #include "daemon/settings/standard_output.hpp"
 
 namespace yuragi::daemon::commands {
@@ -20,7 +23,12 @@ struct DoctorOptions {
 };
 
 void run_doctor(const DoctorOptions& options) {
-  const auto findings = tools::doctor::examine(examination_of(options.config_file, options.address, "doctor"));
+  std::optional<SlowNotice> notice;
+  const auto announce = [&notice](std::string_view step) { notice.emplace(fmt::format("examining {} ...", step)); };
+  announce("the daemon that runs");
+  const tools::doctor::Examination examination = examination_of(options.config_file, options.address, "doctor");
+  const auto findings = tools::doctor::examine(examination, announce);
+  notice.reset();
   if (options.as_json) {
     print_json(tools::doctor::findings_json(findings));
   } else {

@@ -142,8 +142,9 @@ void export_as_csv(drivers::windlog::WindlogReader& reader, const ExportOptions&
   for (const std::string& damage : reader.damage()) fmt::print(stderr, "warning: {}\n", damage);
   if (report->skipped > 0)
     fmt::print(stderr, "left out: {} that cannot be readings\n", count_text(report->skipped, "row"));
+  const std::string readings = count_text(report->written, "reading");
   fmt::print(stderr, "{}: {}\n", options.output == "-" ? "standard output" : options.output,
-             count_text(report->written, "reading"));
+             options.resample_s ? fmt::format("{} from {}", count_text(report->rows, "row"), readings) : readings);
 }
 
 /// Says which option is for another kind of output.

@@ -1,6 +1,7 @@
 // `yuragi replay`: runs the daemon with a recording as its sensor, or replays it in lock-step as fast as possible.
 #include <cstdlib>
 #include <memory>
+#include <optional>
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
@@ -9,6 +10,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/run_options.hpp"
+#include "daemon/commands/slow_notice.hpp"
 #include "daemon/sensing/recorded_installation.hpp"
 #include "daemon/service/daemon_log.hpp"
 #include "daemon/service/service.hpp"
@@ -133,9 +135,14 @@ void replay_at_full_speed(const ReplayOptions& options) {
   const auto progress = [is_watched](double log_time_s) {
     if (is_watched) fmt::print(stderr, "\rreplayed {:.0f} s", log_time_s);
   };
+  std::optional<SlowNotice> notice;
+  if (!is_watched) {
+    notice.emplace(fmt::format("replaying {} tick by tick; the summary comes at its end", options.file.string()));
+  }
   const tools::offline::LockstepResult result =
       options.as_recorded ? replay_in_lockstep(options, installation_of(options, 1.0), progress, {})
                           : replay_in_lockstep(options, options.run.config(), progress, {});
+  notice.reset();
   if (is_watched) fmt::print(stderr, "\r\x1b[K");
   fmt::print(
       "readings   {} in {:.1f} s of log time\n"
@@ -145,6 +152,13 @@ void replay_at_full_speed(const ReplayOptions& options) {
       "pose hash  {:016x}\n",
       result.readings, result.log_duration_s, result.reading_mean_m_s, result.reading_max_m_s, result.wind_mean_m_s,
       result.wind_max_m_s, result.ticks, result.pose_hash);
+  if (result.held_back_ticks > 0) {
+    fmt::print(
+        "ceiling    held the wind back for {:.1f} % of the time (ceiling of [shaping]); without it the mean is {:.2f} "
+        "m/s, the max {:.2f} m/s\n",
+        100.0 * static_cast<double>(result.held_back_ticks) / static_cast<double>(result.live_ticks),
+        result.free_wind_mean_m_s, result.free_wind_max_m_s);
+  }
 }
 
 void replay(const ReplayOptions& options) {

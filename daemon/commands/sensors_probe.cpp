@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
@@ -156,13 +157,14 @@ void end_progress() {
   if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\x1b[K");
 }
 
+/// Prints a fit as a comment of a TOML file.
 void show_fit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::ModbusFit& fit) {
   if (!fit.speed_m_s) {
-    fmt::print("  may be the vane of {} ({:.0f} degrees): in its table, set direction_slave = {}\n", fit.profile,
+    fmt::print("#   may be the vane of {} ({:.0f} degrees): in its table, set direction_slave = {}\n", fit.profile,
                fit.direction_deg.value_or(0.0), hit.id);
     return;
   }
-  fmt::print("  fits {} ({}): {:.1f} m/s", fit.profile, fit.device, *fit.speed_m_s);
+  fmt::print("#   fits {} ({}): {:.1f} m/s", fit.profile, fit.device, *fit.speed_m_s);
   if (fit.direction_deg) fmt::print(" from {:.0f} degrees", *fit.direction_deg);
   if (fit.gust_m_s) fmt::print(", gust {:.1f} m/s", *fit.gust_m_s);
   if (fit.verdict != drivers::modbus::ForceVerdict::kNone) {
@@ -176,28 +178,39 @@ void show_fit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::Modb
   fmt::print("{}\n", fit.is_at_home ? "" : " (its settings are not the factory settings)");
 }
 
-void show_hit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::ModbusProbePlan& plan) {
+/// A name that no other sensor of this probe has: by the slave's id, which several lines can have.
+std::string unused_name(int id, std::set<std::string>& used) {
+  std::string name = fmt::format("wind-{}", id);
+  for (int again = 2; !used.insert(name).second; ++again) name = fmt::format("wind-{}-{}", id, again);
+  return name;
+}
+
+/// Prints a device as a part of a configuration: its [[sensor]] table by the best fit, and everything else as comments.
+void show_hit(const drivers::modbus::ModbusHit& hit, const drivers::modbus::ModbusProbePlan& plan,
+              std::set<std::string>& used_names) {
   end_progress();
-  fmt::print("slave {} at {}{}\n", hit.id, describe(hit.line), settings_of(hit.line));
-  if (hit.fits.empty()) fmt::print("  no profile fits; drivers/modbus/profiles/README.md describes how to write one\n");
+  fmt::print("# slave {} at {}{}\n", hit.id, describe(hit.line), settings_of(hit.line));
+  if (hit.fits.empty()) {
+    fmt::print("#   no profile fits; drivers/modbus/profiles/README.md describes how to write one\n");
+  }
   for (const drivers::modbus::ModbusFit& fit : hit.fits) show_fit(hit, fit);
   if (hit.fits.size() > 1) {
-    fmt::print("  Several devices have these registers: choose the one with the name of your device.\n");
+    fmt::print("#   Several devices have these registers: choose the one with the name of your device.\n");
   }
   if (!hit.scale_doubts.empty()) {
     fmt::print(
-        "  The scale is open: {} read the same register, and the device says nothing by which to tell who is right.\n"
-        "  Choose the one whose speed is the wind that you feel, or probe again when it blows.\n",
+        "#   The scale is not certain: {} read the same register with different scales.\n"
+        "#   Choose the one whose speed is the wind that you feel, or probe again when it blows.\n",
         fmt::join(hit.scale_doubts, " and "));
   }
   const auto best =
       std::ranges::find_if(hit.fits, [](const drivers::modbus::ModbusFit& fit) { return fit.speed_m_s.has_value(); });
   if (best != hit.fits.end()) {
     const auto named = std::ranges::find(plan.profiles, best->profile, &drivers::modbus::NamedModbusProfile::name);
-    fmt::print("\n{}",
-               drivers::modbus::sensor_table_for(hit.line, *best, named->profile, stable_name(hit.line.device)));
-    for (const std::string& other : hit.scale_doubts) {
-      if (other != best->profile) fmt::print("# or, by its scale: profile = \"{}\"\n", other);
+    fmt::print("{}", drivers::modbus::sensor_table_for(unused_name(hit.id, used_names), hit.line, *best, named->profile,
+                                                       stable_name(hit.line.device)));
+    for (auto other = best + 1; other != hit.fits.end(); ++other) {
+      if (other->speed_m_s) fmt::print("# profile = \"{}\"\n", other->profile);
     }
   }
   fmt::print("\n");
@@ -242,9 +255,12 @@ void probe(const ProbeOptions& options) {
   const drivers::modbus::ModbusProbePlan plan = plan_of(options);
   if (plan.lines.empty()) throw ExitError(kExitUsage, "--baud and --parity leave nothing to try");
   const WakeOnInterrupt interrupt;
+  std::set<std::string> used_names;
   const auto hits = drivers::modbus::probe_modbus(
       plan, show_progress,
-      [&](const drivers::modbus::ModbusHit& hit) { options.as_json ? show_hit_as_json(hit) : show_hit(hit, plan); },
+      [&](const drivers::modbus::ModbusHit& hit) {
+        options.as_json ? show_hit_as_json(hit) : show_hit(hit, plan, used_names);
+      },
       interrupt.interruption());
   end_progress();
   if (interrupt.interruption().is_set()) fmt::print(stderr, "interrupted\n");
@@ -263,8 +279,10 @@ void add_sensors_probe(CLI::App& sensors) {
   probe_command->require_subcommand(1);
   CLI::App* command = probe_command->add_subcommand("modbus", "which Modbus devices answer, and which profile fits");
   command->footer(
-      "Tries line settings and slave ids, likely ones first, and prints each device that answers with the lines to\n"
-      "paste into the configuration. It only reads, and only registers that reading does not change. A running daemon "
+      "Tries line settings and slave ids, likely ones first, and prints each device that answers as a [[sensor]] "
+      "table\n"
+      "with the profile that fits best; everything else is a comment, so that all of it can be pasted into one\n"
+      "configuration. It only reads, and only registers that reading does not change. A running daemon "
       "uses\n"
       "the serial port exclusively: stop it first.\n"
       "  yuragi sensors probe modbus /dev/ttyUSB0\n"

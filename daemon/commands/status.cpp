@@ -1,5 +1,6 @@
 // `yuragi status`: how the running daemon does, and an exit code for scripts.
 #include <memory>
+#include <optional>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "daemon/commands/installation.hpp"
 #include "daemon/commands/json_output.hpp"
 #include "daemon/commands/run_options.hpp"
+#include "daemon/commands/slow_notice.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/state/attention.hpp"
 
@@ -30,7 +32,10 @@ struct StatusOptions {
 
 void show_daemon_status(const StatusOptions& options) {
   const std::string address = options.daemon_address();
+  std::optional<SlowNotice> notice;
+  if (!options.is_quiet) notice.emplace(fmt::format("waiting for the daemon at {}, for some seconds", address));
   const auto status = ask_daemon(address, "status");
+  notice.reset();
   if (!status) {
     if (options.as_json)
       print_json({{"verdict", "no daemon"}, {"address", address}, {"error", status.error().message}});

@@ -96,12 +96,14 @@ void add_sensors(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
 }
 
 void add_lateness(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
-  Family lateness = gauge("yuragi_lateness_seconds", "How late the steps of the last 10 minutes were, by thread");
+  Family lateness = gauge("yuragi_lateness_seconds",
+                          "How late the steps of the last 10 minutes were, by thread: median, p99 and max");
   const auto add = [&lateness](const char* thread, const std::optional<wire::Lateness>& of) {
     if (!of) return;
-    lateness.add(of->p50_s, {{"thread", thread}, {"quantile", "0.5"}});
-    lateness.add(of->p99_s, {{"thread", thread}, {"quantile", "0.99"}});
-    lateness.add(of->max_s, {{"thread", thread}, {"quantile", "1"}});
+    // Not "quantile", which is for metrics of type summary.
+    lateness.add(of->p50_s, {{"thread", thread}, {"statistic", "median"}});
+    lateness.add(of->p99_s, {{"thread", thread}, {"statistic", "p99"}});
+    lateness.add(of->max_s, {{"thread", thread}, {"statistic", "max"}});
   };
   add("animation", sensors.tick_lateness);
   add("io", sensors.io_lateness);

@@ -320,9 +320,10 @@ std::vector<NamedModbusProfile> shipped_modbus_profiles(const std::string& direc
   return profiles;
 }
 
-std::string sensor_table_for(const bus::ModbusLine& line, const ModbusFit& fit, const ModbusProfile& profile,
-                             const std::string& device) {
-  std::string table = fmt::format("[[sensor]]\nname = \"wind\"\ndriver = \"modbus\"\nprofile = \"{}\"\n", fit.profile);
+std::string sensor_table_for(const std::string& name, const bus::ModbusLine& line, const ModbusFit& fit,
+                             const ModbusProfile& profile, const std::string& device) {
+  std::string table =
+      fmt::format("[[sensor]]\nname = \"{}\"\ndriver = \"modbus\"\nprofile = \"{}\"\n", name, fit.profile);
   if (line.framing == decode::modbus::ModbusFraming::kTcp) {
     table += fmt::format("transport = \"tcp\"\nhost = \"{}\"\nport = {}\n", line.host, line.port);
   } else {

@@ -85,9 +85,9 @@ std::vector<bus::ModbusLine> likely_modbus_lines(const std::string& device,
 /// Every profile that is shipped, in the order of their names. `directory` is searched first.
 std::vector<NamedModbusProfile> shipped_modbus_profiles(const std::string& directory);
 
-/// The [[sensor]] table for a configuration, for a fit that has a speed. `device` is the name of the serial port to
-/// write, where there is one.
-std::string sensor_table_for(const bus::ModbusLine& line, const ModbusFit& fit, const ModbusProfile& profile,
-                             const std::string& device);
+/// Returns the [[sensor]] table for a configuration, for a fit that has a speed. `name` is the sensor's; `device` is
+/// the name of the serial port to write, if there is one.
+std::string sensor_table_for(const std::string& name, const bus::ModbusLine& line, const ModbusFit& fit,
+                             const ModbusProfile& profile, const std::string& device);
 
 }  // namespace yuragi::drivers::modbus

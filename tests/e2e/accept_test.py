@@ -91,6 +91,7 @@ class Accept(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         said = json.loads(done.stdout)
         self.assertEqual(said["sensors"], [])
+        self.assertTrue(said["is_rehearsal"])
         roof, mast, yard, made_up = said["simulated"]
         self.assertEqual([one["verdict"] for one in (roof, mast, yard)], ["passed"] * 3, said)
         self.assertAlmostEqual(roof["mean_speed_m_s"], 12, delta=0.15)
@@ -146,8 +147,14 @@ class Accept(unittest.TestCase):
         done = self.accept(self.config(f'name = "roof"\ndriver = "modbus"\nprofile = "{profile}"'), "--simulated-only")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("  - not simulated: yuragi-sim cannot play it", done.stdout)
-        self.assertIn("hand-over: remark", done.stdout, "nothing was measured")
+        self.assertRegex(done.stdout, r"(?m)^rehearsal .*not a hand-over.*: remark$", "nothing was measured")
         self.assertIn("my-own", done.stderr)
+        self.assertNotIn("sign it", done.stderr)
+        with open(self.page, encoding="utf-8") as page:
+            text = page.read()
+        self.assertRegex(text, "<h1>Rehearsal")
+        self.assertIn("This is not a hand-over", text)
+        self.assertNotIn("signature", text)
 
     @unittest.skipIf(shutil.which("yuragi-sim", path="/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin"), "one is installed")
     def test_a_simulator_that_is_not_installed_is_said(self):

@@ -175,10 +175,10 @@ class DaemonTest(unittest.TestCase):
     def start_daemon(self, *arguments):
         return self.start(YURAGI, "run", "--listen", "127.0.0.1:0", *arguments)
 
-    def simulated_recording(self, duration_s):
+    def simulated_recording(self, duration_s, *options):
         log = self.file("storm.windlog")
-        subprocess.run([SIMULATOR, "recording", "-o", log, "--interval", "0.25", "--duration", str(duration_s)], check=True,
-                       capture_output=True, timeout=HANG_S)
+        subprocess.run([SIMULATOR, "recording", "-o", log, "--interval", "0.25", "--duration", str(duration_s), *options],
+                       check=True, capture_output=True, timeout=HANG_S)
         return log
 
     # ---- run ----
@@ -451,13 +451,20 @@ port = {port}
         self.assertIn("warning", told[0])
 
     def test_a_probe_finds_the_simulator_and_what_it_prints_is_a_right_configuration(self):
-        simulator = self.start(SIMULATOR, "modbus", "--tcp", "127.0.0.1:0", "--device", "thies-clima-sensor-us@3")
+        simulator = self.start(SIMULATOR, "modbus", "--tcp", "127.0.0.1:0", "--device", "thies-clima-sensor-us@3", "--device", "calypso-ulp@5")
         done = run("sensors", "probe", "modbus", simulator.address(), "--id", "1-5")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("slave 3 at", done.stdout)
         self.assertIn("fits thies-clima-sensor-us", done.stdout)
-        table = done.stdout[done.stdout.index("[[sensor]]"):]
-        self.assertEqual(run("check-config", self.file("found.toml", table)).returncode, 0)
+        # All of it is one configuration: what is not a table is a comment.
+        checked = run("check-config", self.file("found.toml", done.stdout))
+        self.assertEqual(checked.returncode, 0, checked.stderr + done.stdout)
+        self.assertEqual(re.findall(r'^name = "(.*)"$', done.stdout, re.MULTILINE), ["wind-3", "wind-5"])
+        # The block has the best profile; a comment below it names each other one that fits.
+        for device in done.stdout.split("# slave ")[1:]:
+            fits = re.findall(r"^#   fits (\S+)", device, re.MULTILINE)
+            self.assertEqual(re.findall(r'^profile = "(.*)"$', device, re.MULTILINE), fits[:1])
+            self.assertEqual(re.findall(r'^# profile = "(.*)"$', device, re.MULTILINE), fits[1:])
 
         nobody = run("sensors", "probe", "modbus", simulator.address(), "--id", "4")
         self.assertEqual(nobody.returncode, 69)
@@ -507,6 +514,31 @@ port = {port}
         self.assertEqual(runs[0].returncode, 0, runs[0].stderr)
         self.assertRegex(runs[0].stdout, r"pose hash  [0-9a-f]{16}")
         self.assertEqual(runs[0].stdout, runs[1].stdout)
+
+    def test_a_replay_explains_the_difference_that_the_ceiling_makes(self):
+        log = self.simulated_recording(10, "--speed", "30")
+        def replay(shaping):
+            config = self.file("patch.toml", f"[shaping]\n{shaping}\n" + SMALL_MEADOW)
+            return run("replay", log, "--rate", "max", "--config", config).stdout
+        held = replay("ceiling = 12\nceiling_most = 20")
+        free = replay("ceiling = 0")
+        told = re.search(r"ceiling +held the wind back for (\S+) % of the time .*the mean is (\S+) m/s, the max (\S+) m/s", held)
+        self.assertIsNotNone(told, held)
+        self.assertGreater(float(told.group(1)), 50)
+        self.assertNotIn("ceiling", free)
+        mean, largest = re.search(r"replayed +mean (\S+) m/s, max (\S+) m/s", free).groups()
+        self.assertAlmostEqual(float(told.group(2)), float(mean), delta=0.02)
+        self.assertAlmostEqual(float(told.group(3)), float(largest), delta=0.02)
+
+    def test_what_a_command_waits_for_is_announced(self):
+        # It accepts, and never replies.
+        with socket.create_server(("127.0.0.1", 0)) as mute:
+            address = f"127.0.0.1:{mute.getsockname()[1]}"
+            done = run("status", "--connect", address)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(f"waiting for the daemon at {address}", done.stderr)
+            self.assertNotIn("waiting for", run("status", "--quiet", "--connect", address).stderr)
+            self.assertIn("examining the daemon that runs", run("doctor", "--connect", address).stderr)
 
     def test_a_real_recorded_wind_is_replayed_as_it_blew(self):
         csv = shared_data("sonic", "finse_csat3_10hz_20180720T140000.csv")

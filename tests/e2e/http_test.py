@@ -6,6 +6,7 @@ usage: http_test.py FOLDER_OF_PROGRAMS
 import json
 import os
 import re
+import shutil
 import socket
 import subprocess
 import sys
@@ -70,6 +71,14 @@ class Http(unittest.TestCase):
         code, text = self.ask("/api/v1/scenes", {"scene": "sea"})
         self.assertEqual(code, 409)
         self.assertIn("sea", json.loads(text)["detail"])
+
+    @unittest.skipUnless(shutil.which("promtool"), "promtool (Debian: prometheus) is not installed")
+    def test_promtool_has_nothing_against_the_metrics(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        self.start_daemon(f'[recording]\nfile = "{folder}/wall.windlog"\n[[sensor]]\nname = "roof"\ndriver = "synthetic"\n')
+        text = self.wait_for("/metrics", 200, r'(?s)yuragi_lateness_seconds.*yuragi_recorder_written_total [1-9]')
+        done = subprocess.run(["promtool", "check", "metrics"], input=text, capture_output=True, text=True, timeout=HANG_S, check=False)
+        self.assertEqual((done.returncode, done.stdout + done.stderr), (0, ""))
 
     def test_the_history_of_what_it_records_and_its_log(self):
         folder = self.enterContext(tempfile.TemporaryDirectory())

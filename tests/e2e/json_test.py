@@ -66,7 +66,7 @@ TABLES = {
     "doctor": (["--config", "CONFIG", "--connect", "ADDRESS"], [r"^(ok|warning|error) +(?!clock)(\S+) +(\S.*)$", r"mend it: (.*)$"]),
     "accept": (["--config", "ALONE", "--for", "4", "--force", "--out", "PAGE"], [r"^(made-up) +(\w+) ", r"^  - (its readings are made up.*)$"]),
     "sensors list": ([], [r'^    driver = "(\w+)"']),
-    "sensors probe modbus": (["MODBUS", "--id", "1-2"], [r"^  fits (\S+) "]),
+    "sensors probe modbus": (["MODBUS", "--id", "1-2"], [r"^#   fits (\S+) "]),
     "sensors describe": ([], [r"^(\w+) +(.*)$"]),
     "sensors watch": (["--connect", "ADDRESS", "--once"], [r"^(made-up|garden|played) +(\S+) "]),
     "check-config": (["CONFIG"], [r"^  sensor (\S+) \((\S+)\), (\S+),", r"^  scene (\S+) \((\S+)\)"]),

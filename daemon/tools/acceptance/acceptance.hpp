@@ -91,6 +91,9 @@ struct Acceptance {
   std::vector<NorthCheck> north_checks{};
 };
 
+/// Were only simulated devices measured? Then it proves configuration and software, and is no hand-over.
+bool is_rehearsal(const Acceptance& acceptance);
+
 /// The gravest of all verdicts and checks; what was not simulated has none. A remark where nothing was measured.
 Outcome outcome_of(const Acceptance& acceptance);
 

@@ -91,12 +91,16 @@ void add_figures(report::PageWriter& page, const SensorMeasured& sensor, std::st
 
 std::string acceptance_page(const Acceptance& acceptance) {
   report::PageWriter page;
+  const std::string_view title = is_rehearsal(acceptance) ? "Rehearsal" : "Hand-over";
   page.add(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>Hand-over {0}</title>\n<style>{1}{2}</style>\n</head>\n"
-      "<body>\n<h1>Hand-over{3}{0}</h1>\n<p class=\"lead\">{4}</p>\n<table><tbody>\n",
+      "content=\"width=device-width, initial-scale=1\">\n<title>{5} {0}</title>\n<style>{1}{2}</style>\n</head>\n"
+      "<body>\n<h1>{5}{3}{0}</h1>\n<p class=\"lead\">{4}</p>\n<table><tbody>\n",
       page_text(acceptance.site), report::kReportStyle, kSigningStyle, acceptance.site.empty() ? "" : ": ",
-      outcome_cell(outcome_of(acceptance)));
+      (is_rehearsal(acceptance) ? "With simulated devices only; no real device was measured. This is not a hand-over: "
+                                : "") +
+          outcome_cell(outcome_of(acceptance)),
+      title);
   page.row("Date", report::utc_text(acceptance.begun) + "<br>" + report::local_text(acceptance.begun));
   page.row("Program", page_text(acceptance.software));
   page.row("System", page_text(acceptance.system));
@@ -121,9 +125,12 @@ std::string acceptance_page(const Acceptance& acceptance) {
       add_figures(page, *acceptance.simulated[i].measured, "simulated");
     if (i < acceptance.sensors.size()) add_figures(page, acceptance.sensors[i], "real");
   }
+  if (!is_rehearsal(acceptance)) {
+    page.add(
+        "<div class=\"sign\"><div>handed over by (name)</div><div>taken over by (name)</div>"
+        "<div>place, date, signature</div><div>place, date, signature</div></div>\n");
+  }
   page.add(
-      "<div class=\"sign\"><div>handed over by (name)</div><div>taken over by (name)</div>"
-      "<div>place, date, signature</div><div>place, date, signature</div></div>\n"
       "<footer>Made by yuragi accept, {}. Passed: the sensor's readings come, are used, and move the poses. Remark: "
       "look at it. Failed: it does not work. The delay is that from a reading's time stamp to the frame that it moves "
       "first, in a client's hand, to within one tick. Speeds are of the readings seen twice a second. Simulated: by "

@@ -70,7 +70,11 @@ std::string acceptance_text(const Acceptance& acceptance) {
     text += fmt::format("north of {}: it read {:.0f} degrees: {}\n", check.sensor, check.direction_deg,
                         name_of(is_passed(check) ? Outcome::kPassed : Outcome::kFailed));
   }
-  return text + fmt::format("hand-over: {}\n", name_of(outcome_of(acceptance)));
+  return text + fmt::format("{}: {}\n",
+                            is_rehearsal(acceptance) ? "rehearsal with simulated devices (not a hand-over: no real "
+                                                       "device was measured)"
+                                                     : "hand-over",
+                            name_of(outcome_of(acceptance)));
 }
 
 ordered_json acceptance_json(const Acceptance& acceptance) {
@@ -95,6 +99,7 @@ ordered_json acceptance_json(const Acceptance& acceptance) {
                      {"verdict", name_of(is_passed(check) ? Outcome::kPassed : Outcome::kFailed)}});
   }
   return {{"verdict", name_of(outcome_of(acceptance))},
+          {"is_rehearsal", is_rehearsal(acceptance)},
           {"site", acceptance.site},
           {"configuration", acceptance.configuration},
           {"software", acceptance.software},

@@ -126,6 +126,10 @@ bool is_passed(const NorthCheck& check) {
   return std::abs(std::remainder(check.direction_deg, 360.0)) <= kLargestNorthError_deg;
 }
 
+bool is_rehearsal(const Acceptance& acceptance) {
+  return acceptance.sensors.empty() && !acceptance.simulated.empty();
+}
+
 Outcome outcome_of(const Acceptance& acceptance) {
   Outcome worst = Outcome::kPassed;
   bool is_measured = false;

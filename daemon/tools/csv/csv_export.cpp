@@ -46,6 +46,7 @@ Result<CsvExportReport, Failure> export_csv(drivers::windlog::WindlogReader& rea
     if (!*logged || (*logged)->log_time >= range.to) break;
     append_row(text, **logged, reader.sensors()[(*logged)->sensor].name);
     ++report.written;
+    ++report.rows;
     if (text.size() < kCsvBufferBytes) continue;
     if (const auto done = flush(); !done) return done.error();
   }

@@ -17,7 +17,8 @@ struct CsvExportRange {
 };
 
 struct CsvExportReport {
-  std::size_t written = 0;
+  std::size_t written = 0;  ///< readings
+  std::size_t rows = 0;     ///< lines of the table without its header: fewer than readings if they are means
   std::size_t skipped = 0;  ///< rows of the recording that are not valid readings
 };
 

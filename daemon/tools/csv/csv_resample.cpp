@@ -125,6 +125,7 @@ Result<CsvExportReport, Failure> resample_csv(WindlogReader& reader, const CsvEx
     for (std::size_t i = 0; i < blocks.size(); ++i) {
       append_block(text, UtcTime(utc_at_zero + *begin), *begin, sensors.names[i], blocks[i]);
     }
+    report.rows += blocks.size();
     std::ranges::fill(blocks, Block{});
     *begin += interval;
     if (text.size() < kCsvBufferBytes) return {};

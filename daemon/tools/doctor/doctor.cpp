@@ -45,7 +45,10 @@ void add_other_devices(std::vector<Finding>& all, std::span<const sensors::Devic
 
 }  // namespace
 
-std::vector<Finding> examine(const Examination& examination) {
+std::vector<Finding> examine(const Examination& examination, const std::function<void(std::string_view)>& begin_step) {
+  const auto begin = [&begin_step](std::string_view step) {
+    if (begin_step) begin_step(step);
+  };
   std::vector<Finding> all;
   ConfigFacts config_facts{.file = examination.config_file ? examination.config_file->string() : std::string(),
                            .error = examination.config_error};
@@ -56,23 +59,28 @@ std::vector<Finding> examine(const Examination& examination) {
   const settings::Config config = examination.config ? *examination.config : settings::default_config();
   std::optional<wire::Sensors> running;
   if (examination.daemon) running = examination.daemon->sensors;
+  begin("the devices that are plugged in");
   const auto plugged = sensors::find_devices(drivers::sensor::driver_table());
   if (examination.config) {
+    begin("the sensors' devices, up to 2 s for each that does not answer");
     for (const DeviceFacts& device : probe_devices(config, plugged, running, kNetworkTimeout))
       all.push_back(judge(device));
   }
   add_other_devices(all, plugged);
+  begin("permissions, clock, disk and address");
   append(all, judge(probe_groups(needed_groups(config))));
   all.push_back(judge(probe_clock()));
   if (config.recording.file) all.push_back(judge(probe_disk(config.recording, readings_per_s(config, running))));
 
   const std::string daemon = examination.daemon ? examination.daemon->software : std::string();
   all.push_back(judge(probe_port(config.stream.listen, daemon)));
+  begin("graphics, display and versions");
   const DisplayFacts display = probe_display();
   append(all, judge(display));
   append(all, judge(probe_versions(daemon, display.viewer)));
   append(all, judge(probe_limits(config)));
   if (const auto unit = installed_unit(kServiceUnit); unit && examination.config && examination.config_file) {
+    begin("the next boot of the service");
     append(all,
            rehearse({.config = config, .config_file = *examination.config_file, .unit = *unit, .plugged = plugged}));
   }

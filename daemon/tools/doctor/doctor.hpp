@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/settings/config.hpp"
@@ -21,7 +23,9 @@ struct Examination {
 
 /// Looks at the devices that the configuration names, permissions, clock, disk, ports, graphics, versions and limits of
 /// this machine, and judges each. Changes nothing, and opens no device for longer than a driver's search does. Takes
-/// some seconds: 2 s for each network device that does not answer.
-std::vector<Finding> examine(const Examination& examination);
+/// some seconds: 2 s for each network device that does not answer. `begin_step` (may be empty) is called before each
+/// part that can take long, with its name ("the sensors' devices").
+std::vector<Finding> examine(const Examination& examination,
+                             const std::function<void(std::string_view)>& begin_step = {});
 
 }  // namespace yuragi::daemon::tools::doctor

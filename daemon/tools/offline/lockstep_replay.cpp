@@ -33,7 +33,8 @@ class Ticks {
     result_.reading_max_m_s = std::max(result_.reading_max_m_s, reading.speed_m_s);
   }
 
-  void step(const wind::ground::DrivingWind& wind, UtcTime recorded, double left_s) {
+  /// `ceiling_gain`: the factor (above 0) by which the ceiling has held back the wind of this tick.
+  void step(const wind::ground::DrivingWind& wind, double ceiling_gain, UtcTime recorded, double left_s) {
     const double time_s = now_s();
     animation_.step(wind, 1.0 / rate_hz_);
     result_.pose_hash = hash_poses(result_.pose_hash, animation_.poses());
@@ -42,9 +43,13 @@ class Ticks {
     }
     if (wind.state.source == wind::WindSource::kLive) {
       const double speed_m_s = speed_of(wind.state.wind);
-      ++followed_ticks_;
+      ++result_.live_ticks;
       result_.wind_mean_m_s += speed_m_s;
       result_.wind_max_m_s = std::max(result_.wind_max_m_s, speed_m_s);
+      const double free_m_s = speed_m_s / ceiling_gain;
+      result_.free_wind_mean_m_s += free_m_s;
+      result_.free_wind_max_m_s = std::max(result_.free_wind_max_m_s, free_m_s);
+      if (ceiling_gain < 1.0) ++result_.held_back_ticks;
     }
     const auto ticks_between_progress = static_cast<std::uint64_t>(60.0 * rate_hz_);
     if (progress_ && result_.ticks % ticks_between_progress == 0) progress_(time_s);
@@ -55,7 +60,10 @@ class Ticks {
     LockstepResult result = result_;
     result.log_duration_s = now_s();
     if (result.readings > 0) result.reading_mean_m_s /= static_cast<double>(result.readings);
-    if (followed_ticks_ > 0) result.wind_mean_m_s /= static_cast<double>(followed_ticks_);
+    if (result.live_ticks > 0) {
+      result.wind_mean_m_s /= static_cast<double>(result.live_ticks);
+      result.free_wind_mean_m_s /= static_cast<double>(result.live_ticks);
+    }
     return result;
   }
 
@@ -65,7 +73,6 @@ class Ticks {
   const std::function<void(double)>& progress_;
   const UseTick& use_;
   LockstepResult result_;
-  std::uint64_t followed_ticks_ = 0;
 };
 
 /// What the recording's clock shows, between the moments at which it is read, which are those of its readings.
@@ -130,7 +137,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
     wind::ground::DrivingWind wind{estimator.advance(now.mono), estimator.ground(), estimator.stroke()};
     shaping.shape(wind, true);
     const drivers::windlog::PlayerPosition at = player.position(now.mono);
-    ticks.step(wind, at.recorded + at.held_for, seconds(at.length - at.log_time));
+    ticks.step(wind, shaping.report().ceiling_gain, at.recorded + at.held_for, seconds(at.length - at.log_time));
   }
   return ticks.result();
 }
@@ -163,7 +170,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstal
     }
     const UtcTime recorded = director.recorded_clock().value_or(installation.begin);
     shaper.shape(wind, recorded, hub.is_any_live());
-    ticks.step(wind, recorded_clock.at(log_time, recorded), left_s);
+    ticks.step(wind, shaper.status().ceiling_gain, recorded_clock.at(log_time, recorded), left_s);
   }
   return ticks.result();
 }

@@ -20,6 +20,10 @@ struct LockstepResult {
   double reading_max_m_s = 0.0;
   double wind_mean_m_s = 0.0;  ///< of the wind that moved the scenes, from the first live reading on
   double wind_max_m_s = 0.0;
+  std::uint64_t live_ticks = 0;       ///< whose wind was live: those of the means
+  std::uint64_t held_back_ticks = 0;  ///< of these, in which the ceiling held the wind back
+  double free_wind_mean_m_s = 0.0;    ///< of the wind before the ceiling, over the same ticks as wind_mean_m_s
+  double free_wind_max_m_s = 0.0;
   std::uint64_t pose_hash = 0;  ///< over every pose of every tick: the same seed, log and build give the same hash
 };
 

@@ -9,7 +9,6 @@ namespace {
 constexpr double kGust_s = 3.0;
 /// The most readings in 3 s; a sensor that sends more has no gust.
 constexpr std::size_t kMostPast = 1000;
-constexpr double kBlock_s = 600.0;
 /// A block counts when it has so much of its readings, and is not calm.
 constexpr double kWholeBlock = 0.95;
 constexpr double kLeastMean_m_s = 1.0;

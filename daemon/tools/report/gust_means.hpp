@@ -33,6 +33,8 @@ class ThreeSecondMean {
 /// Turbulence intensity and gust factor of blocks of 10 minutes, counted from log time 0. Thread-safe: no.
 class TenMinuteBlocks {
  public:
+  static constexpr double kBlock_s = 600.0;
+
   explicit TenMinuteBlocks(double interval_s) : interval_s_(interval_s) {}
 
   void add(double time_s, double speed_m_s, const std::optional<double>& three_second_mean_m_s);

@@ -1,5 +1,6 @@
 #include "daemon/tools/report/report_json.hpp"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <date/date.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/tools/report/default_wind.hpp"
 #include "daemon/tools/report/report_text.hpp"
 #include "engine/base/compass.hpp"
 #include "engine/base/json_text.hpp"
@@ -90,6 +92,15 @@ ordered_json json_of_site(const std::optional<SiteNumbers>& site) {
   return {{"length_m", site->length_m}, {"known_s", site->known_s}, {"octaves_db", site->octaves_db}};
 }
 
+ordered_json json_of_default_wind(const std::optional<DefaultWind>& wind) {
+  if (!wind) return nullptr;
+  return {{"speed_m_s", wind->speed_m_s},
+          {"direction_deg", json_of(wind->direction_deg)},
+          {"turbulence_intensity", wind->turbulence_intensity},
+          {"length_m", wind->length_m},
+          {"is_length_measured", wind->is_length_measured}};
+}
+
 ordered_json json_of_series(const RecordingNumbers& recording, const SensorNumbers& sensor) {
   ordered_json rows = ordered_json::array();
   for (const TimeBin& bin : sensor.bins) {
@@ -122,12 +133,11 @@ ordered_json json_of_distribution(const SpeedDistribution& distribution) {
 }
 
 ordered_json json_of_rose(const WindRose& rose) {
+  std::array<double, kRoseClasses> from_m_s{};
+  for (std::size_t i = 0; i < kRoseClasses; ++i) from_m_s.at(i) = rose.class_from_m_s(i);
   ordered_json sectors = ordered_json::object();
   for (std::size_t i = 0; i < kRoseSectors; ++i) sectors[std::string(kCompassPoints.at(i))] = rose.share[i];
-  return {{"readings", rose.count},
-          {"calm_share", rose.calm_share},
-          {"class_from_m_s", kRoseClasses_m_s},
-          {"share", sectors}};
+  return {{"readings", rose.count}, {"calm_share", rose.calm_share}, {"class_from_m_s", from_m_s}, {"share", sectors}};
 }
 
 ordered_json json_of_sensor(const RecordingNumbers& recording, const SensorNumbers& sensor) {
@@ -164,6 +174,7 @@ ordered_json json_of_sensor(const RecordingNumbers& recording, const SensorNumbe
                        {"states", json_of_states(sensor)},
                        {"events", json_of_events(recording, sensor)},
                        {"spectrum", sensor.spectrum ? json_of_spectrum(*sensor.spectrum) : ordered_json(nullptr)},
+                       {"default_wind", json_of_default_wind(default_wind(sensor))},
                        {"site", json_of_site(sensor.site)},
                        {"hours", nullptr},
                        {"series", json_of_series(recording, sensor)}};

@@ -72,15 +72,22 @@ struct DirectionPoint {
 };
 
 inline constexpr std::size_t kRoseSectors = kCompassPoints.size();
-/// Lower edges of the rose's speed classes; below the first it is calm (engine/wind/README.md W37).
-inline constexpr std::array<double, 6> kRoseClasses_m_s = {0.5, 2.0, 4.0, 6.0, 8.0, 11.0};
+inline constexpr std::size_t kRoseClasses = 6;
+/// Below this it is calm (engine/wind/README.md W37).
+inline constexpr double kRoseCalm_m_s = 0.5;
 
 /// Where the wind came from: shares of the readings with a direction.
 struct WindRose {
   std::uint64_t count = 0;  ///< readings with a direction
   double calm_share = 0.0;
+  double class_m_s = 2.0;  ///< width of a speed class: a round one, with which the strongest wind is in the last class
   /// [sector][class]; sector 0 is centred on north, the others follow clockwise. The sum with the calm is 1.
-  std::array<std::array<double, kRoseClasses_m_s.size()>, kRoseSectors> share{};
+  std::array<std::array<double, kRoseClasses>, kRoseSectors> share{};
+
+  /// Where a class begins: the first at the calm's end, and the others at multiples of the width.
+  double class_from_m_s(std::size_t speed_class) const {
+    return speed_class == 0 ? kRoseCalm_m_s : class_m_s * static_cast<double>(speed_class);
+  }
 };
 
 /// The distribution of speeds.
@@ -193,7 +200,8 @@ struct SensorNumbers {
   std::optional<std::array<HourOfDay, 24>> diurnal;  ///< where there is more than a day
   BlockNumbers blocks;
   std::optional<SpectrumNumbers> spectrum;
-  std::string why_no_spectrum;  ///< for a person
+  std::string why_no_spectrum;    ///< for a person
+  double assumed_length_m = 0.0;  ///< integral length of the gusts where the spectrum does not determine it
   std::optional<SiteNumbers> site;
 };
 

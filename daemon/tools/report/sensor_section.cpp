@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "daemon/settings/site_octaves.hpp"
+#include "daemon/tools/report/default_wind.hpp"
 #include "daemon/tools/report/report_text.hpp"
 #include "daemon/tools/report/wind_rose.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
@@ -70,7 +72,7 @@ void add_rose_and_distribution(PageWriter& page, const SensorNumbers& sensor, co
     std::string keys;
     for (std::size_t i = 0; i < kRoseColors.size(); ++i) {
       keys += fmt::format("<span class=\"item\"><span class=\"key\" style=\"background:{}\"></span>{}</span> ",
-                          kRoseColors[i], rose_class_text(i));
+                          kRoseColors[i], rose_class_text(sensor.rose, i));
     }
     page.figure(figures.rose, fmt::format("<span class=\"keys\">{}</span><br>Share of {} readings; calm: {}.", keys,
                                           sensor.rose.count, percent(sensor.rose.calm_share)));
@@ -158,22 +160,21 @@ void add_turbulence(PageWriter& page, const SensorNumbers& sensor) {
   page.add("</tbody></table>\n");
 }
 
-/// The recording's wind as the default wind of a configuration, where it is long enough.
+/// The recording's wind as the default wind of a configuration, if the recording is long enough.
 void add_default_wind(PageWriter& page, const RecordingNumbers& recording, const SensorNumbers& sensor) {
   constexpr double kLeast_s = 600.0;
-  const bool has_fit = sensor.spectrum && sensor.spectrum->von_karman;
-  if (!has_fit || recording.duration_s() < kLeast_s) return;
-  const VonKarmanFit& fit = *sensor.spectrum->von_karman;
+  const std::optional<DefaultWind> wind = default_wind(sensor);
+  if (!wind || recording.duration_s() < kLeast_s) return;
   page.add(
       "<p>For such a wind while no sensor is live, put this into the configuration (a recording of weeks is more "
-      "representative than one of minutes):</p>\n"
+      "representative than one of minutes). Turbulence and length belong together: over 10 minutes the wind of both "
+      "has the intensity that was measured over 10 minutes.</p>\n"
       "<pre>[wind]\n"
       "default_speed = {:.1f}\n",
-      std::min(sensor.mean_m_s, 40.0));
-  if (sensor.direction_deg) page.add("default_direction = {:.0f}\n", *sensor.direction_deg);
-  page.add("default_turbulence = {:.2f}\n", std::min(fit.intensity, 1.0));
-  if (fit.length_m) page.add("default_length = {:.0f}\n", std::clamp(*fit.length_m, 1.0, 1000.0));
-  page.add("</pre>\n");
+      wind->speed_m_s);
+  if (wind->direction_deg) page.add("default_direction = {:.0f}\n", *wind->direction_deg);
+  page.add("default_turbulence = {:.2f}\ndefault_length = {:.0f}{}\n</pre>\n", wind->turbulence_intensity,
+           wind->length_m, wind->is_length_measured ? "" : "  # assumed: the recording does not determine it");
 }
 
 /// The site_octaves for a slow sensor at this place, ready to be copied.

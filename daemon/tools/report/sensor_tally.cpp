@@ -41,6 +41,10 @@ RecordedState state_of(wind::judging::ReadingFault fault) {
   return RecordedState::kLive;
 }
 
+wind::turbulence::TurbulencePrior prior_of(const ReportSettings& settings, const std::string& sensor) {
+  return settings.prior ? settings.prior(sensor) : wind::turbulence::TurbulencePrior{};
+}
+
 }  // namespace
 
 SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_s, const ReportSettings& settings)
@@ -51,7 +55,7 @@ SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_
       unchanged_for_s_(survey.unchanged_for_s),
       record_(survey.unchanged_for_s),
       judge_(settings.judge),
-      lesson_(settings.prior ? settings.prior(survey.name) : wind::turbulence::TurbulencePrior{}, survey.interval_s),
+      lesson_(prior_of(settings, survey.name), survey.interval_s),
       three_seconds_(survey.interval_s),
       blocks_(survey.interval_s),
       next_direction_s_(begin_s) {
@@ -59,6 +63,7 @@ SensorTally::SensorTally(const SensorSurvey& survey, double begin_s, double end_
   numbers_.driver = survey.driver;
   numbers_.unchanged_for_s = survey.unchanged_for_s;
   numbers_.interval_s = survey.interval_s;
+  numbers_.assumed_length_m = prior_of(settings, survey.name).length_m;
   numbers_.bins.resize(kTimeBins);
   plan_spectrum(survey);
 }

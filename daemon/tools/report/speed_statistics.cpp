@@ -78,25 +78,38 @@ std::array<HourOfDay, 24> SpeedStatistics::hours() const {
 
 void RoseTally::add(double speed_m_s, double direction_deg) {
   ++count_;
-  if (speed_m_s < kRoseClasses_m_s.front()) {
+  if (speed_m_s < kRoseCalm_m_s) {
     ++calm_;
     return;
   }
   constexpr double kWidth_deg = 360.0 / kRoseSectors;
   const auto sector = static_cast<std::size_t>(std::floor(direction_deg / kWidth_deg + 0.5)) % kRoseSectors;
-  const auto above = std::ranges::upper_bound(kRoseClasses_m_s, speed_m_s);
-  ++counts_[sector][static_cast<std::size_t>(above - kRoseClasses_m_s.begin()) - 1];
+  const auto fine = static_cast<std::size_t>(std::min(speed_m_s, static_cast<double>(kFineClasses - 1)));
+  ++counts_[sector][fine];
+  strongest_ = std::max(strongest_, fine);
 }
 
 WindRose RoseTally::finish() const {
   WindRose rose;
   rose.count = count_;
   if (count_ == 0) return rose;
+  // The narrowest round width with which the strongest wind is in the last class.
+  std::size_t width_m_s = kFineClasses / kRoseClasses;
+  for (const std::size_t round : {1U, 2U, 3U, 4U, 5U, 6U, 8U, 10U, 15U}) {
+    if (strongest_ >= round * kRoseClasses) continue;
+    width_m_s = round;
+    break;
+  }
+  rose.class_m_s = static_cast<double>(width_m_s);
   const auto all = static_cast<double>(count_);
   rose.calm_share = static_cast<double>(calm_) / all;
   for (std::size_t sector = 0; sector < kRoseSectors; ++sector) {
-    for (std::size_t speed = 0; speed < kRoseClasses_m_s.size(); ++speed) {
-      rose.share[sector][speed] = static_cast<double>(counts_[sector][speed]) / all;
+    std::array<std::uint64_t, kRoseClasses> counts{};
+    for (std::size_t fine = 0; fine < kFineClasses; ++fine) {
+      counts[std::min(fine / width_m_s, kRoseClasses - 1)] += counts_[sector][fine];
+    }
+    for (std::size_t speed = 0; speed < kRoseClasses; ++speed) {
+      rose.share[sector][speed] = static_cast<double>(counts[speed]) / all;
     }
   }
   return rose;

@@ -48,16 +48,20 @@ class SpeedStatistics {
   double squares_m2_s2_ = 0.0;
 };
 
-/// Counts for a wind rose. Thread-safe: no.
+/// Counts for a wind rose, whose classes reach to the strongest wind. Thread-safe: no.
 class RoseTally {
  public:
   void add(double speed_m_s, double direction_deg);
   WindRose finish() const;
 
  private:
+  /// Counted in metres per second; the last class has all that is faster.
+  static constexpr std::size_t kFineClasses = 120;
+
   std::uint64_t count_ = 0;
   std::uint64_t calm_ = 0;
-  std::array<std::array<std::uint64_t, kRoseClasses_m_s.size()>, kRoseSectors> counts_{};
+  std::array<std::array<std::uint64_t, kFineClasses>, kRoseSectors> counts_{};
+  std::size_t strongest_ = 0;  ///< the fine class of the strongest wind
 };
 
 }  // namespace yuragi::daemon::tools::report

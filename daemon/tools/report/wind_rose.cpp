@@ -55,9 +55,10 @@ void add_piece(std::string& svg, double from_px, double to_px, double middle_deg
 
 }  // namespace
 
-std::string rose_class_text(std::size_t speed_class) {
-  if (speed_class + 1 == kRoseClasses_m_s.size()) return fmt::format("{:g} m/s and more", kRoseClasses_m_s.back());
-  return fmt::format("{:g} to {:g} m/s", kRoseClasses_m_s.at(speed_class), kRoseClasses_m_s.at(speed_class + 1));
+std::string rose_class_text(const WindRose& rose, std::size_t speed_class) {
+  const double from_m_s = rose.class_from_m_s(speed_class);
+  if (speed_class + 1 == kRoseClasses) return fmt::format("{:g} m/s and more", from_m_s);
+  return fmt::format("{:g} to {:g} m/s", from_m_s, rose.class_from_m_s(speed_class + 1));
 }
 
 std::string draw_wind_rose(const WindRose& rose) {
@@ -83,12 +84,13 @@ std::string draw_wind_rose(const WindRose& rose) {
 
   for (std::size_t sector = 0; sector < kRoseSectors; ++sector) {
     double share = 0.0;
-    for (std::size_t speed = 0; speed < kRoseClasses_m_s.size(); ++speed) {
+    for (std::size_t speed = 0; speed < kRoseClasses; ++speed) {
       const double part = rose.share[sector][speed];
       if (part <= 0.0) continue;
-      add_piece(svg, kCalmRadius_px + share * px_per_share, kCalmRadius_px + (share + part) * px_per_share,
-                360.0 / kRoseSectors * static_cast<double>(sector), kRoseColors.at(speed),
-                fmt::format("from {}, {}: {:.1f} %", kCompassPoints.at(sector), rose_class_text(speed), 100.0 * part));
+      add_piece(
+          svg, kCalmRadius_px + share * px_per_share, kCalmRadius_px + (share + part) * px_per_share,
+          360.0 / kRoseSectors * static_cast<double>(sector), kRoseColors.at(speed),
+          fmt::format("from {}, {}: {:.1f} %", kCompassPoints.at(sector), rose_class_text(rose, speed), 100.0 * part));
       share += part;
     }
   }
@@ -106,8 +108,7 @@ std::string draw_wind_rose(const WindRose& rose) {
       "<g><title>calm, below {1:g} m/s: {2:.1f} %</title><circle class=\"calm\" cx=\"{0}\" cy=\"{0}\" "
       "r=\"{3}\"/><text x=\"{0}\" y=\"{4}\" text-anchor=\"middle\" font-size=\"11\">calm</text><text x=\"{0}\" "
       "y=\"{5}\" text-anchor=\"middle\" font-size=\"12\">{2:.1f} %</text></g>\n</svg>",
-      kMiddle_px, kRoseClasses_m_s.front(), 100.0 * rose.calm_share, kCalmRadius_px - 1.0, kMiddle_px - 2.0,
-      kMiddle_px + 12.0);
+      kMiddle_px, kRoseCalm_m_s, 100.0 * rose.calm_share, kCalmRadius_px - 1.0, kMiddle_px - 2.0, kMiddle_px + 12.0);
   return svg;
 }
 

@@ -83,6 +83,16 @@ double von_karman_haar_variance(double tau_over_time_scale) noexcept {
   return haar_table().at(tau_over_time_scale);
 }
 
+double von_karman_mean_variance(double tau_over_time_scale) noexcept {
+  // A Haar variance at tau is four times what a mean over 2 tau has less than one over tau. From here on a mean's
+  // variance is 2 T / tau: the spectrum's value at 0 over 2 tau.
+  constexpr double kFar = 250.0;
+  double sum = 0.0;
+  double ratio = tau_over_time_scale;
+  for (; ratio < kFar; ratio *= 2.0) sum += 0.25 * von_karman_haar_variance(std::max(ratio, 1e-3));
+  return std::min(sum + 2.0 / ratio, 1.0);
+}
+
 double von_karman_share(double from_hz, double to_hz, double time_scale_s) noexcept {
   // Of the inertial range the integral is known: it falls as x^(-2/3).
   const auto above = [](double x) { return von_karman_inertial_factor() * 1.5 * std::pow(x, -2.0 / 3.0); };

@@ -172,8 +172,8 @@ TEST_F(ModbusProbeTest, WritesTheTableThatTheDriverTakes) {
   const auto hits = probe();
   ASSERT_EQ(hits.size(), 1U);
   const auto named = std::ranges::find(plan_.profiles, "calypso-ulp", &drivers::modbus::NamedModbusProfile::name);
-  EXPECT_EQ(drivers::modbus::sensor_table_for(hits[0].line, hits[0].fits.at(0), named->profile, ""),
-            "[[sensor]]\nname = \"wind\"\ndriver = \"modbus\"\nprofile = \"calypso-ulp\"\ntransport = \"tcp\"\n"
+  EXPECT_EQ(drivers::modbus::sensor_table_for("roof", hits[0].line, hits[0].fits.at(0), named->profile, ""),
+            "[[sensor]]\nname = \"roof\"\ndriver = \"modbus\"\nprofile = \"calypso-ulp\"\ntransport = \"tcp\"\n"
             "host = \"127.0.0.1\"\nport = " +
                 simulator_->where() + "\nspeed_slave = 3\n");
 
@@ -181,7 +181,7 @@ TEST_F(ModbusProbeTest, WritesTheTableThatTheDriverTakes) {
   serial.framing = drivers::decode::modbus::ModbusFraming::kRtu;
   serial.baud = 9600;
   serial.parity = 'E';
-  EXPECT_THAT(drivers::modbus::sensor_table_for(serial, hits[0].fits[0], named->profile, "/dev/serial/by-id/x"),
+  EXPECT_THAT(drivers::modbus::sensor_table_for("roof", serial, hits[0].fits[0], named->profile, "/dev/serial/by-id/x"),
               HasSubstr("device = \"/dev/serial/by-id/x\"\nbaud = 9600\nparity = \"even\"\nspeed_slave = 3\n"));
 }
 

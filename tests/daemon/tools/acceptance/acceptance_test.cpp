@@ -233,7 +233,12 @@ TEST(Acceptance, CountsWhatWasSimulatedAndNothingElse) {
   acceptance.sensors.clear();
   acceptance.verdicts.clear();
   EXPECT_EQ(outcome_of(acceptance), Outcome::kPassed) << "one passed, one was not simulated";
-  EXPECT_THAT(acceptance_page(acceptance), HasSubstr("The real devices were not measured."));
+  const std::string page = acceptance_page(acceptance);
+  EXPECT_THAT(page, HasSubstr("The real devices were not measured."));
+  EXPECT_THAT(page, HasSubstr("<h1>Rehearsal"));
+  EXPECT_THAT(page, HasSubstr("This is not a hand-over: <span class=\"passed\">passed"));
+  EXPECT_THAT(page, Not(HasSubstr("taken over by"))) << "there is nothing to sign";
+  EXPECT_THAT(acceptance_text(acceptance), HasSubstr("not a hand-over: no real device was measured): passed\n"));
   acceptance.simulated[0].verdict.outcome = Outcome::kFailed;
   EXPECT_EQ(outcome_of(acceptance), Outcome::kFailed);
   acceptance.simulated[0].measured.reset();

@@ -74,7 +74,23 @@ TEST(MeasureRecording, TheMeanDirectionPassesThroughNorth) {
   const SensorNumbers& sensor = numbers.sensors[0];
   EXPECT_NEAR(std::remainder(*sensor.direction_deg, 360.0), 0.0, 1e-9);
   EXPECT_NEAR(*sensor.steadiness, std::cos(10.0 * std::numbers::pi / 180.0), 1e-9);
-  EXPECT_NEAR(sensor.rose.share[0][2], 1.0, 1e-12) << "north, 4 to 6 m/s";
+  EXPECT_NEAR(sensor.rose.share[0][5], 1.0, 1e-12) << "north, 5 m/s and more";
+}
+
+TEST(MeasureRecording, TheColorsOfTheRoseReachTheStrongestWind) {
+  for (const double strongest_m_s : {3.0, 5.9, 6.1, 11.0, 23.0, 47.0}) {
+    const auto numbers =
+        test::numbers_of(test::made_readings(200, 1000, [&](std::size_t i, wind::WindReading& reading) {
+          reading.speed_m_s = strongest_m_s * (0.005 * static_cast<double>(i) + 0.005);
+          reading.direction_deg = 90.0;
+        }));
+    const WindRose& rose = numbers.sensors[0].rose;
+    EXPECT_LT(strongest_m_s, rose.class_m_s * static_cast<double>(kRoseClasses)) << "in the last class";
+    EXPECT_GT(strongest_m_s, 0.5 * rose.class_m_s * static_cast<double>(kRoseClasses - 1)) << rose.class_m_s;
+    EXPECT_NEAR(rose.calm_share + std::accumulate(rose.share[4].begin(), rose.share[4].end(), 0.0), 1.0, 1e-9);
+    // As many in each class as its width holds.
+    EXPECT_NEAR(rose.share[4][1], std::min(rose.class_m_s, strongest_m_s - rose.class_m_s) / strongest_m_s, 0.011);
+  }
 }
 
 TEST(MeasureRecording, WhatIsFrozenOrASpikeIsToldAndNotCounted) {

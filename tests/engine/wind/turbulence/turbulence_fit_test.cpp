@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -39,6 +40,22 @@ TEST(VonKarmanHaarVariance, GrowsFromSmallDifferencesAndFallsWhereMeansCalmDown)
   EXPECT_NEAR(von_karman_haar_variance(2e-3) / von_karman_haar_variance(1e-3), std::pow(2.0, 2.0 / 3.0), 0.02);
   EXPECT_GT(von_karman_haar_variance(1.0), von_karman_haar_variance(0.01));
   EXPECT_GT(von_karman_haar_variance(1.0), von_karman_haar_variance(100.0));
+}
+
+TEST(VonKarmanMeanVariance, IsTheSpectrumBehindAMovingMean) {
+  // Against the integral of the published spectrum, for a time scale of 1 s.
+  for (const double tau_s : {0.05, 0.7, 3.0, 40.0, 240.0, 1000.0}) {
+    double passed = 0.0;
+    for (int k = 0; k < 200'000; ++k) {
+      const double f = std::exp(std::log(1e-6) + std::log(1e9) * (k + 0.5) / 200'000);
+      const double angle = std::numbers::pi * f * tau_s;
+      const double mean = std::sin(angle) / angle;
+      passed += 4.0 / std::pow(1.0 + 70.8 * f * f, 5.0 / 6.0) * mean * mean * f * std::log(1e9) / 200'000;
+    }
+    EXPECT_NEAR(von_karman_mean_variance(tau_s), passed, 0.01) << tau_s;
+  }
+  EXPECT_NEAR(von_karman_mean_variance(1e-6), 1.0, 0.01);
+  EXPECT_NEAR(von_karman_mean_variance(1e6), 2e-6, 1e-7);
 }
 
 /// Feeds a line of readings, each scale's differences as an estimator makes them.
