@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -132,6 +133,25 @@ Answer revoke_session(const HttpRequest& request, const Facts& /*facts*/) {
   return std::move(*revocation);
 }
 
+Answer recent_wind(const HttpRequest& /*request*/, const Facts& facts) {
+  ordered_json age_s = ordered_json::array();
+  ordered_json measured_m_s = ordered_json::array();
+  ordered_json blended_m_s = ordered_json::array();
+  ordered_json noise_share = ordered_json::array();
+  if (facts.wind != nullptr) {
+    for (const WindMoment& moment : facts.wind->moments()) {
+      age_s.push_back(facts.mono_s - moment.mono_s);
+      measured_m_s.push_back(moment.measured_m_s ? ordered_json(*moment.measured_m_s) : ordered_json(nullptr));
+      blended_m_s.push_back(moment.blended_m_s);
+      noise_share.push_back(moment.noise_share);
+    }
+  }
+  return json_response({{"age_s", std::move(age_s)},
+                        {"measured_m_s", std::move(measured_m_s)},
+                        {"blended_m_s", std::move(blended_m_s)},
+                        {"noise_share", std::move(noise_share)}});
+}
+
 Answer history(const HttpRequest& request, const Facts& /*facts*/) {
   const auto hours = number_in_query(request.query, {.name = "hours", .least = 1, .most = 168, .otherwise = 24});
   if (!hours) return problem(400, "Not understood", hours.error().message);
@@ -158,6 +178,7 @@ constexpr std::array kRoutes = {
     Route{"POST", "/api/v1/scenes", change_scene},
     Route{"GET", "/api/v1/player", players},
     Route{"POST", "/api/v1/player", change_player},
+    Route{"GET", "/api/v1/wind", recent_wind},
     Route{"GET", "/api/v1/history", history},
     Route{"GET", kLogPath, log},
     Route{"POST", kPairPath, pair},

@@ -13,6 +13,7 @@
 #include "daemon/web/pairings.hpp"
 #include "daemon/web/request_body.hpp"
 #include "daemon/web/web_counts.hpp"
+#include "daemon/web/wind_memory.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::web {
@@ -29,6 +30,8 @@ struct Facts {
   FaultCounter faults = {};
   WebCounts counts = {};
   const Pairings* pairings = nullptr;  ///< null: no browser is paired
+  const WindMemory* wind = nullptr;    ///< null: nothing is known of the last minutes
+  double mono_s = 0.0;                 ///< now, of the memory's clock
   double utc_s = 0.0;                  ///< now
 };
 

@@ -17,6 +17,7 @@
 #include "daemon/web/permission.hpp"
 #include "daemon/web/problem.hpp"
 #include "daemon/web/routes.hpp"
+#include "daemon/web/wind_memory.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/base/known_host.hpp"
 #include "engine/wire/wire.hpp"
@@ -38,6 +39,10 @@ std::optional<News> news_of(const stream::SharedBytes& bytes) {
   auto message = wire::decode(std::span(*bytes).subspan(wire::kSizePrefixBytes));
   if (!message || !std::holds_alternative<wire::Sensors>(*message)) return std::nullopt;
   return News{std::get<wire::Sensors>(std::move(*message)), steady_clock::now()};
+}
+
+double mono_s() {
+  return seconds(steady_clock::now().time_since_epoch());
 }
 
 /// A question that the daemon is carrying out: answered by its reply, or, where that does not come, when it is given
@@ -112,7 +117,10 @@ class WebServer::Thread {
 
   void publish(stream::SharedBytes here, stream::SharedBytes elsewhere) {
     asio::post(*io_, [this, here = std::move(here), elsewhere = std::move(elsewhere)] {
-      if (auto news = news_of(here)) here_ = std::move(news);
+      if (auto news = news_of(here)) {
+        wind_.add(mono_s(), news->sensors);
+        here_ = std::move(news);
+      }
       if (auto news = news_of(elsewhere)) elsewhere_ = std::move(news);
       clients_ = server_ ? server_->client_count() : 0;
     });
@@ -191,6 +199,8 @@ class WebServer::Thread {
                       .faults = settings_.faults,
                       .counts = counts_,
                       .pairings = &pairings_,
+                      .wind = &wind_,
+                      .mono_s = mono_s(),
                       .utc_s = utc_s};
     Answer answer = answer_to(request, facts);
     if (auto* const response = std::get_if<HttpResponse>(&answer)) return reply(std::move(*response));
@@ -213,8 +223,7 @@ class WebServer::Thread {
 
   HttpResponse pair(const std::string& code, const HttpRequest& request, const std::string& address, const Trust& trust,
                     double utc_s) {
-    const double now_s = seconds(steady_clock::now().time_since_epoch());
-    HttpResponse response = pairing_answer(code, request, address, trust, pairing_limits_, pairings_, utc_s, now_s);
+    HttpResponse response = pairing_answer(code, request, address, trust, pairing_limits_, pairings_, utc_s, mono_s());
     const bool is_paired = response.status == 200;
     ++(is_paired ? counts_.pairings : counts_.failed_pairings);
     if (is_paired) {
@@ -295,6 +304,7 @@ class WebServer::Thread {
   std::shared_ptr<asio::io_context> io_ = std::make_shared<asio::io_context>(1);
   asio::executor_work_guard<asio::io_context::executor_type> work_{io_->get_executor()};
   std::optional<News> here_, elsewhere_;
+  WindMemory wind_;
   std::unique_ptr<HttpServer> server_;
   const std::string endpoint_;
   std::atomic<std::size_t> clients_ = 0;

@@ -97,6 +97,9 @@ class Http(unittest.TestCase):
         lines = json.loads(self.ask("/api/v1/log")[1])["lines"]
         self.assertIn(f"recording to {folder}/wall.windlog", [line["text"] for line in lines])
         self.assertEqual(self.ask("/api/v1/log", X_Forwarded_For="192.0.2.7")[0], 401)
+        recent = json.loads(self.wait_for("/api/v1/wind", 200, r'"measured_m_s": \[\s*\d'))
+        self.assertTrue(all(age_s >= 0 for age_s in recent["age_s"]))
+        self.assertEqual({len(values) for values in recent.values()}, {len(recent["age_s"])})
 
     def test_a_sensor_that_is_not_there_is_told_with_what_to_do(self):
         self.start_daemon(f'[[sensor]]\nname = "roof"\ndriver = "nmea"\ntransport = "tcp"\nhost = "127.0.0.1"\nport = {free_port()}\n')

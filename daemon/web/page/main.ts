@@ -119,6 +119,7 @@ void listen({
     redraw();
     if (is_back) {
       void ask_for_lists();
+      void wind.fill();
       history.ask_now();
       log.ask_now();
     }

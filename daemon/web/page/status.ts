@@ -89,6 +89,14 @@ export interface Player {
   refusal: string;
 }
 
+/** Of the last minutes, oldest first. */
+export interface RecentWind {
+  age_s: number[];
+  measured_m_s: (number | null)[];
+  blended_m_s: number[];
+  noise_share: number[];
+}
+
 /** Of the recording, in steps of equal length; null: a gap. */
 export interface History {
   begin_s: number;

@@ -1,4 +1,5 @@
 // The last minutes of the wind as lines: measured, as it is blended, and the share of noise in it.
+import { RecentWind } from "./status";
 import { color, root_px } from "./style";
 import uPlot from "./vendor/uplot/uPlot.esm.js";
 
@@ -21,6 +22,20 @@ export class Trace {
     this.place.setAttribute("aria-label", "The wind of the last three minutes");
     new ResizeObserver(() => this.resize()).observe(this.place);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw_anew());
+  }
+
+  /** Puts the wind that the daemon remembers in place of what is shown of the same time, or was missed. */
+  fill(past: RecentWind, now_s: number): void {
+    const times_s = past.age_s.map((age_s) => now_s - age_s);
+    const begin_s = times_s[0];
+    if (begin_s === undefined) return;
+    const kept = this.times_s.findIndex((time_s) => time_s >= begin_s);
+    const before = kept < 0 ? this.times_s.length : kept;
+    this.times_s.splice(before, Infinity, ...times_s);
+    this.measured.splice(before, Infinity, ...past.measured_m_s);
+    this.blended.splice(before, Infinity, ...past.blended_m_s);
+    this.noise.splice(before, Infinity, ...past.noise_share.map((share) => 100 * share));
+    this.draw();
   }
 
   /** Values at a time in s since 1970; null leaves a gap. */

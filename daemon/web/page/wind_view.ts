@@ -1,7 +1,8 @@
 // Compass, figures and trace of the wind.
 import { Compass } from "./compass";
 import { element, set_text } from "./element";
-import { leading_sensor, Status } from "./status";
+import { ask } from "./request";
+import { leading_sensor, RecentWind, Status } from "./status";
 import { Trace } from "./trace";
 import { from_text } from "./wording";
 
@@ -49,6 +50,15 @@ export class WindView {
     this.blended.show(wind.speed_m_s.toFixed(1), direction(wind.direction_deg));
     this.noise.show((100 * share).toFixed(0), "");
     this.trace.add(Date.now() / 1000, measured_m_s, wind.speed_m_s, share);
+  }
+
+  /** Fills the trace with the minutes before the page was opened, or while it had no connection. */
+  async fill(): Promise<void> {
+    try {
+      this.trace.fill(await ask<RecentWind>("/api/v1/wind"), Date.now() / 1000);
+    } catch {
+      // The trace begins now; the link shows what is wrong.
+    }
   }
 
   /** Nothing is known any more; the trace stays, with its times. */

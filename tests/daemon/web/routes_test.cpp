@@ -125,6 +125,23 @@ TEST_F(RoutesTest, Sessions_AreListedWhileTheyAreValid) {
   EXPECT_EQ(json::parse(get("/api/v1/sessions").body)["sessions"], json::array());
 }
 
+TEST_F(RoutesTest, TheWindOfTheLastMinutesHasAgesAndNoTimesSoThatNoClockMatters) {
+  EXPECT_EQ(json::parse(get("/api/v1/wind").body)["age_s"], json::array());
+  WindMemory memory;
+  wire::Sensors sensors = one_sensor(wind::judging::SensorState::kLive);
+  sensors.wind.live_weight = 0.75;
+  memory.add(100.0, sensors);
+  sensors.sensors[0].state = wind::judging::SensorState::kStale;
+  memory.add(101.0, sensors);
+  facts_.wind = &memory;
+  facts_.mono_s = 103.5;
+  const json wind = json::parse(get("/api/v1/wind").body);
+  EXPECT_EQ(wind["age_s"], json({3.5, 2.5}));
+  EXPECT_EQ(wind["measured_m_s"], json({3.25, nullptr}));
+  EXPECT_EQ(wind["blended_m_s"].size(), 2U);
+  EXPECT_EQ(wind["noise_share"], json({0.25, 0.25}));
+}
+
 TEST(OpenApi, DescribesEachRoute_AndNothingElse) {
   std::set<std::pair<std::string, std::string>> served, described;
   for (const Route& route : routes()) {
