@@ -51,12 +51,12 @@ endif()
 # The rooms where a running program spends its time: poses and wind, readings, recordings and their import, the stream, pictures.
 # They are compiled with the preset's optimization. All others (options, settings, JSON, tables, the web page, the set-up of
 # devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. With sanitizers,
-# whose code takes longest to optimize, only the engine has the preset's optimization; the other hot rooms have -O1, the rest -O0.
+# whose code takes longest to optimize, only the engine has the preset's optimization; what tests run longest in has -O1, the rest -O0.
 set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/stream
                      daemon/tools/csv viewer)
 set(YURAGI_WARM_ROOMS "[^/]+")
 if(YURAGI_SANITIZE)
-  set(YURAGI_WARM_ROOMS ${YURAGI_HOT_ROOMS})
+  set(YURAGI_WARM_ROOMS drivers/decode drivers/windlog daemon/tools/csv viewer)
   set(YURAGI_HOT_ROOMS engine)
 endif()
 list(JOIN YURAGI_HOT_ROOMS "|" YURAGI_HOT_ROOMS)

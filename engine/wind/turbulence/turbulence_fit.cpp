@@ -87,10 +87,14 @@ double von_karman_mean_variance(double tau_over_time_scale) noexcept {
   // A Haar variance at tau is four times what a mean over 2 tau has less than one over tau. From here on a mean's
   // variance is 2 T / tau: the spectrum's value at 0 over 2 tau.
   constexpr double kFar = 250.0;
-  double sum = 0.0;
-  double ratio = tau_over_time_scale;
-  for (; ratio < kFar; ratio *= 2.0) sum += 0.25 * von_karman_haar_variance(std::max(ratio, 1e-3));
-  return std::min(sum + 2.0 / ratio, 1.0);
+  if (!(tau_over_time_scale > 0.0)) return 1.0;
+  const int octaves = std::max(0, static_cast<int>(std::ceil(std::log2(kFar / tau_over_time_scale))));
+  double sum = 2.0 / std::ldexp(tau_over_time_scale, octaves);
+  for (int octave = 0; octave < octaves; ++octave) {
+    const double ratio = std::ldexp(tau_over_time_scale, octave);
+    sum += 0.25 * von_karman_haar_variance(std::max(ratio, 1e-3));
+  }
+  return std::min(sum, 1.0);
 }
 
 double von_karman_share(double from_hz, double to_hz, double time_scale_s) noexcept {
