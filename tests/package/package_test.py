@@ -21,6 +21,28 @@ ROOT, BUILD = (pathlib.Path(word).resolve() for word in (sys.argv.pop(1), sys.ar
 EPOCH_S = 1_700_000_000
 CONFIGURATION = "etc/yuragi/yuragi.toml"
 RECORDING = "var/lib/yuragi/wind.windlog"
+# What the programs of an installation make as they run, by the advice of README.md: tokens, alerts, paired browsers, caches.
+MADE_IN_USE = [
+    "etc/yuragi/token",
+    "etc/yuragi/token.part-4711",
+    "etc/yuragi/yuragi.toml.bak",
+    "etc/yuragi/yuragi.toml.pairings.json",
+    "var/lib/systemd/timers/stamp-yuragi-report.timer",
+    "var/lib/yuragi/alerts.json",
+    "var/lib/yuragi/alerts.json.part-4711",
+    "var/lib/yuragi/pairings.json",
+    "var/lib/yuragi/pairings.json.damaged",
+    "var/lib/yuragi/site.json",
+    "var/lib/yuragi/site.json.unreadable-2",
+    "var/lib/yuragi/.cache/mesa_shader_cache/72/b70b",
+    "var/lib/yuragi/.local/share/xorg/Xorg.7.log",
+]
+# What is a person's: a purge leaves it.
+OF_A_PERSON = [
+    "etc/yuragi/mqtt-password",
+    "var/lib/yuragi/wind.2026-11-26.windlog",
+    "var/lib/yuragi/reports/2026-11-26.html",
+]
 PROGRAMS = ["yuragi", "yuragi-sim", "yuragi-viewer"]
 EXAMPLE = "usr/share/yuragi/yuragi.toml"
 CONTENTS = [
@@ -249,6 +271,29 @@ class PackageTest(unittest.TestCase):
         (tree / RECORDING).unlink()
         dpkg("-P", "yuragi")
         self.assertFalse((tree / RECORDING).parent.exists())
+
+    @unittest.skipUnless(os.geteuid() == 0, "dpkg gives files to root: this needs to be root")
+    def test_a_purge_removes_what_the_programs_made_and_names_where_the_rest_is(self):
+        tree, dpkg = self.new_tree("purged")
+        dpkg("-i", self.package)
+        present = files_below(tree / "etc")
+        for path in [*MADE_IN_USE, *OF_A_PERSON]:
+            (tree / path).parent.mkdir(parents=True, exist_ok=True)
+            (tree / path).write_text("here", encoding="utf-8")
+        dpkg("-r", "yuragi")
+        self.assertEqual([path for path in [*MADE_IN_USE, *OF_A_PERSON] if not (tree / path).is_file()], [])
+        said = dpkg("-P", "yuragi")
+        for folder in ("etc/yuragi", "var/lib/yuragi"):
+            self.assertIn(f"{folder} has files that a purge does not remove", said)
+            self.assertEqual(files_below(tree / folder), {path.removeprefix(folder + "/") for path in OF_A_PERSON if path.startswith(folder)})
+        self.assertEqual({f"etc/{path}" for path in present - files_below(tree / "etc")}, {CONFIGURATION})
+        self.assertEqual([path.name for path in (tree / "var/lib/yuragi").iterdir() if path.name.startswith(".")], [])
+
+        dpkg("-i", self.package)
+        for path in OF_A_PERSON:
+            (tree / path).unlink()
+        self.assertNotIn("does not remove", dpkg("-P", "yuragi"))
+        self.assertEqual([folder for folder in ("etc/yuragi", "var/lib/yuragi") if (tree / folder).exists()], [])
 
 
 if __name__ == "__main__":
