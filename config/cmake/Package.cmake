@@ -35,7 +35,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION misc)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "systemd, tzdata, libegl1, gnuplot-nox | gnuplot-qt | gnuplot-x11")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "xinit, xserver-xorg-core, xserver-xorg-input-libinput, libgl1-mesa-dri, libpam-systemd")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "xinit, xserver-xorg-core, xserver-xorg-input-libinput, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, ffmpeg")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "animation of grass, cloth, trees and flames by the real wind")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Yuragi reads anemometers, follows the wind with a noise-driven animation
