@@ -77,6 +77,11 @@ def make_package(folder):
     return next(folder.glob("*.deb"))
 
 
+def service_group(tree):
+    """The number of the service's group in this system."""
+    return int(re.search(r"^yuragi:[^:]*:(\d+):", (tree / "etc/group").read_text(encoding="utf-8"), re.MULTILINE)[1])
+
+
 def files_below(folder):
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir() or path.is_symlink()}
 
@@ -213,6 +218,10 @@ class PackageTest(unittest.TestCase):
             dpkg("-i", self.package)
             self.assertEqual((tree / CONFIGURATION).read_text(encoding="utf-8"), own)
             self.assertEqual(list((tree / CONFIGURATION).parent.iterdir()), [tree / CONFIGURATION])
+            self.assertEqual((tree / CONFIGURATION).stat().st_gid, service_group(tree))
+            os.chown(tree / CONFIGURATION, -1, 12345)
+            dpkg("-i", self.package)
+            self.assertEqual((tree / CONFIGURATION).stat().st_gid, 12345, "a person's choice")
             dpkg("-P", "yuragi")
             self.assertFalse((tree / CONFIGURATION).parent.exists())
 
@@ -222,6 +231,8 @@ class PackageTest(unittest.TestCase):
         dpkg("-i", self.package)
         made = (tree / CONFIGURATION).read_text(encoding="utf-8")
         self.assertEqual(made, (self.contents / EXAMPLE).read_text(encoding="utf-8"))
+        # With it the token's file, which `yuragi token --new` gives to the configuration's group, can be read by the service.
+        self.assertEqual((tree / CONFIGURATION).stat().st_gid, service_group(tree))
         (tree / CONFIGURATION).unlink()
         (tree / CONFIGURATION).symlink_to("elsewhere.toml")
         dpkg("-i", self.package)
