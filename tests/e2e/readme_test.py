@@ -32,6 +32,7 @@ NOT_RUN = (
     (r"^yuragi-viewer\b(?!.*--render)", "needs a display"),
     (r"^yuragi-viewer\b.*\.mp4$", "needs ffmpeg, and much time"),
     (r"/dev/ttyUSB|^yuragi calibrate (zero|north)", "needs a device"),
+    (r"^yuragi token\b", "needs a daemon with a token: http_test.py has one"),
     (r"--usbip", "needs a kernel with USB/IP"),
     (r"--broker \d", "needs a broker"),
 )
