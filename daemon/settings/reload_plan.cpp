@@ -128,6 +128,11 @@ std::string shown(const ParameterValues::Map& values, std::string_view key) {
   return text.size() > kLongestShownValue ? "..." : text;
 }
 
+/// A change for a person. Secrets look alike, and so do long texts.
+std::string change_text(const std::string& before, const std::string& after) {
+  return before == after ? ": another value" : ": " + before + " -> " + after;
+}
+
 /// The keys that two sets of values do not have in common, in the order of their names.
 std::vector<std::string> different_keys(const ParameterValues& before, const ParameterValues& after) {
   std::vector<std::string> keys;
@@ -159,9 +164,7 @@ class Comparison {
     ParameterValues next = running;
     for (const std::string& key : different_keys(running, wanted)) {
       const KeyChange change = change_of_key(key);
-      std::string what = where + key;
-      what.append(": ").append(shown(running.all(), key)).append(" -> ").append(shown(wanted.all(), key));
-      note(change, std::move(what));
+      note(change, where + key + change_text(shown(running.all(), key), shown(wanted.all(), key)));
       if (change == kApplied && next.has(key) && wanted.has(key)) next.set(key, wanted.all().at(key));
     }
     return next;

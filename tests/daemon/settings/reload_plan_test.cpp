@@ -123,8 +123,8 @@ TEST(ReloadPlan, AppliesAlerts) {
       "[[alert]]\nname = \"a\"\ncommand = \"mail\"\nwebhook = \"http://s3cret/\"\n"
       "[[alert]]\nname = \"b\"\nwhen = \"no_frame\"\ncommand = \"page\"\n");
   const ReloadPlan plan = plan_reload(running, wanted, true);
-  EXPECT_THAT(plan.applied, ElementsAre("alert a: command: '(secret)' -> '(secret)'",
-                                        "alert a: webhook: '' -> '(secret)'", "alert b: is new"));
+  EXPECT_THAT(plan.applied,
+              ElementsAre("alert a: command: another value", "alert a: webhook: '' -> '(secret)'", "alert b: is new"));
   ASSERT_EQ(plan.next.alerts.size(), 2U);
   EXPECT_EQ(plan.next.alerts[0].command, "mail");
 }
@@ -261,7 +261,7 @@ TEST(ReloadPlan, ShowsNoSecretAndNoLongValue) {
       "\"anna\"\npassword = ";
   const ReloadPlan plan = plan_reload(wall(std::string(broker) + "\"first secret\"\n"),
                                       wall(std::string(broker) + "\"second secret\"\n"), true);
-  EXPECT_THAT(plan.takes_restart, ElementsAre("sensor roof: password: '(secret)' -> '(secret)'"));
+  EXPECT_THAT(plan.takes_restart, ElementsAre("sensor roof: password: another value"));
   const std::string hours = "Mon 10:00-18:00, Tue 10:00-18:00, Wed 10:00-18:00, Thu 10:00-18:00";
   EXPECT_THAT(plan_reload(wall(), wall("hours = \"" + hours + "\"\n"), true).applied,
               ElementsAre("[shaping] hours: \"\" -> ..."));
