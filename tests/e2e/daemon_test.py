@@ -522,13 +522,13 @@ port = {port}
             return run("replay", log, "--rate", "max", "--config", config).stdout
         held = replay("ceiling = 12\nceiling_most = 20")
         free = replay("ceiling = 0")
-        told = re.search(r"ceiling +held the wind back for (\S+) % of the time .*the mean is (\S+) m/s, the max (\S+) m/s", held)
-        self.assertIsNotNone(told, held)
-        self.assertGreater(float(told.group(1)), 50)
+        summary = re.search(r"ceiling +held the wind back for (\S+) % of the time .*the mean is (\S+) m/s, the max (\S+) m/s", held)
+        self.assertIsNotNone(summary, held)
+        self.assertGreater(float(summary.group(1)), 50)
         self.assertNotIn("ceiling", free)
         mean, largest = re.search(r"replayed +mean (\S+) m/s, max (\S+) m/s", free).groups()
-        self.assertAlmostEqual(float(told.group(2)), float(mean), delta=0.02)
-        self.assertAlmostEqual(float(told.group(3)), float(largest), delta=0.02)
+        self.assertAlmostEqual(float(summary.group(2)), float(mean), delta=0.02)
+        self.assertAlmostEqual(float(summary.group(3)), float(largest), delta=0.02)
 
     def test_what_a_command_waits_for_is_announced(self):
         # It accepts, and never replies.

@@ -21,7 +21,7 @@ ROOT, BUILD = (pathlib.Path(word).resolve() for word in (sys.argv.pop(1), sys.ar
 EPOCH_S = 1_700_000_000
 CONFIGURATION = "etc/yuragi/yuragi.toml"
 RECORDING = "var/lib/yuragi/wind.windlog"
-# What the programs of an installation make as they run, by the advice of README.md: tokens, alerts, paired browsers, caches.
+# Files that the programs of an installation make when README.md's advice is followed: tokens, alerts, paired browsers, caches.
 MADE_IN_USE = [
     "etc/yuragi/token",
     "etc/yuragi/token.part-4711",
@@ -37,7 +37,7 @@ MADE_IN_USE = [
     "var/lib/yuragi/.cache/mesa_shader_cache/72/b70b",
     "var/lib/yuragi/.local/share/xorg/Xorg.7.log",
 ]
-# What is a person's: a purge leaves it.
+# Files of a person: a purge leaves them.
 OF_A_PERSON = [
     "etc/yuragi/mqtt-password",
     "var/lib/yuragi/wind.2026-11-26.windlog",

@@ -14,7 +14,7 @@ work=$(mktemp -d /var/tmp/yuragi-wall-XXXXXX)
 trap 'rm -rf --one-file-system "$work"' EXIT
 cp "$package" "$work/yuragi.deb"
 
-# What the emulated machine does once it is up. Each line goes to its serial console.
+# The emulated machine runs this after its start. Each line goes to its serial console.
 cat >"$work/look-at-the-wall" <<'END'
 #!/bin/bash
 unit=yuragi-viewer@7

@@ -105,8 +105,9 @@ build_ahead() {
       renice -n 19 -p "$BASHPID" >/dev/null
       for preset in "$@"; do
         status=0
+        stage_times=("") # in its place the build's, if it was configured
         build_preset "$preset" >"build/$preset-ahead.log" 2>&1 || status=$?
-        printf '%s\n' "$status" "${stage_times[-1]-}" >"build/$preset-ahead.partial"
+        printf '%s\n' "$status" "${stage_times[-1]}" >"build/$preset-ahead.partial"
         mv "build/$preset-ahead.partial" "build/$preset-ahead.status"
       done
     ) &
