@@ -15,17 +15,23 @@ constexpr stream::LogAllowance::Settings kOneEachInterval{
 }  // namespace
 
 std::optional<std::string> FaultLog::line_for(std::string_view kind, std::string_view what, MonoTime now) {
-  if (counts_.size() >= kMaxKinds && !counts_.contains(kind)) kind = kOtherKind;
-  ++counts_.try_emplace(std::string(kind)).first->second;
-  auto found = allowances_.find(kind);
-  if (found == allowances_.end()) found = allowances_.emplace(kind, stream::LogAllowance(kOneEachInterval, now)).first;
-  stream::LogAllowance& allowance = found->second;
+  if (kinds_.size() >= kMaxKinds && !kinds_.contains(kind)) kind = kOtherKind;
+  auto found = kinds_.find(kind);
+  if (found == kinds_.end()) found = kinds_.emplace(kind, Kind{0, stream::LogAllowance(kOneEachInterval, now)}).first;
+  auto& [count, allowance] = found->second;
+  ++count;
   if (!allowance.take(now)) return std::nullopt;
   const std::uint64_t left_out = allowance.tell_left_out(now);
   const std::string since = left_out > 0 ? fmt::format(" ({} more since the last such line)", left_out) : "";
   std::string text(what);
   make_printable(text);
   return fmt::format("{} failed: {}{}; this is a fault of the program", kind, text, since);
+}
+
+web::FaultCounts FaultLog::counts() const {
+  web::FaultCounts counts;
+  for (const auto& [name, kind] : kinds_) counts.emplace(name, kind.count);
+  return counts;
 }
 
 }  // namespace yuragi::daemon::service

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -26,11 +27,15 @@ class FaultLog {
   /// Counts an exception of `kind` with the text `what`. Returns the line to log for it, or nullopt.
   std::optional<std::string> line_for(std::string_view kind, std::string_view what, MonoTime now);
 
-  const web::FaultCounts& counts() const { return counts_; }
+  web::FaultCounts counts() const;
 
  private:
-  web::FaultCounts counts_;
-  std::map<std::string, stream::LogAllowance, std::less<>> allowances_;
+  struct Kind {
+    std::uint64_t count = 0;
+    stream::LogAllowance allowance;
+  };
+
+  std::map<std::string, Kind, std::less<>> kinds_;
 };
 
 }  // namespace yuragi::daemon::service
