@@ -5,6 +5,9 @@
 #include <fstream>
 #include <string>
 #include <system_error>
+#include <utility>
+
+#include "engine/base/secret_line.hpp"
 
 namespace yuragi::viewer {
 namespace {
@@ -15,7 +18,7 @@ constexpr std::size_t kMaxFile_bytes = 4096;  // as the daemon's
 }  // namespace
 
 Result<Secret, Failure> token_in_file(const std::filesystem::path& file) {
-  const auto fail = [&file](const char* why) {
+  const auto fail = [&file](const std::string& why) {
     return Failure{"\"" + file.string() + "\" " + why, FailureKind::kNoInput};
   };
   std::error_code error;
@@ -29,12 +32,8 @@ Result<Secret, Failure> token_in_file(const std::filesystem::path& file) {
   if (in.bad()) return fail("cannot be read");
   text.resize(static_cast<std::size_t>(in.gcount()));
   if (text.size() > kMaxFile_bytes) return fail("is too long (maximum 4096 bytes)");
-  if (text.ends_with('\n')) text.pop_back();
-  if (text.ends_with('\r')) text.pop_back();
-  if (text.empty()) return fail("is empty");
-  if (text.find('\n') != std::string::npos || text.find('\0') != std::string::npos)
-    return fail("is not one line of text");
-  return Secret(std::move(text));
+  auto secret = secret_line(std::move(text));
+  return secret ? std::move(secret) : fail(secret.error().message);
 }
 
 Secret own_token() {

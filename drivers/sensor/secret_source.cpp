@@ -4,8 +4,11 @@
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "engine/base/secret_line.hpp"
 
 namespace yuragi::drivers::sensor {
 
@@ -27,12 +30,8 @@ Result<Secret, Failure> secret_in_file(const std::filesystem::path& file) {
     return fail("is too long; allowed: " + std::to_string(kLongestSecretFile) + " bytes");
   }
 
-  if (text.ends_with('\n')) text.pop_back();
-  if (text.ends_with('\r')) text.pop_back();
-  if (text.empty()) return fail("is empty");
-  if (text.find('\n') != std::string::npos) return fail("has more than one line");
-  if (text.find('\0') != std::string::npos) return fail("has a zero byte in it");
-  return Secret(std::move(text));
+  auto secret = secret_line(std::move(text));
+  return secret ? std::move(secret) : fail(secret.error().message);
 }
 
 Result<Secret, Failure> secret_in_environment(const std::string& variable) {
