@@ -145,6 +145,7 @@ GlProgram link_program(const std::string& name, std::string_view vertex, std::st
   // Also where nothing is looked up: no two kinds of sampler may have one unit.
   set_sampler(program, "shadow_map", kShadowUnit);
   set_sampler(program, "shadow_depth", kShadowDepthUnit);
+  set_sampler(program, "cloud_noise", kNoiseUnit);
   return program;
 }
 

@@ -81,13 +81,14 @@ inline constexpr GLuint kFiresBinding = 3;
 
 /// The texture units: one for each texture that stays bound while others draw. 0 is anybody's, for a moment.
 enum TextureUnit : GLint {
-  kNoiseUnit = 1,    // of grass and what stands in it (looks/ground_maps.hpp), like the next three
-  kTurfUnit,         //
-  kBendsUnit,        //
-  kGrowthUnit,       //
-  kBladesUnit,       // of those that are drawn, and their tiles or blocks
-  kTilesUnit,        //
-  kShadowUnit,       // the shadow map, in every program: compared with a depth, and as depths
+  kNoiseUnit = 1,  // of grass and what stands in it (looks/ground_maps.hpp), like the next three; of clouds' shadows in
+                   // every program
+  kTurfUnit,       //
+  kBendsUnit,      //
+  kGrowthUnit,     //
+  kBladesUnit,     // of those that are drawn, and their tiles or blocks
+  kTilesUnit,      //
+  kShadowUnit,     // the shadow map, in every program: compared with a depth, and as depths
   kShadowDepthUnit,  //
   kMirrorUnit,       // what water mirrors (Mirror)
   kSlopesUnit,       // of its waves

@@ -7,7 +7,6 @@ namespace yuragi::viewer::gl {
 // The bits of the stencil while the stage draws.
 inline constexpr GLuint kBehindDoor = 1;  ///< the scene that fades does not draw on this pixel
 inline constexpr GLuint kHole = 2;        ///< the ground is open here
-inline constexpr GLuint kShadow = 4;      ///< the ground is in a shadow here
 
 /// Screen-door transparency: fades a scene by drawing it on a share of the pixels only, so that nothing has to be
 /// sorted by depth and its shaders need not know of it. Needs a current context and a stencil.

@@ -28,7 +28,7 @@ ShadowMap::ShadowMap(int texels) : texels_(texels) {
   glDrawBuffer(GL_NONE);
   glReadBuffer(GL_NONE);
   if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-    throw std::runtime_error("the graphics driver cannot draw shadows; try quality = \"low\"");
+    throw std::runtime_error("the graphics driver cannot draw shadows into a texture");
   }
 }
 

@@ -15,8 +15,7 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-constexpr float kShadowCell_px = 12.0F;  // of a shadow's mesh
-constexpr float kKeep = 0.15F;           // of a level: so far beyond its bounds it is kept
+constexpr float kKeep = 0.15F;  // of a level: so far beyond its bounds it is kept
 constexpr float kNearest_m = 0.1F;
 constexpr std::size_t kLooks = 12;            // joints along each side that are asked how far they are
 constexpr float kHalfHem_m = 0.0015F;         // half the thickness of a hem
@@ -190,13 +189,10 @@ void ClothRenderer::draw(const meshes::View& view) {
 }
 
 void ClothRenderer::draw_shadow(const meshes::View& view) {
-  // On the ground it may be coarse. In a map the sun has to see what the last picture's eye saw, or the cloth would
-  // shade itself.
-  const bool is_map = view.to_clip[0][3] == 0.0F && view.to_clip[1][3] == 0.0F && view.to_clip[2][3] == 0.0F;
-  if (!is_map) shadow_level_ = level_in(view, std::max(cell_px_, kShadowCell_px), shadow_level_);
-  if (is_map && !level_) level_ = level_in(view, cell_px_, level_);
+  // The sun has to see what the last picture's eye saw, or the cloth would shade itself.
+  if (!level_) level_ = level_in(view, cell_px_, level_);
   glUseProgram(program_.name());
-  sheet(is_map ? *level_ : *shadow_level_).draw();
+  sheet(*level_).draw();
   holder_.draw_coarsely();
 }
 

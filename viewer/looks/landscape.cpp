@@ -29,8 +29,6 @@ constexpr float kCorner_px = 0.75F;
 constexpr float kLowCorner_px = 2.2F;
 constexpr float kBareHill = 3.0F;
 
-constexpr float kSunInShadow = 0.16F;  // as in sward.part.glsl
-
 /// The bearings between which a circle around the world's middle is in view. Nothing where the picture ends below the
 /// horizon.
 std::optional<meshes::Arc> arc_in_view(const meshes::View& view, float radius_m) {
@@ -53,7 +51,6 @@ Landscape::Landscape()
       sky_(gl::link_program("sky", gl::shaders::kSkyVert, gl::shaders::kSkyFrag)) {
   GroundMaps::set_samplers(ground_);
   gl::set_sampler(ground_, "ground_image", gl::kGroundImageUnit);
-  sunlight_place_ = glGetUniformLocation(ground_.name(), "sunlight");
   gl::set_sampler(sky_, "noise_tile", 0);
   gl::set_sampler(sky_, "moon_spots", 0);
   gl::set_sampler(hills_, "relief_tile", 0);
@@ -130,11 +127,8 @@ void Landscape::draw_ground() {
   }
   glEnable(GL_STENCIL_TEST);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  for (const GLuint shadow : {GLuint{0}, gl::kShadow}) {
-    glStencilFunc(GL_EQUAL, static_cast<GLint>(shadow), gl::kHole | gl::kShadow);
-    glUniform1f(sunlight_place_, shadow == 0 ? 1.0F : kSunInShadow);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  }
+  glStencilFunc(GL_EQUAL, 0, gl::kHole);
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   glDisable(GL_STENCIL_TEST);
 }
 

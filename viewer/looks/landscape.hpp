@@ -30,7 +30,7 @@ class Landscape {
   /// Before a picture of this size in this light, whose `view` (ViewBuffer::set) is bound. Binds another framebuffer.
   void prepare(const light::Light& light, const meshes::View& view, int width_px, int height_px);
 
-  /// The View and the GroundMaps are bound. The ground has holes and shadows where the stencil has kHole and kShadow.
+  /// The View and the GroundMaps are bound. The ground has holes where the stencil has kHole.
   void draw_ground();
   /// The hills and the sky of the picture.
   void draw_sky(const meshes::View& view);
@@ -47,7 +47,6 @@ class Landscape {
   gl::GlTexture noise_, relief_;
   CloudMap clouds_;
   gl::GlProgram ground_;
-  GLint sunlight_place_ = -1;
   std::shared_ptr<const look::Image> image_;  // on the ground
   std::optional<gl::GlTexture> image_texture_;
   float image_share_ = 0.0F;

@@ -48,7 +48,7 @@ class SceneRenderer {
   /// OpenGL state that is changed here, but for bindings, is restored.
   virtual void draw(const meshes::View& view) = 0;
 
-  /// Draws what casts its shadow, seen from the sun or laid on the ground; it may be coarser.
+  /// Draws what casts its shadow, seen from the sun; it may be coarser.
   virtual void draw_shadow(const meshes::View& view) { draw(view); }
 
   /// Draws, after everything else, what is blended over it: flames.
@@ -85,8 +85,7 @@ class SceneRenderer {
   /// Draws what is seen of it in a mirror.
   virtual void draw_mirrored(const meshes::View& view) { draw(view); }
 
-  /// Does it cast a shadow? Then draw_shadow() is called with a View from the sun, or one that projects onto the
-  /// ground.
+  /// Does it cast a shadow? Then draw_shadow() is called with a View from the sun.
   virtual bool casts_shadow() const { return false; }
 
   /// Does it cover the ground as a field, in which the camera stands?

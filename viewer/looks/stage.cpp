@@ -15,13 +15,24 @@ namespace yuragi::viewer::looks {
 namespace {
 
 constexpr meshes::Bounds kPartOfGround{glm::vec3(-4.0F, 0.0F, -4.0F), glm::vec3(4.0F, 0.8F, 4.0F)};
-constexpr int kMediumTexels = 1024;
-constexpr int kHighTexels = 2048;
+/// The side of the shadow map.
+int shadow_texels(look::Quality quality) {
+  switch (quality) {
+    case look::Quality::kLow:
+    case look::Quality::kMedium:
+      return 1024;
+    case look::Quality::kHigh:
+    case look::Quality::kAuto:
+      break;
+  }
+  return 2048;
+}
+
 constexpr int kMirror = 2;           // a mirror's pixel is as large as so many of the picture, across and upright
 constexpr int kLowMirror = 3;        // with quality low
 constexpr float kLowestSun = 0.02F;  // the sine of its height: below it shadows have no end
 
-constexpr float kShadowPixels = 2.5F;  // a shadow on the ground is drawn as coarsely as if pixels were so large
+constexpr float kShadowPixels = 2.5F;  // with quality low a shadow is drawn as coarsely as if its texels were so large
 constexpr float kSmallest_px = 2.0F;   // half as wide, nothing is drawn of a thing
 
 /// How wide water is in the picture, half of it, where it begins to mirror more than the sky, and where it mirrors all.
@@ -185,9 +196,9 @@ void Stage::look_around(const stream::PoseMoment& moment, const meshes::View& vi
     const meshes::Bounds box = with_room(views_[scene]->bounds);
     seen_[scene].in_picture = is_field || is_large_in_view(view, planes, box);
     if (!renderer.casts_shadow() || to_sun.y <= kLowestSun) continue;
-    // In a map of shadows it falls on whatever stands between the thing and the ground, too.
+    // It falls on whatever stands between the thing and the ground, too.
     const meshes::Bounds shadow = shadow_of(box, to_sun);
-    seen_[scene].in_shadow = is_field || is_large_in_view(view, planes, shadow_map_ ? united(box, shadow) : shadow);
+    seen_[scene].in_shadow = is_field || is_large_in_view(view, planes, united(box, shadow));
   }
   choose_mirror(view);
   if (!image_) return;
@@ -335,10 +346,7 @@ void Stage::set_quality(look::Quality quality) {
   meadow_.reset();
   lawn_.reset();
   landscape_.set_quality(quality);
-  const int texels =
-      quality == look::Quality::kLow ? 0 : (quality == look::Quality::kMedium ? kMediumTexels : kHighTexels);
   shadow_map_.reset();
-  if (texels > 0) shadow_map_.emplace(texels);
 }
 
 /// Draws what the sun sees of everything that casts a shadow, for `view` to look it up.
@@ -353,7 +361,9 @@ void Stage::draw_shadow_map(const stream::PoseMoment& moment, const glm::vec3& t
     if (!casts(scene)) continue;
     if (const auto floor = views_[scene]->renderer->floor()) casters = united(*casters, meshes::bounds_of(*floor));
   }
+  if (!shadow_map_) shadow_map_.emplace(shadow_texels(quality_));
   const meshes::View shadows = meshes::shadow_view(*casters, to_sun, shadow_map_->texels());
+  const float coarseness = quality_ == look::Quality::kLow ? coarseness_ * kShadowPixels : 1.0F;
   view_buffer_.set(shadows);
   view_buffer_.set(light_);
   glEnable(GL_DEPTH_TEST);
@@ -365,7 +375,7 @@ void Stage::draw_shadow_map(const stream::PoseMoment& moment, const glm::vec3& t
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (!seen_[scene].in_shadow) continue;
     door_.open(moment.opacities[scene], scene);
-    views_[scene]->renderer->draw_shadow(shadows);
+    views_[scene]->renderer->draw_shadow(coarser(shadows, coarseness));
     door_.close();
   }
   shadow_map_->end();
@@ -417,12 +427,16 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     if (seen_[scene].is_anywhere()) views_[scene]->renderer->prepare(view, view_buffer_);
   }
-  if (has_shadows && shadow_map_) {
-    draw_shadow_map(moment, to_sun, view);
+  meshes::View shadowed = view;  // for grass and ground
+  if (has_shadows) {
+    draw_shadow_map(moment, to_sun, shadowed);
     mark_pass("shadows");
   }
-  const bool has_flat_shadows = has_shadows && !shadow_map_;
-  const meshes::View flat = has_flat_shadows ? meshes::laid_flat(view, to_sun) : view;
+  if (quality_ == look::Quality::kLow) {
+    shadowed = meshes::with_hard_shadows(shadowed);
+  } else {
+    view = shadowed;
+  }
   view_buffer_.set(view);
   view_buffer_.set(light_);
   landscape_.prepare(light_, view, target.drawn_width_px(), target.drawn_height_px());
@@ -438,30 +452,27 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     SceneRenderer& renderer = *views_[scene]->renderer;
-    const bool is_shadow_drawn = has_flat_shadows && seen_[scene].in_shadow;
-    if (!seen_[scene].in_picture && !is_shadow_drawn) continue;
+    if (!seen_[scene].in_picture) continue;
     door_.open(moment.opacities[scene], scene);
-    if (seen_[scene].in_picture) {
-      renderer.draw(renderer.is_field() ? view : coarser(view, coarseness_));
-      door_.begin_mark(gl::kHole);
-      renderer.draw_hole();
-      door_.end_mark();
-      mark_pass(scenes_[scene]->kind);
-    }
-    if (is_shadow_drawn) {
-      view_buffer_.set(flat);
-      door_.begin_mark(gl::kShadow);
-      renderer.draw_shadow(coarser(flat, coarseness_ * kShadowPixels));
-      door_.end_mark();
+    if (renderer.is_field()) {
+      view_buffer_.set(shadowed);
+      renderer.draw(shadowed);
       view_buffer_.set(view);
-      mark_pass("shadows");
+    } else {
+      renderer.draw(coarser(view, coarseness_));
     }
+    door_.begin_mark(gl::kHole);
+    renderer.draw_hole();
+    door_.end_mark();
+    mark_pass(scenes_[scene]->kind);
     door_.close();
   }
-  draw_sward(view);
+  view_buffer_.set(shadowed);
+  draw_sward(shadowed);
   mark_pass("sward");
   landscape_.draw_ground();
   mark_pass("ground");
+  view_buffer_.set(view);
   landscape_.draw_sky(view);
   mark_pass("hills and sky");
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {

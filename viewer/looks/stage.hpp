@@ -120,7 +120,7 @@ class Stage {
   float blade_share_ = 1.0F;
   float coarseness_ = 1.0F;
   look::Quality quality_ = look::Quality::kLow;
-  std::optional<gl::ShadowMap> shadow_map_;  // nothing: hard shadows
+  std::optional<gl::ShadowMap> shadow_map_;  // made when the sun first shines
   std::optional<gl::Mirror> mirror_;         // made when water is first seen
   gl::PassClock* clock_ = nullptr;
 };

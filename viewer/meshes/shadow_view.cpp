@@ -49,4 +49,9 @@ void add_shadows(View& view, const View& shadows, int texels) {
   view.shadow = {1.0F / static_cast<float>(texels), shadows.shadow.y, shadows.shadow.z, shadows.shadow.w};
 }
 
+View with_hard_shadows(View view) {
+  view.shadow.y = view.shadow.z = 0.0F;
+  return view;
+}
+
 }  // namespace yuragi::viewer::meshes

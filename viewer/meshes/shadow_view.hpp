@@ -13,4 +13,7 @@ View shadow_view(const Bounds& casters, const glm::vec3& to_sun, int texels);
 /// Lets things that are drawn with `view` look up their shadows in the map that was drawn with `shadows`.
 void add_shadows(View& view, const View& shadows, int texels);
 
+/// The view whose shadows have no penumbra: one look at the map for each place.
+View with_hard_shadows(View view);
+
 }  // namespace yuragi::viewer::meshes

@@ -105,14 +105,4 @@ View mirrored(const View& view, float height_m, float pixels) {
   return image;
 }
 
-View laid_flat(const View& view, const glm::vec3& to_sun) {
-  // Each point moves along the ray until its height is 0.
-  glm::mat4 flatten(1.0F);
-  flatten[1] = {-to_sun.x / to_sun.y, 0.0F, -to_sun.z / to_sun.y, 0.0F};
-  View flat = view;
-  flat.to_clip = view.to_clip * flatten;
-  flat.shadow = {0.0F, 0.0F, 0.0F, 1.0F};
-  return flat;
-}
-
 }  // namespace yuragi::viewer::meshes

@@ -22,8 +22,8 @@ struct View {
   /// the camera's axis; w: mean density of the mist between the eye's height and the ground, 1 on it
   glm::vec4 forward{0.0F};
   glm::mat4 to_shadow{1.0F};  ///< to the shadow map: place and depth, 0 to 1
-  /// A texel of the map (0: there is none); how a penumbra grows, across and upright; its depth, m (and no texel: what
-  /// is drawn is a shadow, without color).
+  /// A texel of the map (0: there is none); how a penumbra grows, across and upright (0: not at all); its depth, m (and
+  /// no texel: what is drawn is a shadow, without color).
   glm::vec4 shadow{0.0F};
 };
 
@@ -59,9 +59,5 @@ bool is_in_view(const std::array<glm::vec4, 5>& planes, const glm::vec3& low_m, 
 /// `view`.
 inline constexpr float kMirrorMargin = 1.25F;  // water.frag.glsl has the same number
 View mirrored(const View& view, float height_m, float pixels);
-
-/// The same view of everything projected onto the ground along the rays from `to_sun`, which is above the horizon: of
-/// its shadows.
-View laid_flat(const View& view, const glm::vec3& to_sun);
 
 }  // namespace yuragi::viewer::meshes

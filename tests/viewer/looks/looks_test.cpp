@@ -470,6 +470,82 @@ TEST_F(StageTest, ThrowsShadowsOnTheGround) {
   }
 }
 
+/// Brightness of a screen's pixel, 0 to 255 (Rec. 709).
+double luminance_at(const Pixels& pixels, std::size_t pixel) {
+  return 0.2126 * pixels[3 * pixel] + 0.7152 * pixels[3 * pixel + 1] + 0.0722 * pixels[3 * pixel + 2];
+}
+
+/// The mean luminance of those pixels for which `is_counted`; 0 if there are none.
+template <class IsCounted>
+double mean_luminance(const Pixels& pixels, IsCounted&& is_counted) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t pixel = 0; pixel < pixels.size() / 3; ++pixel) {
+    if (!is_counted(pixel)) continue;
+    sum += luminance_at(pixels, pixel);
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+light::Light noon() {
+  const std::vector<std::string> look{"sun=fixed", "sun_height=60", "sun_azimuth=180", "clouds=0"};
+  return light::light_of(look::edited({}, look).value(), 0.0);
+}
+
+TEST_F(StageTest, GrassIsDarkInTheShadowOfACrownAtNoon) {
+  // The sun is in the south: the shadow's middle lies north of the trunk, and the eye sees it from beyond.
+  show({test_model("tree")});
+  stage_->set_light(noon());
+  const meshes::Bounds tree = stage_->bounds();
+  const double crown_m = 0.65 * static_cast<double>(tree.high_m.y);
+  camera_.frame({{0.0, 0.0, -crown_m / std::tan(60.0 * 0.017453292519943295)}, 180.0, 25.0, 2.0});
+  for (const look::Quality quality : {look::Quality::kLow, look::Quality::kMedium, look::Quality::kHigh}) {
+    stage_->set_quality(quality);
+    const Pixels with = draw(0.0, 1.0F);
+    const Pixels without = draw(0.0, 0.0F);
+    // Squares of 8 pixels, so that no single blade counts: the darkest tenth of those on the ground.
+    constexpr int kSide_px = 8;
+    std::vector<double> shares;
+    for (int top = kHeight_px / 2; top < kHeight_px; top += kSide_px) {
+      for (int left = 0; left < kWidth_px; left += kSide_px) {
+        const auto is_here = [&](std::size_t pixel) {
+          const int row = static_cast<int>(pixel) / kWidth_px - top;
+          const int column = static_cast<int>(pixel) % kWidth_px - left;
+          return row >= 0 && row < kSide_px && column >= 0 && column < kSide_px;
+        };
+        shares.push_back(mean_luminance(with, is_here) / mean_luminance(without, is_here));
+      }
+    }
+    std::ranges::sort(shares);
+    std::printf("%s: shadowed over lit grass %.2f\n", std::string(name_of(quality)).c_str(),
+                shares[shares.size() / 10]);
+    EXPECT_LE(shares[shares.size() / 10], 0.45) << name_of(quality);
+  }
+}
+
+TEST_F(StageTest, ShadowsOfCloudsFallOnTreesClothWaterAndFur) {
+  for (const char* kind : {"tree", "flag", "curtain", "ripple", "fur"}) {
+    show({test_model(kind)});
+    const auto picture = [&](float held_back, float opacity) {
+      light::Light light = noon();
+      light.drift = {0.0F, 0.0F, held_back, -1.0F};  // a cloud everywhere
+      stage_->set_light(light);
+      return draw(0.0, opacity);
+    };
+    const Pixels lit = picture(0.0F, 1.0F);
+    const Pixels shaded = picture(0.6F, 1.0F);
+    const Pixels without = picture(0.0F, 0.0F);
+    const auto is_thing = [&](std::size_t pixel) {
+      return std::abs(luminance_at(lit, pixel) - luminance_at(without, pixel)) > 12.0 &&
+             pixel < kWidth_px * kHeight_px * 2 / 3;
+    };
+    const double share = mean_luminance(shaded, is_thing) / mean_luminance(lit, is_thing);
+    std::printf("%s below a cloud: %.2f as bright\n", kind, share);
+    EXPECT_LT(share, 0.93) << kind;
+  }
+}
+
 TEST_F(StageTest, SeesABodyFromOutsideWhereverTheCameraStands) {
   show({test_model("fur")});
   const meshes::Bounds bounds = stage_->bounds();

@@ -15,7 +15,7 @@ void main() {
   albedo = mix(albedo, vec3(0.075, 0.092, 0.030) * (0.5 + texture(noise_tile, place_m.xz * 2.1).r), turf);
 
   vec3 bumped = normalize(normal + 0.030 * (dFdx(height) * right.xyz + dFdy(height) * up.xyz) / max(eye_m.w * distance(eye_m.xyz, place_m) * 8.0, 0.01));
-  float lit = mix(0.12, 1.0, sunlight_at(place_m + 0.02 * normal, pixel_chance(gl_FragCoord.xy)));
+  float lit = below_clouds(place_m) * mix(0.12, 1.0, sunlight_at(place_m + 0.02 * normal, pixel_chance(gl_FragCoord.xy)));
   vec3 light = albedo * (soft_light(bumped) * (0.55 + 0.45 * smoothstep(0.0, 0.7, height)) + 0.9 * lit * sun_light.rgb * max(dot(bumped, to_sun.xyz), 0.0));
   light += albedo * fire_light(place_m, bumped);
   // The water's film shines.

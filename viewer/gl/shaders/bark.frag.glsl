@@ -33,7 +33,7 @@ void main() {
   vec3 in_crown = (place_m - crown_middle_m) / crown_radius_m;
   float open = mix(1.0, smoothstep(0.35, 1.15, length(in_crown)), 0.2 + 0.8 * leafy);
   vec3 light = paint * soft_light(facing) * (0.45 + 0.55 * open);
-  light += paint * sun_light.rgb * mix(0.15, 1.0, sunlight_near(place_m + 0.35 * to_sun.xyz)) * max(dot(facing, to_sun.xyz), 0.0) * (0.25 + 0.75 * open);
+  light += paint * sun_light.rgb * below_clouds(place_m) * mix(0.15, 1.0, sunlight_near(place_m + 0.35 * to_sun.xyz)) * max(dot(facing, to_sun.xyz), 0.0) * (0.25 + 0.75 * open);
   light += paint * fire_light(place_m, facing);
   float rim = 1.0 - abs(dot(facing, from_eye));
   light += 0.05 * rim * rim * rim * sky_light.rgb * open;

@@ -217,7 +217,7 @@ void main() {
   // What has come through threads has the cloth's colour, deeper.
   vec3 deep = paint * sqrt(max(paint, vec3(0.0))) * 1.25;
   float shade = sunlight_at(place_m + 0.04 * to_sun.xyz, pixel_chance(gl_FragCoord.xy));
-  vec3 sun = sun_light.rgb * mix(0.5 * deep, vec3(1.0), shade);
+  vec3 sun = sun_light.rgb * below_clouds(place_m) * mix(0.5 * deep, vec3(1.0), shade);
   float height = dot(facing, to_sun.xyz);
   // Folds finer than the mesh lean either way: where the sun only grazes the cloth, some of it still falls on each side.
   float grazed = sqrt(height * height + kFineFolds * kFineFolds);

@@ -138,17 +138,17 @@ uniform sampler2D shadow_depth;
 float sunlight_near(vec3 place_m) {
   if (shadow.x == 0.0) return 1.0;
   vec3 at = (to_shadow * vec4(place_m, 1.0)).xyz;
-  if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
-  return textureLod(shadow_map, at, 0.0);
+  if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
+  return textureLod(shadow_map, vec3(at.xy, min(at.z, 1.0)), 0.0);  // things cast shadows beyond the map's far end, too
 }
 
 // The same with a penumbra that grows with the distance from what casts the shadow (R. Fernando 2005, "Percentage-closer
 // soft shadows"). `chance`, 0 to 1, turns its samples, another way at each pixel.
 float sunlight_at(vec3 place_m, float chance) {
   if (shadow.x == 0.0) return 1.0;
+  if (shadow.y == 0.0) return sunlight_near(place_m);  // hard shadows
   vec3 at = (to_shadow * vec4(place_m, 1.0)).xyz;
   if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return 1.0;
-  // Behind the map's end things still cast shadows.
   float depth = min(at.z, 1.0);
   float angle = 6.2831853 * chance;
   vec2 turn = vec2(cos(angle), sin(angle));
@@ -169,6 +169,21 @@ float sunlight_at(vec3 place_m, float chance) {
   float lit = 0.0;
   for (int i = 0; i < 8; ++i) lit += textureLod(shadow_map, vec3(at.xy + turned * kSpiral[i] * wide, depth), 0.0);
   return lit / 8.0;
+}
+
+// The share of the sun's light that clouds let through to a place on the ground. Their shadows go with the wind as fast as they
+// do, but are smaller, so that one sees several at once.
+uniform sampler2D cloud_noise;
+const float kShadows_m = 300.0;  // after so far they repeat
+const float kDrift_m = 1500.0;   // a height of the clouds (sky_keeper.cpp)
+vec2 in_clouds(vec2 at_m) { return at_m * (1.0 / kShadows_m) - drift.xy * (kDrift_m / kShadows_m); }
+float under_cloud(float cloud) { return 1.0 - drift.z * smoothstep(drift.w - 0.06, drift.w + 0.06, cloud); }
+
+// The same for a place above the ground: it is in the shadow that the sun's ray through it meets on the ground.
+float below_clouds(vec3 place_m) {
+  if (drift.z == 0.0) return 1.0;
+  vec2 on_ground_m = place_m.xz - to_sun.xz * (place_m.y / max(to_sun.y, 0.1));
+  return under_cloud(textureLod(cloud_noise, in_clouds(on_ground_m), 0.0).r);
 }
 
 // Joints of strands as the forward kinematics writes them, in blocks of 16 strands.

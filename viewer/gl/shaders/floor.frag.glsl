@@ -50,7 +50,7 @@ void main() {
   paint *= 1.0 - 0.92 * dark;
 
   float lit = unshaded * sunlight_at(place_m + 0.008 * to_sun.xyz, pixel_chance(gl_FragCoord.xy));
-  vec3 sun = sun_light.rgb * mix(thin * through, vec3(1.0), lit);
+  vec3 sun = sun_light.rgb * below_clouds(place_m) * mix(thin * through, vec3(1.0), lit);
   vec3 light = paint * (0.95 * soft_light(facing) + 0.85 * sun * max(dot(facing, to_sun.xyz), 0.0));
   light += paint * fire_light(place_m, facing);
 

@@ -1,6 +1,5 @@
 #include "sward.part.glsl"
 // The ground between the blades near by, and the grass itself where blades would be smaller than pixels.
-uniform float sunlight;  // 1, and less in a hard shadow
 uniform int images;              // 1: a picture lies on the ground, 0: none
 uniform sampler2D ground_image;
 uniform vec2 image_form;         // how much of it is seen; its height, in widths of it
@@ -29,7 +28,7 @@ void main() {
   float coarse = textureLod(turf_tile, turned_m, blur - 1.0).b - 0.5;
   float tufts = clamp(3.2 * mix(fine, coarse, next) + clumps_at(at_m, blur - log2(256.0 * per_m)), -0.5, 0.5);
 
-  float lit = sunlight * mix(kSunInShadow, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
+  float lit = mix(kSunInShadow, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
   lit *= under_clouds(at_m, distance_m * eye_m.w * inversesqrt(max(to_eye.y, 0.02)));
   vec3 canopy = canopy_light(bend_at(at_m, tall), to_eye, patch_at, tufts, tall, lit);
 

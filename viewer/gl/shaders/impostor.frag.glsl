@@ -55,6 +55,7 @@ void main() {
   vec3 right = vec3(toward.z, 0.0, -toward.x) * inversesqrt(max(dot(toward.xz, toward.xz), 1e-6));
   float depth = sqrt(max(1.0 - dot(at, at), 0.0));
   vec3 outward = normalize(at.x * right + at.y * cross(toward, right) + (0.2 + depth) * toward);
+  vec3 sun = sun_light.rgb * below_clouds(place_m);
   float sun_seen = clamp(open * (0.32 + 0.95 * open + 0.55 * dot(outward, to_sun.xyz)), 0.02, 1.0);
   float sky_seen = clamp(open * (1.0 + 0.45 * outward.y), 0.32, 1.0);
   vec3 sum = paint * soft_light(normal) * sky_seen;
@@ -63,7 +64,7 @@ void main() {
   float against = max(-dot(toward, to_sun.xyz), 0.0);
   vec3 through_leaf = (kind == 0 ? paint * vec3(0.95, 1.25, 0.35) : paint) * (kind == 2 ? 0.0 : is_leaf);
   vec3 sunlit = paint * (0.5 * (differ + facing_sun)) + through_leaf * (0.5 * (differ - facing_sun) * (0.95 + 1.1 * against * against * against));
-  sum += sun_light.rgb * sun_seen * sunlit;
-  sum += sun_light.rgb * (0.35 * paint + 0.65 * through_leaf) * (0.42 * (0.10 + 0.30 * sun_seen) * is_leaf);
+  sum += sun * sun_seen * sunlit;
+  sum += sun * (0.35 * paint + 0.65 * through_leaf) * (0.42 * (0.10 + 0.30 * sun_seen) * is_leaf);
   color = vec4(seen(sum, place_m), 1.0);
 }

@@ -120,6 +120,7 @@ void main() {
   own_normal = normal;
   own_open = 0.5 + 0.5 * clamp(open_now.w + 0.45 * dot(open_now.xyz, normal), 0.0, 1.0);
 
+  vec3 sun = sun_light.rgb * below_clouds(place);
   // What the crown lets through to here. With a map of shadows that knows the leaves as they are now.
   float sun_seen = clamp(open_now.w + dot(open_now.xyz, to_sun.xyz), 0.02, 1.0);
   if (shadow.x > 0.0) sun_seen = mix(sun_seen, sunlight_near(place + 0.12 * to_sun.xyz), 0.6);
@@ -132,17 +133,17 @@ void main() {
   vec3 through_leaf = kind == 0 ? tint * vec3(0.95, 1.25, 0.35) : face * vec3(1.0, 0.94, 0.95);
   // Through a leaf light goes on a little more straight than to all sides.
   vec3 sunlit = facing > 0.0 ? face * facing : through_leaf * (thin * -facing * (0.95 + 1.1 * against * against * against));
-  sum += sun_light.rgb * sun_seen * sunlit;
+  sum += sun * sun_seen * sunlit;
   // And light that other leaves, which the sun reaches, have reflected and let through: it comes from all around, the
   // more the nearer the sun, and fades with the depth in the crown.
   float from_others = (0.10 + 0.30 * sun_seen) * (0.35 + 0.65 * min(2.5 * open_now.w, 1.0)) * (1.0 - 0.5 * open_now.w);
-  sum += sun_light.rgb * (0.35 * tint + 0.65 * through_leaf) * (0.42 * from_others * thin);
+  sum += sun * (0.35 * tint + 0.65 * through_leaf) * (0.42 * from_others * thin);
 
   float shine = max(dot(normal, normalize(to_sun.xyz + to_eye)), 0.0);
   shine *= shine;
   shine *= shine;
   shine *= shine;
   shine *= shine;
-  if (kind == 0) sum += sun_light.rgb * 0.05 * shine * shine * sun_seen;
+  if (kind == 0) sum += sun * 0.05 * shine * shine * sun_seen;
   shade = seen(sum, place);
 }

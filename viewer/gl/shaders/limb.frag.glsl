@@ -19,7 +19,7 @@ void main() {
   vec3 albedo = tint * (0.58 + 0.20 * locks + 0.75 * fine);
   float deep = 1.0 - 0.55 * smoothstep(0.75, 0.30, fine);
   float sun_up = dot(facing, to_sun.xyz);
-  vec3 sun = sun_light.rgb * mix(0.2, 1.0, sunlight_near(place_m + 0.08 * facing));
+  vec3 sun = sun_light.rgb * below_clouds(place_m) * mix(0.2, 1.0, sunlight_near(place_m + 0.08 * facing));
   vec3 light = albedo * (soft_light(facing) * deep + sun * smoothstep(-0.25, 1.0, sun_up) * 0.8);
   light += albedo * fire_light(place_m, facing) * deep;
   float against = max(dot(from_eye, to_sun.xyz), 0.0);

@@ -45,7 +45,7 @@ void main() {
   tint = mix(tint * (0.75 + 0.5 * fract(traits.w * 61.0)), vec3(0.085, 0.042, 0.018), head);
   vec3 normal = normalize(cross(across, along));
   normal *= dot(normal, to_eye) < 0.0 ? -1.0 : 1.0;
-  float lit = mix(0.15, 1.0, sunlight_near(place));
+  float lit = below_clouds(place) * mix(0.15, 1.0, sunlight_near(place));
   float facing = dot(normal, to_sun.xyz);
   float against = max(-dot(to_eye, to_sun.xyz), 0.0);
   float deep = 0.35 + 0.65 * smoothstep(0.0, 0.5, t);

@@ -12,7 +12,7 @@ void main() {
   vec3 facing = normalize(normal);
   facing *= dot(facing, from_eye) > 0.0 ? -1.0 : 1.0;
   vec3 paint = mix(tint, wood(tint, grained.xy), grained.z);
-  vec3 sun = sun_light.rgb * mix(0.1, 1.0, sunlight_near(place_m + 0.06 * to_sun.xyz));
+  vec3 sun = sun_light.rgb * below_clouds(place_m) * mix(0.1, 1.0, sunlight_near(place_m + 0.06 * to_sun.xyz));
   vec3 light = paint * (soft_light(facing) + 0.85 * sun * max(dot(facing, to_sun.xyz), 0.0));
   light += paint * fire_light(place_m, facing);
   float shine = max(dot(facing, normalize(to_sun.xyz - from_eye)), 0.0);

@@ -59,12 +59,7 @@ vec3 tint_of(vec2 patch_at, float chance) {
   return dryness < 0.6 ? mix(grass_lush.rgb, grass_fresh.rgb, dryness / 0.6) : mix(grass_fresh.rgb, grass_straw.rgb, (dryness - 0.6) / 0.4);
 }
 
-// The share of the sun's light that clouds let through to a place on the ground. Their shadows go with the wind as fast as they
-// do, but are smaller, so that one sees several at once.
-const float kShadows_m = 300.0;  // after so far they repeat
-const float kDrift_m = 1500.0;   // a height of the clouds (sky_keeper.cpp)
-vec2 in_clouds(vec2 at_m) { return at_m * (1.0 / kShadows_m) - drift.xy * (kDrift_m / kShadows_m); }
-float under_cloud(float cloud) { return 1.0 - drift.z * smoothstep(drift.w - 0.06, drift.w + 0.06, cloud); }
+// The share of the sun's light that clouds let through to a pixel of the ground.
 float under_clouds(vec2 at_m, float pixel_m) {
   return under_cloud(textureLod(noise_tile, in_clouds(at_m), log2(max(pixel_m * (256.0 / kShadows_m), 1.0))).r);
 }

@@ -83,7 +83,7 @@ void main() {
   if (beside > 0.0 || at.w <= 0.01) sky = mix(sky, finish(air_light(up_ray)), at.w > 0.01 ? beside : 1.0);
 
   // What is seen through it: the bed, and the light that the water itself scatters.
-  float lit = mix(0.15, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
+  float lit = below_clouds(place_m) * mix(0.15, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
   const vec3 kAbsorbed = vec3(1.9, 0.85, 1.25);  // per metre
   vec3 down = refract(from_eye, normal, 0.752);
   float depth_m = max(place_m.y - bed_m, 0.0);
