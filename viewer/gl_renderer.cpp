@@ -50,6 +50,7 @@ void GlRenderer::draw(const Picture& picture) {
   camera_.go_to(picture.camera);
   stage_.draw(picture.moment, camera_, target_);
   if (picture.fading_out) cross_fade_.draw(target_, picture.share);
+  if (quality_ == look::Quality::kLow && target_.samples() == 1) edge_smoother_.draw(target_);
 }
 
 }  // namespace yuragi::viewer

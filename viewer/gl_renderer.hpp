@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "viewer/gl/cross_fade.hpp"
+#include "viewer/gl/edge_smoother.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/gl/render_target.hpp"
 #include "viewer/looks/stage.hpp"
@@ -51,6 +52,7 @@ class GlRenderer final : public Renderer {
   const int samples_;
   looks::Stage stage_;
   gl::CrossFade cross_fade_;
+  gl::EdgeSmoother edge_smoother_;  // with quality low
   gl::RenderTarget target_;
   meshes::OrbitCamera camera_;
   DrawnPart drawn_;

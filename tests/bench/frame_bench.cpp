@@ -17,12 +17,14 @@
 #include <exception>
 #include <functional>
 #include <map>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "tests/pictures/scenes_in_wind.hpp"
 #include "tests/support/places.hpp"
+#include "viewer/gl/edge_smoother.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/pace_keeper.hpp"
@@ -126,6 +128,8 @@ void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, g
   }
 
   // Pictures of their own for the passes: their clock waits.
+  std::optional<gl::EdgeSmoother> smoother;  // as GlRenderer has it
+  if (options.quality == "low" && target.samples() == 1) smoother.emplace();
   gl::PassClock clock(gl::is_software_renderer() ? gl::PassClock::By::kProcessor : gl::PassClock::By::kGpu);
   stage.time_passes_with(&clock);
   struct PassCosts {
@@ -135,6 +139,10 @@ void measure(const Row& row, const BenchOptions& options, looks::Stage& stage, g
   std::vector<std::string> pass_names;
   for (int picture = 0; picture < options.pictures; ++picture) {
     draw(picture);
+    if (smoother) {
+      smoother->draw(target);
+      clock.mark("smoothing");
+    }
     for (const gl::PassClock::Pass& pass : clock.end()) {
       PassCosts& costs = passes[pass.name];
       if (costs.times_ms.empty()) pass_names.push_back(pass.name);
@@ -198,6 +206,7 @@ int main(int argc, char** argv) {
     const look::Quality quality = quality_for(look.quality, gl::is_software_renderer());
     looks::Stage stage;
     stage.set_quality(quality);
+    options.quality = name_of(quality);
     gl::RenderTarget target(options.width_px, options.height_px, options.samples);
     const DrawnPart part = PaceKeeper::kSteps[options.step];
     stage.set_blade_share(part.blades);

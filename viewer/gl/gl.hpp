@@ -105,6 +105,7 @@ enum TextureUnit : GLint {
   kImpostorUnit,     // the pictures of a far tree, and what their light needs to know
   kImpostorFacingUnit,
   kGroundImageUnit,  // the picture that lies on the ground
+  kEdgesUnit,        // the picture whose edges are smoothed
 };
 
 /// Compiles and links. Each stage begins with #version and shaders/common.glsl. On an error throws std::runtime_error

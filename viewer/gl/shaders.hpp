@@ -55,6 +55,7 @@ extern const std::string_view kSkinFrag;
 extern const std::string_view kSkyVert;
 extern const std::string_view kSkyFrag;
 extern const std::string_view kSmallSkyFrag;
+extern const std::string_view kSmoothEdgesFrag;
 extern const std::string_view kSolidVert;
 extern const std::string_view kSolidFrag;
 extern const std::string_view kSparkVert;

@@ -13,6 +13,7 @@
 
 #include "tests/viewer/test_models.hpp"
 #include "viewer/gl/cross_fade.hpp"
+#include "viewer/gl/edge_smoother.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
 #include "viewer/stream/scene_timeline.hpp"
@@ -544,6 +545,38 @@ TEST_F(StageTest, ShadowsOfCloudsFallOnTreesClothWaterAndFur) {
     std::printf("%s below a cloud: %.2f as bright\n", kind, share);
     EXPECT_LT(share, 0.93) << kind;
   }
+}
+
+TEST_F(StageTest, ASmoothedPictureOfGrassHardlyFlickersAsTheCameraTurns) {
+  show({test_model("grass")});
+  gl::EdgeSmoother smoother;
+  const double pixel_deg = 40.0 / kHeight_px;
+  const auto flickering = [&](bool is_smoothed) {
+    const auto picture = [&](double turned_px) {
+      meshes::CameraPlace place = stage_->home(static_cast<double>(kWidth_px) / kHeight_px);
+      place.heading_deg += turned_px * pixel_deg;
+      camera_.go_to(place);
+      draw(0.3, 1.0F);
+      if (is_smoothed) smoother.draw(*target_);
+      return target_->read_rgb();
+    };
+    const Pixels before = picture(0.0);
+    const Pixels now = picture(0.3);
+    std::size_t count = 0;
+    const std::size_t from = before.size() / 2 / 3;
+    for (std::size_t pixel = from; pixel < before.size() / 3; ++pixel) {
+      int most = 0;
+      for (std::size_t i = 3 * pixel; i < 3 * pixel + 3; ++i) most = std::max(most, std::abs(before[i] - now[i]));
+      count += most > 30 ? 1U : 0U;
+    }
+    return 100.0 * static_cast<double>(count) / static_cast<double>(before.size() / 3 - from);
+  };
+  const double plain = flickering(false);
+  const double smoothed = flickering(true);
+  std::printf("turned by 0.3 pixel, %.1f %% of the pixels change by more than 30 levels; smoothed %.1f %%\n", plain,
+              smoothed);
+  EXPECT_LE(smoothed, 5.0);
+  EXPECT_LT(smoothed, 0.6 * plain);
 }
 
 TEST_F(StageTest, SeesABodyFromOutsideWhereverTheCameraStands) {

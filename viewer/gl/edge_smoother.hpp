@@ -1,0 +1,25 @@
+#pragma once
+
+#include "viewer/gl/gl.hpp"
+#include "viewer/gl/render_target.hpp"
+
+namespace yuragi::viewer::gl {
+
+/// Smooths the stairs of edges in a finished picture of one sample a pixel, and what is finer than a pixel, so that it
+/// does not flicker while the camera or the wind moves it (T. Lottes 2009, "FXAA"). One pass. Needs a current context.
+class EdgeSmoother {
+ public:
+  EdgeSmoother();
+
+  /// Replaces the resolved pixels of `target`, which stay bound.
+  void draw(const RenderTarget& target);
+
+ private:
+  GlProgram program_;
+  GlVertexArray no_attributes_;
+  GlTexture copy_;
+  int width_px_ = 0;
+  int height_px_ = 0;
+};
+
+}  // namespace yuragi::viewer::gl
