@@ -167,6 +167,13 @@ constexpr glm::vec3 kFullMoon(0.075F, 0.088F, 0.112F);
 constexpr glm::vec3 kMoonlitSky(0.0016F, 0.0029F, 0.0058F);
 constexpr glm::vec3 kTurf(0.055F, 0.065F, 0.022F);  // what it reflects
 constexpr glm::vec3 kOvercast(0.93F, 0.99F, 1.06F);
+constexpr glm::vec3 kOvercastNight(0.70F, 0.96F, 1.40F);
+
+// The share of the light that an overcast sky lets through. By night less, and it is seen as darker than it shines: a
+// grey sky that is brighter than the land looks like a dim day.
+constexpr float kThroughClouds = 0.30F;
+constexpr float kThroughCloudsByNight = 0.22F;
+constexpr float kNightCloudsSeen = 0.45F;
 
 constexpr float kCloudShadow = 0.6F;  // of the sun's light, that a cloud holds back
 
@@ -193,7 +200,10 @@ Light daylight(const Sky& sky) {
   const glm::vec3 moonlit = kMoonlitSky * moon_in_dark;
   const float level =
       luminance_of(direct) * static_cast<float>(std::max(to_sun.y, 0.0)) + luminance_of(clear.sky_light + moonlit);
-  const glm::vec3 grey = kOvercast * (0.30F * level);
+  const float dark = rise(-4.0, -12.0, sky.sun.height_deg);
+  const glm::vec3 grey =
+      glm::mix(kOvercast, kOvercastNight, dark) * (glm::mix(kThroughClouds, kThroughCloudsByNight, dark) * level);
+  const glm::vec3 seen_grey = grey * glm::mix(1.0F, kNightCloudsSeen, dark);
 
   Light light;
   light.to_sun = glm::vec4(glm::vec3(to_sun), 0.0F);
@@ -204,18 +214,17 @@ Light daylight(const Sky& sky) {
   const auto set = [](glm::vec4& to, const glm::vec3& color) { to = glm::vec4(color, 0.0F); };
   set(light.sun_light, direct * (1.0F - 0.98F * covered));
   // (An overcast sky is three times as bright overhead as at the horizon: CIE S 011.)
-  set(light.zenith, glm::mix(clear.zenith + moonlit, grey * 0.9F, covered));
-  set(light.horizon_near, glm::mix(clear.horizon_near + moonlit, grey * 0.6F, covered));
-  set(light.horizon_far, glm::mix(clear.horizon_far + moonlit, grey * 0.6F, covered));
+  set(light.zenith, glm::mix(clear.zenith + moonlit, seen_grey * 0.9F, covered));
+  set(light.horizon_near, glm::mix(clear.horizon_near + moonlit, seen_grey * 0.6F, covered));
+  set(light.horizon_far, glm::mix(clear.horizon_far + moonlit, seen_grey * 0.6F, covered));
   set(light.glow_wide, clear.glow_wide * (1.0F - covered));
   set(light.glow_narrow, clear.glow_narrow * (1.0F - covered));
   set(light.glow_disc, clear.glow_disc * (1.0F - covered));
-  set(light.cloud_light, glm::mix(clear.cloud_light + 0.8F * moonlit, grey * 0.65F, covered));
+  set(light.cloud_light, glm::mix(clear.cloud_light + 0.8F * moonlit, seen_grey * 0.65F, covered));
   set(light.cloud_glow, (clear.cloud_glow + 0.35F * kFullMoon * moon_in_dark) * (1.0F - covered));
   set(light.sky_light, glm::mix(clear.sky_light + moonlit, grey, covered));
   set(light.turf_light, kTurf * (0.35F * glm::vec3(light.sun_light) + 2.2F * glm::vec3(light.sky_light)));
 
-  const float dark = rise(-4.0, -12.0, sky.sun.height_deg);
   light.colors.y = 1.0F - 0.52F * dark;
   const double haze_per_m = 0.00008 * std::exp(7.6 * sky.haze);
   const double clouds_begin = 0.73 - 0.62 * sky.clouds + 3.0 * std::max(0.0, 0.1 - sky.clouds) -

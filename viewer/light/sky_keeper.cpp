@@ -23,6 +23,10 @@ constexpr double kEveningExposure = 0.545;
 constexpr double kEveningBrightness = 1.65;
 constexpr double kFollowing = 0.62;
 constexpr double kFollowingInTheDark = 0.74;  // but a night is to be seen
+// Darker than a clear night of full moon the eye is at its end, and follows little: starlight is darker, and an
+// overcast night without a moon the darkest.
+constexpr double kMoonlitBrightness = 0.055;
+constexpr double kFollowingStarlight = 0.44;
 constexpr double kAdapting_s = 12.0;
 
 // Clouds are carried by a wind that is about twice as fast as the one at the ground.
@@ -50,7 +54,10 @@ double at_solar_time_s(double hour, double utc_s, double longitude_deg) {
 double exposure_log_for(const Light& light) {
   const double brightness = std::max(1e-4, static_cast<double>(brightness_of(light)));
   const double log_ratio = std::log(brightness / kEveningBrightness);
-  return std::log(kEveningExposure) - (log_ratio < 0.0 ? kFollowingInTheDark : kFollowing) * log_ratio;
+  const double log_below_moonlight = std::min(0.0, std::log(brightness / kMoonlitBrightness));
+  return std::log(kEveningExposure) -
+         (log_ratio < 0.0 ? kFollowingInTheDark : kFollowing) * (log_ratio - log_below_moonlight) -
+         kFollowingStarlight * log_below_moonlight;
 }
 
 double share_of(double passed_s, double time_s) {

@@ -547,6 +547,27 @@ TEST_F(StageTest, ShadowsOfCloudsFallOnTreesClothWaterAndFur) {
   }
 }
 
+TEST_F(StageTest, AnOvercastNightWithoutAMoonIsTheDarkest) {
+  show({test_model("grass"), test_model("tree", {.east_m = 3.0})});
+  constexpr double kFullMoon_s = 1795561200.0;  // 2026-11-24, 23:00
+  constexpr double kNewMoon_s = 1796770800.0;   // 2026-12-08, 23:00
+  const auto brightness = [&](double utc_s, double clouds, double hour) {
+    look::Look look{.sun = look::SunChoice::kTime, .latitude_deg = 48.0, .longitude_deg = 0.0, .clouds = clouds};
+    look.solar_time_h = hour;
+    stage_->set_light(light::light_of(look, utc_s));
+    return mean_luminance(draw(0.0, 1.0F), [](std::size_t) { return true; });
+  };
+  const double full_moon = brightness(kFullMoon_s, 0.0, 23.0);
+  const double stars = brightness(kNewMoon_s, 0.0, 23.0);
+  const double overcast = brightness(kNewMoon_s, 1.0, 23.0);
+  const double dusk = brightness(kNewMoon_s, 1.0, 16.4);
+  std::printf("full moon %.1f, stars %.1f, overcast %.1f; overcast dusk %.1f\n", full_moon, stars, overcast, dusk);
+  EXPECT_LT(stars, 0.85 * full_moon);
+  EXPECT_LT(overcast, 0.45 * full_moon);
+  EXPECT_LT(overcast, 0.35 * dusk);
+  EXPECT_GT(overcast, 6.0) << "something is seen";
+}
+
 TEST_F(StageTest, ASmoothedPictureOfGrassHardlyFlickersAsTheCameraTurns) {
   show({test_model("grass")});
   gl::EdgeSmoother smoother;
