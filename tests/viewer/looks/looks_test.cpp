@@ -754,6 +754,36 @@ TEST_F(StageTest, TheMeadowHasNoEdgeSeenFromAbove) {
   EXPECT_NEAR(sums[0] / counts[0] / (sums[1] / counts[1]), 1.0, 0.12);
 }
 
+TEST_F(StageTest, AMeadowFromAboveIsAsBrightAsFromTheSideAndShowsItsGusts) {
+  show({test_model("grass"), ground_model()});
+  stage_->set_light(noon());
+  // The mean light of the grass, bent so much more than on the average in a band from west to east.
+  const auto grass_light = [&](double pitch_deg, double distance_m, float gust_rad) {
+    camera_.frame({{0.0, 0.0, 0.0}, 0.0, pitch_deg, distance_m});
+    stream::PoseMoment moment = stream::rest_moment(models_);
+    auto& nodes = std::get<pose::StrandPose>(moment.poses[1]);
+    std::ranges::fill(nodes.bend_east_rad, 0.35F);
+    for (std::size_t node = 24; node < 40; ++node) nodes.bend_east_rad[node] += gust_rad;
+    stage_->draw(moment, camera_, *target_);
+    const Pixels pixels = target_->read_rgb();
+    return mean_luminance(pixels, [](std::size_t pixel) { return pixel / kWidth_px > kHeight_px / 3; });
+  };
+  for (const look::Quality quality : {look::Quality::kLow, look::Quality::kHigh}) {
+    stage_->set_quality(quality);
+    const double side = grass_light(15.0, 12.0, 0.0F);
+    for (const double distance_m : {10.0, 25.0}) {
+      const double top = grass_light(88.0, distance_m, 0.0F);
+      const double lull = grass_light(88.0, distance_m, -0.25F);
+      const double gust = grass_light(88.0, distance_m, 0.25F);
+      std::printf("%s, %.0f m: side %.1f, top %.1f, in a lull %.1f, in a gust %.1f\n",
+                  std::string(name_of(quality)).c_str(), distance_m, side, top, lull, gust);
+      EXPECT_GT(top, 0.8 * side) << name_of(quality);
+      EXPECT_LT(top, 1.35 * side) << name_of(quality);
+      EXPECT_GT(gust, (distance_m > 20.0 ? 1.38 : 1.15) * lull) << name_of(quality);
+    }
+  }
+}
+
 TEST_F(StageTest, TheNodesOfTheGroundBendTheGrassAroundAndAreNoThing) {
   const wire::SceneModel grass = test_model("grass");
   show({grass});

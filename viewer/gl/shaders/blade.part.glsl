@@ -44,7 +44,7 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
   vec3 to_eye = eye_m.xyz - place;
   float distance_m = length(to_eye);
   to_eye /= distance_m;
-  float gust = kGust * (1.0 - to_eye.y * to_eye.y) * gust_of(bend);
+  float gust = kGust * seen_from(to_eye) * gust_of(bend);
   float lean = mix(0.55, length(leaning(foot + turned * 0.5).xz) + gust, tall);
 
   // The flat side faces the blade's own bearing, turned half way to the eye, so that no blade is seen edge-on.

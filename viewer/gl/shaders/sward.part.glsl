@@ -107,6 +107,10 @@ vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float
 
 const float kShineFar = 0.35;  // of the sheen: blades lie in many directions
 
+// The share of a gust's light that is seen. Grass that leans shows its side, of which one sees less from above; but there it
+// covers the dark ground, between upright blades.
+float seen_from(vec3 to_eye) { return 1.0 - 0.35 * to_eye.y * to_eye.y; }
+
 // How much more the grass is bent at a place than on the average: where a gust is.
 float gust_of(vec2 bend) { return clamp(length(bend) - length(bend_mean.xy), -0.35, 0.45); }
 
@@ -115,9 +119,7 @@ float gust_of(vec2 bend) { return clamp(length(bend) - length(bend_mean.xy), -0.
 vec3 canopy_light(vec2 bend, vec3 to_eye, vec2 patch_at, float tufts, float tall, float sunlight) {
   vec3 along = leaning(bend * mix(0.35, 0.8, tall) + vec2(0.25, 0.1) * tufts);
   vec3 normal = normalize(vec3(to_eye.x, 0.35, to_eye.z) + vec3(along.x, 0.0, along.z) * 0.5);
-  // What leans shows its side, of which one sees less from above.
-  float from_side = 1.0 - 0.6 * to_eye.y * to_eye.y;
-  float gust = (0.42 + kGust) * from_side * gust_of(bend);
+  float gust = (0.42 + kGust) * seen_from(to_eye) * gust_of(bend);
   // As far as blades do: their own tilt and the wind's bend are seldom one way.
   float lean = mix(0.55, clamp(length(vec2(0.42, 0.45 * length(bend_mean.xy))) + gust + 0.45 * tufts + 0.40 * patch_at.y, 0.0, 0.88), tall);
   vec3 light = blade_light(to_eye, along, normal, mix(0.72, 0.82, tall) + 0.3 * tufts, tint_of(patch_at, 0.5 + 0.8 * tufts), lean, kShineFar, sunlight);
