@@ -22,6 +22,7 @@ constexpr float kHalfHem_m = 0.0015F;         // half the thickness of a hem
 const glm::vec3 kLinen{0.70F, 0.63F, 0.51F};  // cloth.frag.glsl's
 constexpr float kDarkestPaint = 0.012F;
 constexpr float kLightestPaint = 0.78F;
+constexpr float kShadowCell_px = 12.0F;  // of a shadow's mesh
 constexpr float kThinnestWire_px = 0.8F;
 constexpr float kThinnest_px = 0.2F;  // half as thick, a rim is not seen
 
@@ -109,6 +110,7 @@ ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle
       points_(cloth),
       cell_px_(cell_px_of(quality) * (style == meshes::ClothStyle::kCurtain ? kFoldedShare : 1.0F)),
       finer_down_(finer_down(style, lies_)),
+      is_shadow_coarse_(quality == look::Quality::kLow),
       holder_bounds_(bounds_of(holder, meshes::bounds_of(cloth))),
       holder_(holder),
       wire_m_(2.0F * holder.wire_radius_m()),
@@ -189,10 +191,15 @@ void ClothRenderer::draw(const meshes::View& view) {
 }
 
 void ClothRenderer::draw_shadow(const meshes::View& view) {
-  // The sun has to see what the last picture's eye saw, or the cloth would shade itself.
-  if (!level_) level_ = level_in(view, cell_px_, level_);
+  // It may be coarse with quality low. Otherwise the sun has to see what the last picture's eye saw, or the cloth would
+  // shade itself.
+  if (is_shadow_coarse_) {
+    shadow_level_ = level_in(view, std::max(cell_px_, kShadowCell_px), shadow_level_);
+  } else if (!level_) {
+    level_ = level_in(view, cell_px_, level_);
+  }
   glUseProgram(program_.name());
-  sheet(*level_).draw();
+  sheet(is_shadow_coarse_ ? *shadow_level_ : *level_).draw();
   holder_.draw_coarsely();
 }
 

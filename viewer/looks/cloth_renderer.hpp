@@ -56,7 +56,8 @@ class ClothRenderer : public SceneRenderer {
   pose::PointPositions points_;
   float cell_px_;                                          ///< along a row
   int finer_down_;                                         ///< ClothSurface
-  std::optional<int> level_;                               ///< of the last picture
+  bool is_shadow_coarse_;                                  ///< with quality low cloth looks no shadow up
+  std::optional<int> level_, shadow_level_;                ///< of the last picture
   std::array<std::optional<ClothSheet>, kLevels> sheets_;  ///< made when first needed
   std::array<bool, kLevels> is_moved_{};
   meshes::Bounds holder_bounds_;
