@@ -36,8 +36,15 @@ struct ReplayOptions {
   bool is_to_stdout = false;
 };
 
+/// Whoever begins to watch sees scenes that have lived in the wind for so long.
+constexpr double kLead_s = 15.0;
 constexpr double kMinRate = 0.01;
 constexpr double kMaxRate = 1000.0;
+
+/// The summary of --rate max is of the recording alone, from its first tick on.
+double lead_of(const ReplayOptions& options) {
+  return options.is_to_stdout ? kLead_s : 0.0;
+}
 
 double parse_rate(const std::string& text) {
   char* end = nullptr;
@@ -76,9 +83,11 @@ sensing::RecordedInstallation installation_of(const ReplayOptions& options, doub
                     "--same-time-of-day nor --sensor");
   }
   sensing::RecordedInstallation installation =
-      sensing::recorded_installation(
-          options.file,
-          {.playback = options.playback, .rate = rate, .seam_s = options.seam_s, .is_paused = options.is_paused})
+      sensing::recorded_installation(options.file, {.playback = options.playback,
+                                                    .rate = rate,
+                                                    .seam_s = options.seam_s,
+                                                    .is_paused = options.is_paused,
+                                                    .lead_s = lead_of(options)})
           .value();
   for (const std::string& remark : installation.remarks) spdlog::warn("as recorded: {}", remark);
   if (options.run.address) {
@@ -90,9 +99,9 @@ sensing::RecordedInstallation installation_of(const ReplayOptions& options, doub
 tools::offline::LockstepResult replay_in_lockstep(const ReplayOptions& options, const settings::Config& config,
                                                   const std::function<void(double)>& progress,
                                                   const tools::offline::UseTick& use) {
-  return tools::offline::replay_in_lockstep(config, options.file,
-                                            {.playback = options.playback, .seam_s = options.seam_s},
-                                            options.run.duration_s.value_or(0.0), progress, use)
+  return tools::offline::replay_in_lockstep(
+             config, options.file, {.playback = options.playback, .seam_s = options.seam_s, .lead_s = lead_of(options)},
+             options.run.duration_s.value_or(0.0), progress, use)
       .value();
 }
 
@@ -237,7 +246,8 @@ void add_replay(CLI::App& app) {
                     "with the configuration and all sensors of the recording, by its clock");
   command->add_flag("--to-stdout", options->is_to_stdout,
                     "with --rate max: write every tick to standard output, as a daemon streams it, and wait for the "
-                    "reader (yuragi-viewer --render reads it)");
+                    "reader (yuragi-viewer --render reads it). The 15 s before --start move the scenes, and are not "
+                    "written");
   command->add_flag("--paused", options->is_paused, "start paused, at the first reading (see `yuragi player`)");
   command->add_option("--sensor", options->playback.sensor, "which sensor; default: the one with the first reading")
       ->type_name("NAME");

@@ -114,9 +114,12 @@ Result<WindlogPlayer, Failure> WindlogPlayer::open(const std::filesystem::path& 
   if (!begin) return begin.error();
   WindlogPlayer player(std::move(options), Playhead{.cursor = std::move(*playing)},
                        Playhead{.cursor = std::move(*leaving)}, *begin);
-  const Nanoseconds from = player.options_.at_time_of_day ? player.place_of_day(now) : *begin;
+  const Nanoseconds place = player.options_.at_time_of_day ? player.place_of_day(now) : *begin;
+  const Nanoseconds lead = player.is_paused_ ? Nanoseconds{0} : wait_of(player.options_.lead_s);
+  if (lead > Nanoseconds{0}) player.led_to_ = place;
+  const Nanoseconds from = std::max(place - lead, Nanoseconds{0});
   player.playing_.cursor.seek(from);
-  player.playing_.go_to(now.mono, from);
+  player.playing_.go_to(now.mono + wait_of(seconds(lead - (place - from)) / player.rate_), from);
   return player;
 }
 
@@ -136,6 +139,7 @@ Result<MonoTime, Failure> WindlogPlayer::play(const Instant& now, const Use& use
     if (!has_more) return has_more.error();
     if (!*has_more) return now.mono + kAfterTheEnd;
     const MonoTime due = playing_.due(rate_);
+    if (is_before_first_reading(now.mono)) return std::min(due, hold_first_reading(now, use));
     if (due > now.mono || count == kMaxReadingsPerPlay) return due;
     if (const Nanoseconds late = now.mono - due; late > kMaxLateness) {
       playing_.anchor += late;
@@ -153,7 +157,11 @@ Result<MonoTime, Failure> WindlogPlayer::play(const Instant& now, const Use& use
 /// Reads the upcoming reading, unless it is there already; nothing at the end.
 Result<void, Failure> WindlogPlayer::fetch() {
   if (playing_.upcoming) return {};
-  const auto read = playing_.cursor.next();
+  auto read = playing_.cursor.next();
+  if (!read && led_to_ && playing_.last_log < *led_to_) {
+    playing_.cursor.seek(*led_to_);
+    read = playing_.cursor.next();
+  }
   if (!read) return read.error();
   playing_.upcoming = *read;
   if (playing_.upcoming) playing_.leave_out_days(options_.stays_with_others);
@@ -170,6 +178,21 @@ Result<bool, Failure> WindlogPlayer::look_ahead(const Instant& now) {
   }
   is_finished_ = !playing_.upcoming;
   return !is_finished_;
+}
+
+/// Is this part of a lead-in without a reading, where the first one is held? Not if it comes later than usual after the
+/// place to which the lead-in goes: the recording is silent there.
+bool WindlogPlayer::is_before_first_reading(MonoTime now) const {
+  return led_to_ && !playing_.current && playing_.upcoming && playing_.due(rate_) > now &&
+         playing_.upcoming->log_time <= *led_to_ + playing_.cursor.interval();
+}
+
+/// Returns when it is due again.
+MonoTime WindlogPlayer::hold_first_reading(const Instant& now, const Use& use) {
+  const MonoTime due = last_out_ ? last_out_->time.mono + hold_interval() : now.mono;
+  if (due > now.mono) return due;
+  give(playing_.upcoming->reading, now.mono, now, use);
+  return now.mono + hold_interval();
 }
 
 /// Has a loop come to where its next round begins, under what is left of this one?
@@ -189,6 +212,7 @@ Result<void, Failure> WindlogPlayer::begin_again(const Instant& now, MonoTime at
 
 /// Goes on from `target` at a moment, and fades what was playing out.
 Result<void, Failure> WindlogPlayer::jump(MonoTime at, Nanoseconds target) {
+  led_to_.reset();
   // In the middle of a fade the blended wind of that moment replaces both playheads, and the older one is free.
   const bool was_fading = is_fading(at);
   leaving_.is_frozen = true;
@@ -222,9 +246,13 @@ Nanoseconds WindlogPlayer::fade_duration() const {
 void WindlogPlayer::publish(MonoTime time, const Instant& now, const Use& use) {
   // After a change of the rate: time does not go backward.
   if (last_out_) time = std::max(time, last_out_->time.mono);
-  wind::WindReading reading = blended(time);
+  give(blended(time), time, now, use);
+}
+
+void WindlogPlayer::give(wind::WindReading reading, MonoTime time, const Instant& now, const Use& use) {
+  const bool is_waiting = is_paused_ || is_before_first_reading(now.mono);
   reading.time = {time, now.utc - (now.mono - time)};
-  reading.is_held = is_paused_ && last_out_ && is_same_wind(reading, *last_out_);
+  reading.is_held = is_waiting && last_out_ && is_same_wind(reading, *last_out_);
   last_out_ = reading;
   use(reading);
 }
@@ -260,12 +288,11 @@ Result<MonoTime, Failure> WindlogPlayer::hold(const Instant& now, const Use& use
     if (!*has_more) return now.mono + kAfterTheEnd;
     take_while_paused();
   }
-  const Nanoseconds interval = std::max(usual_interval(), kLeastHoldInterval);
-  const MonoTime due = has_news_ || !last_out_ ? now.mono : last_out_->time.mono + interval;
+  const MonoTime due = has_news_ || !last_out_ ? now.mono : last_out_->time.mono + hold_interval();
   if (due > now.mono) return due;
   has_news_ = false;
   publish(now.mono, now, use);
-  return now.mono + interval;
+  return now.mono + hold_interval();
 }
 
 void WindlogPlayer::take_while_paused() {
@@ -276,6 +303,10 @@ void WindlogPlayer::take_while_paused() {
 
 Nanoseconds WindlogPlayer::usual_interval() const {
   return std::max(wait_of(seconds(playing_.cursor.interval()) / rate_), Nanoseconds{std::chrono::microseconds(1)});
+}
+
+Nanoseconds WindlogPlayer::hold_interval() const {
+  return std::max(usual_interval(), kLeastHoldInterval);
 }
 
 Nanoseconds WindlogPlayer::place_of_day(const Instant& now) {

@@ -17,9 +17,13 @@ namespace yuragi::drivers::windlog {
 
 struct PlayerOptions {
   PlaybackOptions playback = {};
-  double rate = 1.0;            ///< seconds of the recording in one second; above 0
-  double seam_s = 5.0;          ///< how long a jump (a loop's seam, a seek) takes; 0: no cross-fade
-  bool is_paused = false;       ///< stand at the first reading until resume() or step()
+  double rate = 1.0;       ///< seconds of the recording in one second; above 0
+  double seam_s = 5.0;     ///< how long a jump (a loop's seam, a seek) takes; 0: no cross-fade
+  bool is_paused = false;  ///< stand at the first reading until resume() or step()
+  /// Begin so many seconds of the recording earlier than asked, so that what it moves has lived in its wind by then.
+  /// Not if `is_paused`. Before the recording's beginning, or in a silence, the first reading is held. What cannot be
+  /// read of this part is left out.
+  double lead_s = 0.0;
   bool at_time_of_day = false;  ///< begin, and begin again, at the place whose recorded local time is the time now
   /// Leave days out of gaps between sessions alone, where all sensors are silent, so that several players of one
   /// recording, each of one sensor, stay together.
@@ -60,8 +64,8 @@ class WindlogPlayer {
   static constexpr int kMaxReadingsPerPlay = 4096;
   static constexpr std::uint64_t kMaxSteps = 1'000'000;
 
-  /// Opens the recording; `now` is when its first moment is due. `stop`: a request of it ends any call, however large
-  /// the recording is, within milliseconds with a failure.
+  /// Opens the recording; `now` is when its first moment is due, or the beginning of `lead_s`. `stop`: a request of it
+  /// ends any call, however large the recording is, within milliseconds with a failure.
   static Result<WindlogPlayer, Failure> open(const std::filesystem::path& file, PlayerOptions options,
                                              const Instant& now, const std::stop_token& stop = {});
 
@@ -104,18 +108,22 @@ class WindlogPlayer {
   WindlogPlayer(PlayerOptions options, Playhead playing, Playhead leaving, Nanoseconds begin);
   Result<void, Failure> fetch();
   Result<bool, Failure> look_ahead(const Instant& now);
+  bool is_before_first_reading(MonoTime now) const;
+  MonoTime hold_first_reading(const Instant& now, const Use& use);
   bool is_at_seam() const;
   Result<void, Failure> begin_again(const Instant& now, MonoTime at);
   Result<void, Failure> jump(MonoTime at, Nanoseconds target);
   void settle(MonoTime now);
   Result<MonoTime, Failure> hold(const Instant& now, const Use& use);
   void publish(MonoTime time, const Instant& now, const Use& use);
+  void give(wind::WindReading reading, MonoTime time, const Instant& now, const Use& use);
   wind::WindReading blended(MonoTime time);
   void follow_leaving(MonoTime time);
   void take_while_paused();
   Nanoseconds fade_duration() const;
   bool is_fading(MonoTime time) const { return time < fade_begin_ + fade_; }
   Nanoseconds usual_interval() const;
+  Nanoseconds hold_interval() const;
   Nanoseconds place_of_day(const Instant& now);
 
   PlayerOptions options_;
@@ -126,6 +134,7 @@ class WindlogPlayer {
   bool has_news_ = false;  ///< a reading to publish while paused
   std::uint64_t rounds_ = 0;
   Nanoseconds begin_{0};
+  std::optional<Nanoseconds> led_to_;  ///< the place to which a lead-in goes, until a jump
   MonoTime fade_begin_{};
   Nanoseconds fade_{0};
   std::optional<wind::WindReading> last_out_;

@@ -1,6 +1,7 @@
 #include "daemon/tools/offline/lockstep_replay.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "daemon/animation/animation.hpp"
 #include "daemon/sensing/player_director.hpp"
@@ -20,14 +21,23 @@ std::uint64_t hash_poses(std::uint64_t hash, std::span<const pose::Pose* const> 
 /// The animation, tick by tick, and the figures of what moved it.
 class Ticks {
  public:
-  Ticks(animation::Animation& animation, double rate_hz, const std::function<void(double)>& progress,
+  /// In the first `lead_s` nothing is counted or handed on.
+  Ticks(animation::Animation& animation, double rate_hz, double lead_s, const std::function<void(double)>& progress,
         const UseTick& use)
-      : animation_(animation), rate_hz_(rate_hz), progress_(progress), use_(use) {}
+      : animation_(animation),
+        rate_hz_(rate_hz),
+        lead_ticks_(static_cast<std::uint64_t>(std::llround(lead_s * rate_hz))),
+        progress_(progress),
+        use_(use) {}
 
-  /// The log time of the next tick.
+  /// The time of the next tick on the clock of sensors and wind, from 0 on.
+  Nanoseconds clock() const { return from_seconds(static_cast<double>(led_ + result_.ticks) / rate_hz_); }
+  /// The log time of the next tick, while is_leading_in() that of the first one.
   double now_s() const { return static_cast<double>(result_.ticks) / rate_hz_; }
+  bool is_leading_in() const { return led_ < lead_ticks_; }
 
   void add(const wind::WindReading& reading) {
+    if (is_leading_in()) return;
     ++result_.readings;
     result_.reading_mean_m_s += reading.speed_m_s;
     result_.reading_max_m_s = std::max(result_.reading_max_m_s, reading.speed_m_s);
@@ -37,6 +47,10 @@ class Ticks {
   void step(const wind::ground::DrivingWind& wind, double ceiling_gain, UtcTime recorded, double left_s) {
     const double time_s = now_s();
     animation_.step(wind, 1.0 / rate_hz_);
+    if (is_leading_in()) {
+      ++led_;
+      return;
+    }
     result_.pose_hash = hash_poses(result_.pose_hash, animation_.poses());
     if (use_) {
       use_({.log_time_s = time_s, .recorded = recorded, .left_s = left_s, .wind = wind.state, .animation = animation_});
@@ -70,6 +84,8 @@ class Ticks {
  private:
   animation::Animation& animation_;
   double rate_hz_;
+  std::uint64_t lead_ticks_;
+  std::uint64_t led_ = 0;  // of these, done
   const std::function<void(double)>& progress_;
   const UseTick& use_;
   LockstepResult result_;
@@ -91,7 +107,7 @@ class RecordedClock {
   Nanoseconds read_at_{0};
 };
 
-/// Log time, moved from tick to tick.
+/// The clock of sensors and wind, moved from tick to tick.
 class LogClock final : public drivers::sensor::Clock {
  public:
   Instant now() const noexcept override { return now_; }
@@ -122,10 +138,10 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
   const std::optional<wind::judging::JudgeSettings>& judged_by = one_source.sensors[0].judge;
   wind::judging::ReadingJudge judge(judged_by.value_or(wind::judging::JudgeSettings{}));
 
-  Ticks ticks(animation, config.animation.rate_hz, progress, use);
-  while (!player.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s)) {
-    // Readings that are due by this tick, at their own log time.
-    const Instant now{MonoTime(from_seconds(ticks.now_s())), UtcTime(from_seconds(ticks.now_s()))};
+  Ticks ticks(animation, config.animation.rate_hz, options.lead_s, progress, use);
+  while (ticks.is_leading_in() || (!player.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s))) {
+    // Readings that are due by this tick, at their own time.
+    const Instant now{MonoTime(ticks.clock()), UtcTime(ticks.clock())};
     const auto played = player.play(now, [&](const wind::WindReading& reading) {
       // As in the daemon: readings that are not believed are left out.
       if (judged_by && reading.quality != wind::ReadingQuality::kSimulated && !judge.judge(reading)) return;
@@ -147,7 +163,8 @@ Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstal
   const settings::Config& config = installation.config;
   const std::shared_ptr<const wind::turbulence::GustNoise> gusts = sensing::make_gust_noise(config);
   animation::Animation animation(config, gusts);
-  Ticks ticks(animation, config.animation.rate_hz, progress, use);
+  Ticks ticks(animation, config.animation.rate_hz, installation.lead_s, progress, use);
+  const Nanoseconds lead = from_seconds(installation.lead_s);
   LogClock clock;
   sensing::SensorHub hub(
       config, clock, gusts, [&ticks](std::size_t, const wind::WindReading& reading) { ticks.add(reading); },
@@ -158,9 +175,9 @@ Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstal
   shaper.keep_site_file(hub.site());
   RecordedClock recorded_clock;
 
-  while (!hub.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s)) {
-    const Nanoseconds log_time = from_seconds(ticks.now_s());
-    clock.set(MonoTime(log_time), installation.begin + log_time);
+  while (ticks.is_leading_in() || (!hub.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s))) {
+    const Nanoseconds now = ticks.clock();
+    clock.set(MonoTime(now), installation.begin - lead + now);
     wind::ground::DrivingWind wind{hub.advance(), hub.ground(), hub.stroke()};
     double left_s = 0.0;
     for (const sensing::NamedPlayer& named : players) {
@@ -170,7 +187,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstal
     }
     const UtcTime recorded = director.recorded_clock().value_or(installation.begin);
     shaper.shape(wind, recorded, hub.is_any_live());
-    ticks.step(wind, shaper.status().ceiling_gain, recorded_clock.at(log_time, recorded), left_s);
+    ticks.step(wind, shaper.status().ceiling_gain, recorded_clock.at(now, recorded), left_s);
   }
   return ticks.result();
 }

@@ -461,5 +461,46 @@ TEST(WindlogPlayer, BeginsAndLoopsAtTheTimeOfDay) {
   }
 }
 
+// ---- a lead-in ----
+
+TEST(WindlogPlayerLead, BeginsEarlierAndIsWhereItWasToBeginWhenThatIsOver) {
+  Playing playing(numbered_readings(600), {.playback = {.start = "20"}, .lead_s = 15.0});
+  playing.run(15s);
+  EXPECT_NEAR(playing.place_s(), 20.0, 1e-6);
+  ASSERT_EQ(playing.said.size(), 151U);
+  EXPECT_EQ(playing.said.front().speed_m_s, 0.050);
+  EXPECT_EQ(playing.said.back().speed_m_s, 0.200);
+}
+
+TEST(WindlogPlayerLead, BeforeTheRecordingItsFirstReadingIsHeld) {
+  Playing playing(swinging_wind(), {.playback = {.start = "5"}, .lead_s = 15.0});
+  playing.run(9900ms);
+  ASSERT_EQ(playing.said.size(), 100U);
+  EXPECT_FALSE(playing.said.front().is_held);
+  for (const auto& reading : playing.said) EXPECT_EQ(reading.speed_m_s, playing.said.front().speed_m_s);
+  EXPECT_TRUE(std::all_of(playing.said.begin() + 1, playing.said.end(), [](const auto& said) { return said.is_held; }));
+  const PlayerPosition before = playing->position(playing.now().mono);
+  EXPECT_EQ(before.held_for, -100ms);
+  playing.run(5100ms);
+  EXPECT_NEAR(playing.place_s(), 5.0, 1e-6);
+  EXPECT_TRUE(playing.is_in_order());
+  EXPECT_FALSE(playing.said.back().is_held);
+}
+
+TEST(WindlogPlayerLead, ASilenceAtThePlaceStaysSilent) {
+  auto readings = numbered_readings(10);
+  readings.push_back(test::reading_at(100'000, 7.0));
+  Playing playing(readings, {.playback = {.start = "50"}, .lead_s = 15.0});
+  playing.run(60s);
+  EXPECT_TRUE(playing.said.empty());
+}
+
+TEST(WindlogPlayerLead, APausedRecordingStandsAtItsPlace) {
+  Playing playing(numbered_readings(600), {.playback = {.start = "20"}, .is_paused = true, .lead_s = 15.0});
+  playing.run(1s);
+  EXPECT_NEAR(playing.place_s(), 20.0, 1e-6);
+  EXPECT_EQ(playing.said.front().speed_m_s, 0.200);
+}
+
 }  // namespace
 }  // namespace yuragi::drivers::windlog
