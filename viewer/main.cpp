@@ -37,6 +37,8 @@ int run(int argc, char** argv) {
   }
   std::signal(SIGINT, [](int) { is_stopping = true; });
   std::signal(SIGTERM, [](int) { is_stopping = true; });
+  // Its terminal was closed; under nohup it goes on.
+  if (std::signal(SIGHUP, [](int) { is_stopping = true; }) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   if (!options.render.empty()) {
     viewer::render_recording(options, is_stopping);
   } else {

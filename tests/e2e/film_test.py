@@ -8,6 +8,7 @@ All but one draw nothing. ffmpeg is a stand-in that keeps the pictures as they a
 import hashlib
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import sys
@@ -207,13 +208,31 @@ class Film(unittest.TestCase):
                            (64, ("--from", "yesterday"))):
             self.make(*more, "--out", folder, code=code)
             self.assertFalse(folder.parent.exists(), more)
-        film = self.begin("--out", folder)
-        until = time.monotonic() + HANG_S
-        while not (folder / "000002.png").exists():
-            self.assertLess(time.monotonic(), until)
-        film.send_signal(signal.SIGINT)
-        self.end(film, 128 + signal.SIGINT)
-        self.assertFalse(folder.parent.exists())
+        for harm, code in ((lambda film: film.send_signal(signal.SIGINT), 128 + signal.SIGINT),
+                           (lambda film: film.send_signal(signal.SIGTERM), 128 + signal.SIGINT),
+                           (lambda film: film.send_signal(signal.SIGHUP), 128 + signal.SIGINT),
+                           (lambda film: os.kill(children_of(film.pid)[0], signal.SIGKILL), 70)):
+            film = self.begin("--out", folder)
+            until = time.monotonic() + HANG_S
+            while not (folder / "000002.png").exists():
+                self.assertLess(time.monotonic(), until)
+            harm(film)
+            self.end(film, code)
+            self.assertFalse(folder.parent.exists())
+
+    def test_a_film_from_beyond_the_end_is_refused_and_leaves_nothing(self):
+        for place in (999, "2030-01-01T00:00:00Z"):
+            for name in ("takes/first", "take.mp4"):
+                _, said = self.make("--from", place, "--out", self.folder / name, code=65, ffmpeg=KEEPS)
+                self.assertIn(str(place), said)
+                self.assertEqual([file.name for file in self.folder.iterdir()], ["programs"])
+
+    def test_a_disk_that_fills_up_leaves_nothing(self):
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (PICTURE, PICTURE))
+        size = ("--size", "640x360", "--duration", 1)
+        self.assertIn("cannot write", self.make("--out", self.folder / "takes" / "first", *size, code=73, drawn=True, preexec_fn=limit)[1])
+        self.assertIn("ffmpeg", self.make("--out", self.folder / "take.mp4", *size, code=73, ffmpeg=KEEPS, preexec_fn=limit)[1])
+        self.assertEqual([file.name for file in self.folder.iterdir()], ["programs"])
 
 
 if __name__ == "__main__":
