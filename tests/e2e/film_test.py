@@ -126,6 +126,18 @@ class Film(unittest.TestCase):
         self.assertEqual(*films)
         self.assertEqual(len(set(films[0])), 2, "nothing moves")
 
+    def test_the_first_picture_of_a_gale_shows_a_flag_that_flies(self):
+        gale = self.folder / "gale.windlog"
+        subprocess.run([PROGRAMS / "yuragi-sim", "recording", "-o", gale, "--speed", "16", "--direction", "270", "--duration", "30", "--seed", "5"],
+                       check=True, capture_output=True)
+        for place in (0, 20):
+            rgb, _ = self.make("--render", gale, "--scene", "mast", "--from", place, "--duration", 0.01, "--samples", 1, "--camera", "0,5,7",
+                               "--look", "time=12:00", "--out", "-", drawn=True)
+            self.assertEqual(len(rgb), PICTURE)
+            blue = [(i // 3 % WIDTH, i // 3 // WIDTH) for i in range(0, PICTURE, 3) if rgb[i] < 60 and rgb[i + 2] > 1.5 * max(rgb[i], rgb[i + 1])]
+            wide, high = (max(side) - min(side) + 1 for side in zip(*blue))
+            self.assertGreater(wide, 0.8 * high, f"from {place} s: {wide} x {high} pixels of cloth")
+
     def test_every_moment_of_the_recording_has_its_picture(self):
         pictures, said = self.make("--out", "-", "--duration", 2)
         self.assertEqual(len(pictures), 2 * FPS * PICTURE)
