@@ -103,11 +103,9 @@ def draw_answer(drawing, file):
 
 
 def draw_wall(drawing, file):
-    """On virtual monitors, all at once by draw_outputs (the target of that name)."""
-    drawn = drawing.folder / "wall"
-    if not drawn.exists():
-        subprocess.run([drawing.programs.parent / "tests/viewer/draw_outputs", drawn], check=True, stdout=subprocess.DEVNULL)
-    shutil.copyfile(drawn / file.name, file)
+    """On virtual monitors, by draw_outputs (the target of that name)."""
+    subprocess.run([drawing.programs.parent / "tests/viewer/draw_outputs", drawing.folder, file.name], check=True, stdout=subprocess.DEVNULL)
+    shutil.copyfile(drawing.folder / file.name, file)
 
 
 PICTURES = {"viewer/meadow.png": draw_meadow, "viewer/garden.png": draw_garden, "engine/wind/gust.png": draw_gust, "tests/answer/answer.png": draw_answer,

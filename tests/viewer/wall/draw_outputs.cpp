@@ -1,7 +1,7 @@
 // The pictures of viewer/wall/README.md, one for each key of [[output]]: the real viewer on virtual monitors, and what
 // they show, half as large. The desktop beside and between the monitors is white. Wants to be root, as Xorg does.
 //
-//   draw_outputs FOLDER
+//   draw_outputs FOLDER [FILE]...      all, or those of these names
 
 #include <algorithm>
 #include <chrono>
@@ -236,7 +236,7 @@ bool arrange(const VirtualMonitors& monitors, bool has_third) {
                     : monitors.arrange({"--output", "DUMMY2", "--off"}));
 }
 
-void draw_outputs(const std::filesystem::path& folder) {
+void draw_outputs(const std::filesystem::path& folder, const std::vector<std::string>& wanted) {
   const std::filesystem::path own = folder / ".draw_outputs";
   std::filesystem::create_directories(own);
   const VirtualMonitors monitors(own);
@@ -251,6 +251,7 @@ void draw_outputs(const std::filesystem::path& folder) {
   const StreamServer server(greeting_for(garden) + frame_of(garden, opacities, 0.1, 0.5, 1, encoder));
 
   for (const Shot& shot : all_shots()) {
+    if (!wanted.empty() && std::ranges::find(wanted, shot.file) == wanted.end()) continue;
     const std::string configuration = shot.configuration;
     if (!arrange(monitors, configuration.find("DUMMY2") != std::string::npos)) {
       throw std::runtime_error("xrandr fails");
@@ -270,12 +271,12 @@ void draw_outputs(const std::filesystem::path& folder) {
 }  // namespace
 
 int main(int count, char** words) {
-  if (count != 2) {
-    std::fprintf(stderr, "usage: draw_outputs FOLDER\n");
+  if (count < 2) {
+    std::fprintf(stderr, "usage: draw_outputs FOLDER [FILE]...\n");
     return EXIT_FAILURE;
   }
   try {
-    draw_outputs(words[1]);
+    draw_outputs(words[1], {words + 2, words + count});
   } catch (const std::exception& error) {
     std::fprintf(stderr, "draw_outputs: %s\n", error.what());
     return EXIT_FAILURE;
