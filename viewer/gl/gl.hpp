@@ -93,6 +93,8 @@ enum TextureUnit : GLint {
   kMirrorUnit,       // what water mirrors (Mirror)
   kSlopesUnit,       // of its waves
   kRipplesUnit,      //
+  kWaterMemoryUnit,  // what gusts have woken on it, and its foam
+  kBedUnit,          // the colors of its bed
   kCloudsFromUnit,   // two maps of clouds
   kCloudsToUnit,     //
   kSmallSkyUnit,     // the sky of the picture, smaller

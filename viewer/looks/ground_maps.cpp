@@ -1,7 +1,9 @@
 #include "viewer/looks/ground_maps.hpp"
 
 #include <algorithm>
+#include <array>
 
+#include <glm/common.hpp>
 #include <glm/mat2x2.hpp>
 #include <glm/matrix.hpp>
 
@@ -86,9 +88,38 @@ void GroundMaps::move_to(const meshes::BendGrid& grid, const pose::StrandPose* n
   ground_.bends_place = {grid.first_m - 0.5F * (grid.to_next_m + grid.to_next_row_m), 0.0F, 0.0F};
   ground_.bends_axes = {to_parts[0], to_parts[1]};
   ground_.bend_mean = {mean, is_there ? 1.0F : 0.0F, 0.0F};
+  columns_ = is_there ? grid.columns : 1;
+  rows_ = is_there ? grid.rows : 1;
   glBindTexture(GL_TEXTURE_2D, bends_.name());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, static_cast<GLsizei>(is_there ? grid.columns : 1),
-               static_cast<GLsizei>(is_there ? grid.rows : 1), 0, GL_RG, GL_FLOAT, texels_.data());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, static_cast<GLsizei>(columns_), static_cast<GLsizei>(rows_), 0, GL_RG,
+               GL_FLOAT, texels_.data());
+}
+
+glm::vec2 GroundMaps::bend_at(const glm::vec2& at_m) const {
+  const glm::vec2 mean = mean_bend();
+  if (ground_.bend_mean.z == 0.0F) return mean;
+  const glm::vec4& axes = ground_.bends_axes;
+  const glm::vec2 uv = glm::mat2(axes.x, axes.y, axes.z, axes.w) * (at_m - glm::vec2(ground_.bends_place));
+  const glm::vec2 within = glm::fract(uv);
+  const glm::vec2 from_edge = 0.5F - glm::abs(within - 0.5F);
+  const float sure = glm::smoothstep(0.0F, 0.09F, std::min(from_edge.x, from_edge.y));
+  // Between the middles of texels, around the grid's edge.
+  const glm::vec2 count(static_cast<float>(columns_), static_cast<float>(rows_));
+  const glm::vec2 texel = within * count - 0.5F;
+  const glm::vec2 low = glm::floor(texel);
+  const glm::vec2 part = texel - low;
+  const auto wrapped = [](float index, std::size_t size) {
+    return (static_cast<std::size_t>(index + static_cast<float>(size))) % size;
+  };
+  const std::array columns{wrapped(low.x, columns_), wrapped(low.x + 1.0F, columns_)};
+  const std::array rows{wrapped(low.y, rows_), wrapped(low.y + 1.0F, rows_)};
+  const auto node = [&](std::size_t row, std::size_t column) {
+    const std::size_t i = rows.at(row) * columns_ + columns.at(column);
+    return glm::vec2(texels_[2 * i], texels_[2 * i + 1]);
+  };
+  const glm::vec2 bend =
+      glm::mix(glm::mix(node(0, 0), node(0, 1), part.x), glm::mix(node(1, 0), node(1, 1), part.x), part.y);
+  return glm::mix(mean, bend, sure);
 }
 
 void GroundMaps::bind(const meshes::Stand& stand, float tall, std::size_t door) {

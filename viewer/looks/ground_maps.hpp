@@ -24,6 +24,10 @@ class GroundMaps {
   /// which may be null, too.
   void move_to(const meshes::BendGrid& grid, const pose::StrandPose* nodes, const pose::StrandPose* near_by);
   const meshes::GrowthMap& growth() const { return map_; }
+  /// How far grass is bent at a place (x, z) in the picture, and on average: east, south, radians. As bend_at() in
+  /// sward.part.glsl, for tall grass.
+  glm::vec2 bend_at(const glm::vec2& at_m) const;
+  glm::vec2 mean_bend() const { return glm::vec2(ground_.bend_mean); }
   /// Binds all of it, with this stand of tall grass, of which the share `tall` is to be seen, through the door of this
   /// number.
   void bind(const meshes::Stand& stand, float tall, std::size_t door);
@@ -36,6 +40,7 @@ class GroundMaps {
   std::vector<meshes::Standing> standing_;
   float most_growth_ = 1.0F;
   std::vector<float> texels_;
+  std::size_t columns_ = 1, rows_ = 1;  // of texels_
 };
 
 }  // namespace yuragi::viewer::looks

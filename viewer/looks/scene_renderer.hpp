@@ -16,6 +16,8 @@
 
 namespace yuragi::viewer::looks {
 
+class GroundMaps;
+
 /// The renderer of a scene view. Owns its GPU objects; needs a current context; on its thread. Allocates nothing from
 /// picture to picture after the first few.
 class SceneRenderer {
@@ -38,6 +40,10 @@ class SceneRenderer {
   /// Takes the pose of the next picture, which fits the skeleton. Called before anything is drawn; not where nothing of
   /// it is seen, unless it throws light.
   virtual void move_to(const pose::Pose& pose) = 0;
+
+  /// Takes how the wind bends the grass around it in this picture. Called after move_to() and prepare(), if it is seen,
+  /// with the maps bound and no framebuffer of the picture's: it may draw a picture of its own.
+  virtual void feel_ground(const GroundMaps&) {}
 
   /// Draws pictures of its own that later ones are made of. Called before anything of a picture is drawn; `views` and
   /// the framebuffer are set again afterwards, and so are depth test, stencil test and blending.

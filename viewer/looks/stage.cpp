@@ -446,6 +446,9 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
   move_ground(moment);
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    if (seen_[scene].is_anywhere()) views_[scene]->renderer->feel_ground(ground_);
+  }
   mark_pass("ground maps");
   draw_mirror(moment, view, target);
   target.begin();

@@ -22,7 +22,13 @@ constexpr float kCell_px = 20.0F;  // of the water's mesh, at most
 constexpr float kKeep = 1.15F;     // so far beyond its bounds a level of detail is kept
 constexpr GLint kReedRings = 6;
 constexpr GLint kMirroredReedRings = 3;
-constexpr float kUnderBank_m = 0.15F;  // so far the sheet goes on where the bank hides it
+constexpr float kUnderBank_m = 0.15F;        // so far the sheet goes on where the bank hides it
+constexpr std::size_t kMaxMemoryCells = 48;  // along a side
+
+/// A slope at which a wave breaks, and one at which all of it does. Short waves break at 0.3 to 0.6 (the limit of a
+/// regular wave is 0.58, tan 30 degrees: G. Stokes 1880).
+constexpr float kBreakingFrom = 0.55F;
+constexpr float kBreakingAll = 0.75F;
 
 void describe(GLuint attribute, GLint numbers, GLsizei stride, std::size_t offset) {
   // OpenGL takes an offset in a buffer as a pointer.
@@ -54,6 +60,7 @@ WaterRenderer::WaterRenderer(const pose::SurfaceSkeleton& surface)
   for (const gl::GlProgram* program : {&water_, &bank_, &hole_, &reed_}) GroundMaps::set_samplers(*program);
   if (!shore_.is_pond()) return;
   make_sheet();
+  make_memory();
   make_shore();
 }
 
@@ -105,11 +112,45 @@ void WaterRenderer::make_sheet() {
       glm::mat2(along_m * static_cast<float>(surface_->columns), across_m * static_cast<float>(surface_->rows)));
   glUseProgram(water_.name());
   lee_place_ = glGetUniformLocation(water_.name(), "lee");
+  streaks_place_ = glGetUniformLocation(water_.name(), "streaks");
   glUniform2f(glGetUniformLocation(water_.name(), "middle_m"), shore_.middle_m().x, shore_.middle_m().y);
   glUniform4f(glGetUniformLocation(water_.name(), "grid_place"), corner_m.x, corner_m.y, std::min(texel_m.x, texel_m.y),
               *mirror_m());
   glUniform4f(glGetUniformLocation(water_.name(), "grid_axes"), to_parts[0].x, to_parts[0].y, to_parts[1].x,
               to_parts[1].y);
+}
+
+void WaterRenderer::make_memory() {
+  const std::size_t columns = std::min(surface_->columns, kMaxMemoryCells);
+  const std::size_t rows = std::min(surface_->rows, kMaxMemoryCells);
+  // Its cells share out the texels of the slopes.
+  const glm::vec2 points(static_cast<float>(surface_->columns), static_cast<float>(surface_->rows));
+  const glm::vec2 side_m = 2.0F * shore_.half_m() * points / (points - 1.0F);
+  const glm::vec2 along_m = shore_.along() * (side_m.x / static_cast<float>(columns));
+  const glm::vec2 across_m = shore_.across() * (side_m.y / static_cast<float>(rows));
+  memory_ = WaterMemory(columns, rows, along_m, across_m);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const glm::vec2 from_middle = glm::vec2(static_cast<float>(column), static_cast<float>(row)) + 0.5F -
+                                    0.5F * glm::vec2(static_cast<float>(columns), static_cast<float>(rows));
+      memory_m_.push_back(shore_.middle_m() + from_middle.x * along_m + from_middle.y * across_m);
+    }
+  }
+  points_per_cell_.assign(columns * rows, 0.0F);
+  for (std::size_t row = 0; row < surface_->rows; ++row) {
+    for (std::size_t column = 0; column < surface_->columns; ++column) {
+      cell_of_.push_back(row * rows / surface_->rows * columns + column * columns / surface_->columns);
+      points_per_cell_[cell_of_.back()] += 1.0F;
+    }
+  }
+  gusts_.assign(columns * rows, 0.0F);
+  breaking_.assign(columns * rows, 0.0F);
+  glBindTexture(GL_TEXTURE_2D, memory_texture_.name());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  gl::set_sampler(water_, "memory", gl::kWaterMemoryUnit);
 }
 
 void WaterRenderer::make_shore() {
@@ -140,18 +181,7 @@ std::optional<float> WaterRenderer::mirror_m() const {
 }
 
 void WaterRenderer::set_moment(const Moment& moment) {
-  // Foam comes to the lee shore from Beaufort 5 on: what floats is driven by waves that break.
-  constexpr float kFoamFrom_m_s = 6.0F;
-  constexpr float kFoamFull_m_s = 13.0F;
-  const float speed_m_s = glm::length(moment.wind_m_s);
-  if (!shore_.is_pond()) return;
-  const glm::vec2 downwind = speed_m_s > 0.0F ? moment.wind_m_s / speed_m_s : glm::vec2(1.0F, 0.0F);
-  const glm::vec2 half_m(glm::dot(downwind, shore_.along()) * shore_.half_m().x,
-                         glm::dot(downwind, shore_.across()) * shore_.half_m().y);
-  const glm::vec2 lee = downwind / std::max(glm::length(half_m), 0.1F);
-  glUseProgram(water_.name());
-  glUniform3f(lee_place_, lee.x, lee.y,
-              std::clamp((speed_m_s - kFoamFrom_m_s) / (kFoamFull_m_s - kFoamFrom_m_s), 0.0F, 1.0F));
+  moment_ = moment;
 }
 
 void WaterRenderer::move_to(const pose::Pose& pose) {
@@ -169,6 +199,56 @@ void WaterRenderer::move_to(const pose::Pose& pose) {
   gl::count_upload(waves_.slopes().size() * sizeof(float));
   glGenerateMipmap(GL_TEXTURE_2D);
   glActiveTexture(GL_TEXTURE0);
+}
+
+/// The share of each of the memory's cells where waves break.
+void WaterRenderer::sum_up_breaking() {
+  std::ranges::fill(breaking_, 0.0F);
+  constexpr float kFrom = kBreakingFrom * kBreakingFrom;
+  constexpr float kAll = kBreakingAll * kBreakingAll;
+  const std::vector<float>& slopes = waves_.slopes();
+  for (std::size_t i = 0; i < cell_of_.size(); ++i) {
+    if (slopes[3 * i + 2] > kFrom)
+      breaking_[cell_of_[i]] += std::min((slopes[3 * i + 2] - kFrom) / (kAll - kFrom), 1.0F);
+  }
+  for (std::size_t i = 0; i < breaking_.size(); ++i) breaking_[i] /= points_per_cell_[i];
+}
+
+void WaterRenderer::feel_ground(const GroundMaps& ground) {
+  // A gust bends grass this much farther than the mean wind, radians, where it wakes the water wholly.
+  constexpr float kGustAtRest_rad = 0.03F;
+  constexpr float kGustPart = 0.15F;
+  constexpr float kMostCalmed = 0.8F;
+  // Foam comes to the lee shore from Beaufort 5 on: what floats is driven by waves that break.
+  constexpr float kFoamFrom_m_s = 6.0F;
+  constexpr float kFoamFull_m_s = 13.0F;
+  if (!shore_.is_pond()) return;
+  const float mean_rad = glm::length(ground.mean_bend());
+  for (std::size_t i = 0; i < gusts_.size(); ++i) {
+    const float more_rad = glm::length(ground.bend_at(memory_m_[i])) - mean_rad;
+    gusts_[i] = std::clamp(more_rad / (kGustAtRest_rad + kGustPart * mean_rad), -kMostCalmed, 1.0F);
+  }
+  sum_up_breaking();
+  memory_.advance_to(moment_.time_s, {.wind_m_s = moment_.wind_m_s, .gusts = gusts_, .breaking = breaking_});
+
+  glActiveTexture(GL_TEXTURE0 + gl::kWaterMemoryUnit);
+  glBindTexture(GL_TEXTURE_2D, memory_texture_.name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, static_cast<GLsizei>(memory_.columns()),
+               static_cast<GLsizei>(memory_.rows()), 0, GL_RG, GL_FLOAT, memory_.cells().data());
+  gl::count_upload(memory_.cells().size_bytes());
+  glActiveTexture(GL_TEXTURE0);
+
+  const glm::vec2 wind_m_s = memory_.shaping_wind_m_s();
+  const float speed_m_s = glm::length(wind_m_s);
+  const glm::vec2 downwind = speed_m_s > 0.0F ? wind_m_s / speed_m_s : glm::vec2(1.0F, 0.0F);
+  const glm::vec2 half_m(glm::dot(downwind, shore_.along()) * shore_.half_m().x,
+                         glm::dot(downwind, shore_.across()) * shore_.half_m().y);
+  const glm::vec2 lee = downwind / std::max(glm::length(half_m), 0.1F);
+  glUseProgram(water_.name());
+  glUniform3f(lee_place_, lee.x, lee.y,
+              std::clamp((speed_m_s - kFoamFrom_m_s) / (kFoamFull_m_s - kFoamFrom_m_s), 0.0F, 1.0F));
+  glUniform4f(streaks_place_, downwind.x, downwind.y, memory_.drifted_m().x, memory_.drifted_m().y);
 }
 
 void WaterRenderer::draw_reeds(GLint rings) {
@@ -210,6 +290,8 @@ void WaterRenderer::draw(const meshes::View& view) {
   glBindTexture(GL_TEXTURE_2D, slopes_.name());
   glActiveTexture(GL_TEXTURE0 + gl::kRipplesUnit);
   glBindTexture(GL_TEXTURE_2D, ripples_.name());
+  glActiveTexture(GL_TEXTURE0 + gl::kWaterMemoryUnit);
+  glBindTexture(GL_TEXTURE_2D, memory_texture_.name());
   glActiveTexture(GL_TEXTURE0);
   const Sheet& sheet = sheet_in(view);
   glBindVertexArray(sheet.array.name());

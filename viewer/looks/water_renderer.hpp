@@ -6,6 +6,7 @@
 #include "viewer/gl/gl.hpp"
 #include "viewer/gl/strip_indices.hpp"
 #include "viewer/looks/scene_renderer.hpp"
+#include "viewer/looks/water_memory.hpp"
 #include "viewer/meshes/shore.hpp"
 
 namespace yuragi::viewer::looks {
@@ -18,6 +19,7 @@ class WaterRenderer : public SceneRenderer {
 
   void set_moment(const Moment& moment) override;
   void move_to(const pose::Pose& pose) override;
+  void feel_ground(const GroundMaps& ground) override;
   void draw(const meshes::View& view) override;
   void draw_hole() override;
   std::optional<float> mirror_m() const override;
@@ -35,6 +37,8 @@ class WaterRenderer : public SceneRenderer {
   static constexpr std::array<std::size_t, 4> kSteps = {1, 2, 4, 8};  // of the points along each side
 
   void make_sheet();
+  void make_memory();
+  void sum_up_breaking();
   const Sheet& sheet_in(const meshes::View& view);
   void make_shore();
   void draw_reeds(GLint rings);
@@ -56,7 +60,14 @@ class WaterRenderer : public SceneRenderer {
   gl::GlBuffer rest_buffer_, height_buffer_;
   gl::GlBuffer bank_buffer_, hole_indices_, bank_indices_, reed_buffer_;
   gl::StripIndices reed_strips_;
-  GLint lee_place_ = -1;
+  GLint lee_place_ = -1, streaks_place_ = -1;
+  Moment moment_;
+  WaterMemory memory_;
+  std::vector<glm::vec2> memory_m_;      // the middles of its cells
+  std::vector<std::size_t> cell_of_;     // of memory_, for each point of the surface
+  std::vector<float> gusts_, breaking_;  // of its cells
+  std::vector<float> points_per_cell_;
+  gl::GlTexture memory_texture_;
 };
 
 }  // namespace yuragi::viewer::looks

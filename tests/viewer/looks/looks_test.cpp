@@ -838,9 +838,11 @@ TEST_F(StageTest, APictureLiesOnTheBareGround) {
 TEST_F(StageTest, WaterIsDarkerWhereAGustTouchesIt) {
   show({test_model("ripple"), ground_model()});
   camera_.frame({{0.0, -0.1, 0.0}, 200.0, 14.0, 5.0});
+  double time_s = 0.0;
   // The mean light of the water's middle while the grass around it is bent so much more than on the average.
   const auto water_light = [&](float gust_rad) {
     stream::PoseMoment moment = stream::rest_moment(models_);
+    moment.time_s = time_s += 60.0;  // the water has settled
     moment.poses[0] = test_pose(models_[0], 2.0, 0.5);
     auto& nodes = std::get<pose::StrandPose>(moment.poses[1]);
     std::ranges::fill(nodes.bend_east_rad, 0.3F);

@@ -9,10 +9,12 @@
 // transitions from geometry to BRDF", with the slopes' distribution of C. Cox and W. Munk 1954.
 uniform sampler2D slopes;   // along x, along z, and the sum of their squares
 uniform sampler2D ripples;
+uniform sampler2D memory;   // WaterMemory: how far gusts have woken the water, -1 to 1; the share of foam
 uniform sampler2D mirror;
 uniform float mirror_share; // of what is mirrored that is in the mirror: 1, or less where the water is small in the picture
 uniform vec4 grid_place;    // x, z of the middle of the first texel's corner; size of a texel, metres; the water's height
 uniform vec3 lee;           // downwind, over half the pond's length that way; how much is washed to the shore there
+uniform vec4 streaks;       // downwind; how far the surface has drifted, metres
 uniform vec2 middle_m;      // of the pond
 uniform vec4 grid_axes;     // a matrix: from metres behind that place to parts of the grid's sides
 in vec3 place_m;
@@ -38,11 +40,11 @@ void main() {
   vec2 uv = mat2(grid_axes.xy, grid_axes.zw) * (place_m.xz - grid_place.xy);
   vec3 waves = textureLod(slopes, uv, log2(max(pixel_m / grid_place.z, 1e-3))).rgb;
   float rough = textureLod(slopes, uv, 3.6).b;
-  // Where a gust touches the water, as the grass around knows, it wakes ripples at once: a dark paw among smooth water,
-  // which mirrors the sky. It has claws: streaks that run with the wind.
+  // Where gusts have woken the water is a dark paw among smooth water, which mirrors the sky. It has claws: streaks that
+  // run with the wind.
   float claws = textureLod(noise_tile, place_m.xz * 0.11 - drift.xy * 80.0, max(log2(pixel_m * 28.0), 0.0)).r;
-  float gust = gust_of(bend_at(place_m.xz, 1.0)) / (0.03 + 0.15 * length(bend_mean.xy));
-  float paw = smoothstep(-0.35, 0.55, gust + 1.6 * (claws - 0.5));
+  vec2 remembered = textureLod(memory, uv, 0.0).rg;
+  float paw = smoothstep(-0.35, 0.55, remembered.x + 1.6 * (claws - 0.5));
   float fine = kFineShare * rough * mix(0.08, 4.5, paw);
   // Between the paws it is calmer.
   float calmed = mix(0.42, 1.15, paw);
@@ -106,15 +108,15 @@ void main() {
   float through = smoothstep(0.05, 0.40, crest) * max(dot(from_eye, to_sun.xyz), 0.0) * smoothstep(0.02, 0.20, length(slope));
   within += vec3(0.060, 0.130, 0.085) * sun_light.rgb * (lit * through * kThroughCrest);
 
-  // Foam: on the crests of a strong wind (E. Monahan, I. O'Muircheartaigh 1980, "Optimal power-law description of oceanic
-  // whitecap coverage": a part in a hundred of the water at 10 m/s, five at 16), and washed to the lee shore.
-  float breaking = smoothstep(0.018, 0.042, rough) * smoothstep(0.10, 0.28, crest);
+  // Foam: what waves that broke have left, torn into streaks along the wind, and washed to the lee shore. It floats.
   float washed = 0.8 * lee.z * smoothstep(0.15, 0.75, dot(place_m.xz - middle_m, lee.xy)) * smoothstep(0.16, 0.02, depth_m);
-  float foamy = max(breaking, washed);
+  float foamy = max(smoothstep(0.0, 0.30, remembered.y), washed);
   float foam = 0.0;
   if (foamy > 0.01) {
-    float broad = textureLod(noise_tile, place_m.xz * 0.45 + 0.10 * slope, max(log2(pixel_m * 115.0), 0.0)).r;
-    float bubbles = textureLod(noise_tile, mat2(0.8, 0.6, -0.6, 0.8) * place_m.xz * 1.9 + 0.25 * slope, max(log2(pixel_m * 486.0), 0.0)).r;
+    vec2 floats_m = place_m.xz - streaks.zw;
+    vec2 in_wind_m = vec2(dot(floats_m, streaks.xy), dot(floats_m, vec2(-streaks.y, streaks.x)));
+    float broad = textureLod(noise_tile, in_wind_m * vec2(0.12, 0.55) + 0.05 * slope, max(log2(pixel_m * 140.0), 0.0)).r;
+    float bubbles = textureLod(noise_tile, in_wind_m * vec2(1.1, 1.9) + 0.25 * slope, max(log2(pixel_m * 486.0), 0.0)).r;
     foam = smoothstep(0.0, 0.36, 0.55 * broad + 0.45 * bubbles - 1.0 + 0.66 * foamy);
   }
 
