@@ -10,6 +10,8 @@ extern const std::string_view kCommon;  ///< in front of each of the others
 extern const std::string_view kShadeFrag;
 extern const std::string_view kBankVert;
 extern const std::string_view kBankFrag;
+extern const std::string_view kBedVert;
+extern const std::string_view kBedFrag;
 extern const std::string_view kBarkVert;
 extern const std::string_view kBarkFrag;
 extern const std::string_view kBowlShadeVert;
@@ -49,6 +51,7 @@ extern const std::string_view kImpostorLookFrag;
 extern const std::string_view kLeafVert;
 extern const std::string_view kLimbVert;
 extern const std::string_view kLimbFrag;
+extern const std::string_view kPlainWaterFrag;
 extern const std::string_view kReedVert;
 extern const std::string_view kSkinVert;
 extern const std::string_view kSkinFrag;

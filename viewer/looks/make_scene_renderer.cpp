@@ -36,7 +36,7 @@ std::unique_ptr<SceneRenderer> renderer_of(const pose::TreeSkeleton& tree, const
 }
 std::unique_ptr<SceneRenderer> renderer_of(const pose::SurfaceSkeleton& surface, const wire::SceneModel&,
                                            look::Quality quality) {
-  if (surface.ramp_rgba.empty()) return std::make_unique<WaterRenderer>(surface);
+  if (surface.ramp_rgba.empty()) return std::make_unique<WaterRenderer>(surface, quality);
   return std::make_unique<FlameRenderer>(surface, quality);
 }
 

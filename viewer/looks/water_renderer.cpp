@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -17,18 +18,23 @@
 namespace yuragi::viewer::looks {
 namespace {
 
+constexpr GLsizei kLowBedTexels = 512;  // a side
+constexpr GLsizei kBedTexels = 1024;
+
 // Behind the units of the shadows and of the mirror.
 constexpr float kCell_px = 20.0F;  // of the water's mesh, at most
-constexpr float kKeep = 1.15F;     // so far beyond its bounds a level of detail is kept
+/// Where the processor draws, triangles of a few pixels cost more than what is seen in them.
+constexpr float kLowCell_px = 120.0F;
+constexpr float kKeep = 1.15F;  // so far beyond its bounds a level of detail is kept
 constexpr GLint kReedRings = 6;
 constexpr GLint kMirroredReedRings = 3;
 constexpr float kUnderBank_m = 0.15F;        // so far the sheet goes on where the bank hides it
 constexpr std::size_t kMaxMemoryCells = 48;  // along a side
 
-/// A slope at which a wave breaks, and one at which all of it does. Short waves break at 0.3 to 0.6 (the limit of a
-/// regular wave is 0.58, tan 30 degrees: G. Stokes 1880).
-constexpr float kBreakingFrom = 0.55F;
-constexpr float kBreakingAll = 0.75F;
+/// Slopes between which a wave begins to break and all of it does, chosen by eye within what a steep wave has (the
+/// limit of a regular wave is 0.58, tan 30 degrees: G. Stokes 1880).
+constexpr float kBreakingFrom = 0.38F;
+constexpr float kBreakingAll = 0.56F;
 
 void describe(GLuint attribute, GLint numbers, GLsizei stride, std::size_t offset) {
   // OpenGL takes an offset in a buffer as a pointer.
@@ -45,19 +51,24 @@ void fill(GLenum target, const gl::GlBuffer& buffer, const std::vector<T>& conte
 
 }  // namespace
 
-WaterRenderer::WaterRenderer(const pose::SurfaceSkeleton& surface)
+WaterRenderer::WaterRenderer(const pose::SurfaceSkeleton& surface, look::Quality quality)
     : surface_(&surface),
       shore_(surface),
       points_(surface),
       waves_(surface, shore_),
-      water_(gl::link_program("water", gl::shaders::kWaterVert, gl::shaders::kWaterFrag)),
+      water_(quality == look::Quality::kLow
+                 ? gl::link_program("plain water", gl::shaders::kWaterVert, gl::shaders::kPlainWaterFrag)
+                 : gl::link_program("water", gl::shaders::kWaterVert, gl::shaders::kWaterFrag)),
+      bed_(gl::link_program("bed", gl::shaders::kBedVert, gl::shaders::kBedFrag)),
       bank_(gl::link_program("bank", gl::shaders::kBankVert, gl::shaders::kBankFrag)),
       hole_(gl::link_program("hole", gl::shaders::kHoleVert, gl::shaders::kHoleFrag)),
       reed_(gl::link_program("reed", gl::shaders::kReedVert, gl::shaders::kShadeFrag)),
       reed_rings_place_(glGetUniformLocation(reed_.name(), "rings")),
       mirror_share_place_(glGetUniformLocation(water_.name(), "mirror_share")),
-      ripples_(gl::make_ripple_texture()) {
-  for (const gl::GlProgram* program : {&water_, &bank_, &hole_, &reed_}) GroundMaps::set_samplers(*program);
+      ripples_(gl::make_ripple_texture()),
+      bed_texels_(quality == look::Quality::kLow ? kLowBedTexels : kBedTexels),
+      cell_px_(quality == look::Quality::kLow ? kLowCell_px : kCell_px) {
+  for (const gl::GlProgram* program : {&water_, &bed_, &bank_, &hole_, &reed_}) GroundMaps::set_samplers(*program);
   if (!shore_.is_pond()) return;
   make_sheet();
   make_memory();
@@ -114,10 +125,18 @@ void WaterRenderer::make_sheet() {
   lee_place_ = glGetUniformLocation(water_.name(), "lee");
   streaks_place_ = glGetUniformLocation(water_.name(), "streaks");
   glUniform2f(glGetUniformLocation(water_.name(), "middle_m"), shore_.middle_m().x, shore_.middle_m().y);
-  glUniform4f(glGetUniformLocation(water_.name(), "grid_place"), corner_m.x, corner_m.y, std::min(texel_m.x, texel_m.y),
-              *mirror_m());
-  glUniform4f(glGetUniformLocation(water_.name(), "grid_axes"), to_parts[0].x, to_parts[0].y, to_parts[1].x,
-              to_parts[1].y);
+  gl::set_sampler(water_, "bed", gl::kBedUnit);
+  const glm::vec2 texels_per_m =
+      static_cast<float>(bed_texels_) * glm::vec2(glm::length(to_parts[0]), glm::length(to_parts[1]));
+  glUniform1f(glGetUniformLocation(water_.name(), "bed_lod"), std::log2(std::max(texels_per_m.x, texels_per_m.y)));
+  for (const gl::GlProgram* program : {&water_, &bed_}) {
+    glUseProgram(program->name());
+    glUniform4f(glGetUniformLocation(program->name(), "grid_place"), corner_m.x, corner_m.y,
+                std::min(texel_m.x, texel_m.y), *mirror_m());
+    glUniform4f(glGetUniformLocation(program->name(), "grid_axes"), to_parts[0].x, to_parts[0].y, to_parts[1].x,
+                to_parts[1].y);
+  }
+  glUniform1f(glGetUniformLocation(bed_.name(), "texel_m"), 1.0F / std::min(texels_per_m.x, texels_per_m.y));
 }
 
 void WaterRenderer::make_memory() {
@@ -201,6 +220,34 @@ void WaterRenderer::move_to(const pose::Pose& pose) {
   glActiveTexture(GL_TEXTURE0);
 }
 
+/// Draws the map of the bed, which does not change.
+void WaterRenderer::draw_bed() {
+  constexpr std::array<float, 4> kEarth{0.32F, 0.28F, 0.22F, 1.0F};  // under the bank
+  glBindTexture(GL_TEXTURE_2D, bed_texture_.name());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, bed_texels_, bed_texels_, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+  const gl::GlFramebuffer canvas;
+  glBindFramebuffer(GL_FRAMEBUFFER, canvas.name());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, bed_texture_.name(), 0);
+  if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw std::runtime_error("the graphics driver cannot draw the bed of a pond");
+  }
+  glViewport(0, 0, bed_texels_, bed_texels_);
+  glDisable(GL_DEPTH_TEST);
+  glClearBufferfv(GL_COLOR, 0, kEarth.data());
+  glUseProgram(bed_.name());
+  glBindVertexArray(sheets_[0].array.name());
+  glDrawElements(GL_TRIANGLES, sheets_[0].index_count, GL_UNSIGNED_INT, nullptr);
+  glEnable(GL_DEPTH_TEST);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glBindTexture(GL_TEXTURE_2D, bed_texture_.name());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  has_bed_ = true;
+}
+
 /// The share of each of the memory's cells where waves break.
 void WaterRenderer::sum_up_breaking() {
   std::ranges::fill(breaking_, 0.0F);
@@ -223,6 +270,7 @@ void WaterRenderer::feel_ground(const GroundMaps& ground) {
   constexpr float kFoamFrom_m_s = 6.0F;
   constexpr float kFoamFull_m_s = 13.0F;
   if (!shore_.is_pond()) return;
+  if (!has_bed_) draw_bed();
   const float mean_rad = glm::length(ground.mean_bend());
   for (std::size_t i = 0; i < gusts_.size(); ++i) {
     const float more_rad = glm::length(ground.bend_at(memory_m_[i])) - mean_rad;
@@ -268,7 +316,7 @@ const WaterRenderer::Sheet& WaterRenderer::sheet_in(const meshes::View& view) {
   const glm::vec2 out_m = glm::max(beside_m - shore_.half_m(), 0.0F);
   const float nearest_m = glm::length(glm::vec3(out_m, view.eye_m.y - *mirror_m()));
   // It is flat but for its waves, whose light is of each pixel: a cell may be wide.
-  const float widest = kCell_px * view.eye_m.w * nearest_m / cell_m_;  // step
+  const float widest = cell_px_ * view.eye_m.w * nearest_m / cell_m_;  // step
   const float now = static_cast<float>(kSteps.at(level_));
   if (now > widest * kKeep || 2.0F * now < widest / kKeep) {
     level_ = 0;
@@ -292,6 +340,8 @@ void WaterRenderer::draw(const meshes::View& view) {
   glBindTexture(GL_TEXTURE_2D, ripples_.name());
   glActiveTexture(GL_TEXTURE0 + gl::kWaterMemoryUnit);
   glBindTexture(GL_TEXTURE_2D, memory_texture_.name());
+  glActiveTexture(GL_TEXTURE0 + gl::kBedUnit);
+  glBindTexture(GL_TEXTURE_2D, bed_texture_.name());
   glActiveTexture(GL_TEXTURE0);
   const Sheet& sheet = sheet_in(view);
   glBindVertexArray(sheet.array.name());

@@ -14,8 +14,8 @@ namespace yuragi::viewer::looks {
 /// Draws a surface as a pond with a natural shore, in which sky and things are mirrored.
 class WaterRenderer : public SceneRenderer {
  public:
-  /// `surface` must outlive this.
-  explicit WaterRenderer(const pose::SurfaceSkeleton& surface);
+  /// `surface` must outlive this. With quality low nothing casts a shadow on it.
+  WaterRenderer(const pose::SurfaceSkeleton& surface, look::Quality quality);
 
   void set_moment(const Moment& moment) override;
   void move_to(const pose::Pose& pose) override;
@@ -38,6 +38,7 @@ class WaterRenderer : public SceneRenderer {
 
   void make_sheet();
   void make_memory();
+  void draw_bed();
   void sum_up_breaking();
   const Sheet& sheet_in(const meshes::View& view);
   void make_shore();
@@ -50,7 +51,7 @@ class WaterRenderer : public SceneRenderer {
   float mirror_share_ = 0.0F;
   GLsizei hole_count_ = 0, bank_count_ = 0;
   std::size_t reed_count_ = 0;
-  gl::GlProgram water_, bank_, hole_, reed_;
+  gl::GlProgram water_, bed_, bank_, hole_, reed_;
   GLint reed_rings_place_, mirror_share_place_;
   gl::GlTexture slopes_, ripples_, reed_texture_;
   gl::GlVertexArray hole_array_, bank_array_;
@@ -67,7 +68,10 @@ class WaterRenderer : public SceneRenderer {
   std::vector<std::size_t> cell_of_;     // of memory_, for each point of the surface
   std::vector<float> gusts_, breaking_;  // of its cells
   std::vector<float> points_per_cell_;
-  gl::GlTexture memory_texture_;
+  gl::GlTexture memory_texture_, bed_texture_;
+  GLsizei bed_texels_;
+  float cell_px_;
+  bool has_bed_ = false;
 };
 
 }  // namespace yuragi::viewer::looks

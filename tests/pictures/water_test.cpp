@@ -1,0 +1,124 @@
+// What the wind does to the drawn pond over time: its contrast does not pulse, and foam suits the wind.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/pictures/scenes_in_wind.hpp"
+#include "viewer/gl/headless_context.hpp"
+#include "viewer/gl/render_target.hpp"
+#include "viewer/looks/stage.hpp"
+
+namespace yuragi::viewer {
+namespace {
+
+constexpr int kWidth_px = 160;
+constexpr int kHeight_px = 120;
+constexpr double kStep_s = 0.1;
+constexpr int kPictures = 32;
+constexpr int kFromAbove = 8;   // every so many pictures
+constexpr int kStepsApart = 3;  // 0.3 s
+constexpr double kMaxContrastRatio = 1.3;
+constexpr double kFoamGrey = 150.0;  // darker is water, by noon
+
+/// Pictures of the pond's middle over some seconds of a wind, from above and from the side.
+struct PondFilm {
+  std::vector<double> contrasts;  ///< standard deviation of the luminance seen from the side, a picture each
+  double foam_share = 0.0;        ///< of the water seen from above
+};
+
+double luminance(const std::vector<std::uint8_t>& rgb, int column, int row) {
+  const auto at = 3 * static_cast<std::size_t>(row * kWidth_px + column);
+  return 0.2126 * rgb[at] + 0.7152 * rgb[at + 1] + 0.0722 * rgb[at + 2];
+}
+
+PondFilm film_of(double speed_m_s) {
+  const gl::HeadlessContext context({.is_software = true, .has_messages = true});
+  looks::Stage stage;
+  stage.set_light(light::light_of(
+      look::edited({}, std::vector<std::string>{"sun=fixed", "sun_height=25", "sun_azimuth=20"}).value(), 0.0));
+  stage.set_quality(look::Quality::kLow);
+  gl::RenderTarget target(kWidth_px, kHeight_px, 1);
+  ScenesInWind scenes("ripple", speed_m_s);
+  scenes.advance(6.0);
+  stage.set_scenes(scenes.models());
+  meshes::OrbitCamera side;
+  side.frame({.target_m = {0.0, -0.1, 0.0}, .heading_deg = 200.0, .pitch_deg = 25.0, .distance_m = 4.5});
+  meshes::OrbitCamera above;
+  above.frame({.target_m = {0.0, -0.1, 0.0}, .heading_deg = 0.0, .pitch_deg = 89.0, .distance_m = 3.0});
+  PondFilm film;
+  for (int picture = 0; picture < kPictures; ++picture) {
+    scenes.advance(kStep_s);
+    const stream::PoseMoment moment = scenes.moment();
+    stage.draw(moment, side, target);
+    const std::vector<std::uint8_t> rgb = target.read_rgb();
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (int row = kHeight_px / 3; row < kHeight_px * 2 / 3; ++row) {
+      for (int column = kWidth_px / 4; column < kWidth_px * 3 / 4; ++column) {
+        const double light = luminance(rgb, column, row);
+        sum += light;
+        squares += light * light;
+        count += 1.0;
+      }
+    }
+    film.contrasts.push_back(std::sqrt(squares / count - sum * sum / count / count));
+    if (picture % kFromAbove != 0) continue;
+    stage.draw(moment, above, target);
+    const std::vector<std::uint8_t> down = target.read_rgb();
+    double white = 0.0;
+    for (int row = 0; row < kHeight_px; ++row) {
+      for (int column = 0; column < kWidth_px; ++column) white += luminance(down, column, row) > kFoamGrey ? 1.0 : 0.0;
+    }
+    film.foam_share += white / (kWidth_px * kHeight_px) / (kPictures / kFromAbove);
+  }
+  return film;
+}
+
+/// Each wind is filmed once.
+const PondFilm& film_in(double speed_m_s) {
+  static std::map<double, PondFilm> films;
+  const auto known = films.find(speed_m_s);
+  return known != films.end() ? known->second : films.emplace(speed_m_s, film_of(speed_m_s)).first->second;
+}
+
+class PondPicture : public testing::TestWithParam<double> {};
+
+TEST_P(PondPicture, ItsContrastDoesNotPulse) {
+  const std::vector<double>& contrasts = film_in(GetParam()).contrasts;
+  double largest = 1.0;
+  for (std::size_t i = kStepsApart; i < contrasts.size(); ++i) {
+    const double ratio = contrasts[i] / contrasts[i - kStepsApart];
+    largest = std::max({largest, ratio, 1.0 / ratio});
+  }
+  std::printf("%.0f m/s: contrast x%.2f within 0.3 s\n", GetParam(), largest);
+  EXPECT_LE(largest, kMaxContrastRatio);
+}
+
+INSTANTIATE_TEST_SUITE_P(Winds, PondPicture, testing::Values(4.0, 9.0, 16.0),
+                         [](const auto& speed) { return std::to_string(std::lround(speed.param)); });
+
+/// E. Monahan, I. O'Muircheartaigh 1980: the share of whitecaps on the open sea, where waves are higher than on a pond.
+double whitecaps_at_sea(double speed_m_s) {
+  return 3.84e-6 * std::pow(speed_m_s, 3.41);
+}
+
+TEST(PondFoam, IsLessThanAtSeaAndTellsAStormFromAFreshBreeze) {
+  const double breeze = film_in(4.0).foam_share;
+  const double fresh = film_in(9.0).foam_share;
+  const double storm = film_in(16.0).foam_share;
+  std::printf("foam: %.4f at 4 m/s, %.4f at 9 (sea %.4f), %.4f at 16 (sea %.4f)\n", breeze, fresh,
+              whitecaps_at_sea(9.0), storm, whitecaps_at_sea(16.0));
+  EXPECT_LE(breeze, whitecaps_at_sea(4.0));
+  EXPECT_LE(fresh, whitecaps_at_sea(9.0));
+  EXPECT_LE(storm, whitecaps_at_sea(16.0));
+  EXPECT_GE(storm, 2.0 * fresh);
+}
+
+}  // namespace
+}  // namespace yuragi::viewer
