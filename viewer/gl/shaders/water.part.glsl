@@ -17,7 +17,7 @@ uniform float bed_lod;      // binary logarithm of its texels a metre
 uniform sampler2D bed;      // the square root of its colors, as a light from straight above shows them
 in vec3 place_m;
 in float depth_m;
-in vec3 water_state;        // how far it is woken, 0 to 1; how foamy; how rough the streamed waves are
+in vec4 water_state;        // how far it is woken, 0 to 1; how foamy; how rough the streamed waves are; what clouds let through of the sun
 in vec3 down_light;         // the share of the light that comes down to the bed
 in vec3 clear_sky;          // what level water mirrors where the mirror has nothing, a screen's value
 in vec4 air_between;        // the light of the air before the water, and what it leaves of the water's own
@@ -87,7 +87,7 @@ void main() {
   if (beside > 0.0 || at.w <= 0.01) sky = mix(sky, clear_sky, at.w > 0.01 ? beside : 1.0);
 
   // What is seen through it: the bed, and the light that the water itself scatters.
-  float lit = mix(0.15, 1.0, sun_on_water(place_m));
+  float lit = water_state.w * mix(0.15, 1.0, sun_on_water(place_m));
   const vec3 kAbsorbed = vec3(1.9, 0.85, 1.25);  // per metre
   vec3 down = refract(from_eye, normal, 0.752);
   float path_m = depth_m / max(-down.y, 0.35);

@@ -13,7 +13,7 @@ uniform vec2 middle_m;      // of the pond
 
 out vec3 place_m;
 out float depth_m;
-out vec3 water_state;
+out vec4 water_state;
 out vec3 down_light;
 out vec3 clear_sky;
 out vec4 air_between;
@@ -42,7 +42,7 @@ void main() {
   float foamy = max(0.88 * smoothstep(0.0, 0.24, remembered.y), washed);
   float foam = 0.55 * broad - 1.0 + 0.66 * foamy;
 
-  water_state = vec3(paw, foam, textureLod(slopes, uv, 3.6).b);
+  water_state = vec4(paw, foam, textureLod(slopes, uv, 3.6).b, below_clouds(place_m));
   vec3 ray = place_m - eye_m.xyz;
   float distance_m = length(ray);
   clear_sky = finish(air_light(vec3(ray.x, abs(ray.y), ray.z) / distance_m));
