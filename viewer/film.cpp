@@ -62,6 +62,7 @@ class FilmReader {
     if (const auto mismatch = wire::protocol_mismatch(hello)) {
       throw ViewerExit(EX_SOFTWARE, fmt::format("{} ({}) {}", source_, hello.software, *mismatch));
     }
+    if (hello.wind_from_deg) director_.set_wind_from(*hello.wind_from_deg);
   }
   void take(wire::Scenes& scenes) {
     timeline_.set_scenes(scenes.scenes);

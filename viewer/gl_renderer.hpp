@@ -39,9 +39,10 @@ class GlRenderer final : public Renderer {
   const std::vector<const wire::SceneModel*>& scenes() const override { return stage_.scenes(); }
   void show_only(const std::string& scene) override { stage_.show_only(scene); }
   double aspect() const override { return static_cast<double>(target_.width_px()) / target_.height_px(); }
-  meshes::CameraPlace home() const override { return stage_.home(aspect()); }
+  meshes::CameraPlace home(double wind_from_deg) const override { return stage_.home(aspect(), wind_from_deg); }
   meshes::CameraPlace outside(const meshes::CameraPlace& place) const override { return stage_.outside(place); }
   std::optional<meshes::Bounds> bounds_of(std::string_view scene) const override { return stage_.bounds_of(scene); }
+  std::vector<meshes::Bounds> obstacles() const override { return stage_.obstacles(); }
   void set_light(const light::Light& light) override { stage_.set_light(light); }
   void set_quality(look::Quality quality, float density) override;
   void draw(const Picture& picture) override;

@@ -17,7 +17,7 @@ class NullRenderer final : public Renderer {
   const std::vector<const wire::SceneModel*>& scenes() const override { return scenes_; }
   void show_only(const std::string& /*scene*/) override {}
   double aspect() const override { return aspect_; }
-  meshes::CameraPlace home() const override { return {}; }
+  meshes::CameraPlace home(double /*wind_from_deg*/) const override { return {}; }
   meshes::CameraPlace outside(const meshes::CameraPlace& place) const override { return place; }
   std::optional<meshes::Bounds> bounds_of(std::string_view scene) const override;
   void set_light(const light::Light& /*light*/) override {}

@@ -29,13 +29,23 @@ void PictureDirector::set_scenes(std::vector<wire::SceneModel> scenes) {
 }
 
 void PictureDirector::frame() {
-  meshes::CameraPlace place = renderer_.home();
+  camera_.frame(first_place());
+}
+
+/// A window of another shape: the first place is another, and who is there stays there.
+void PictureDirector::follow_aspect() {
+  if (renderer_.aspect() != framed_aspect_) camera_.move_home(first_place());
+}
+
+meshes::CameraPlace PictureDirector::first_place() {
+  framed_aspect_ = renderer_.aspect();
+  meshes::CameraPlace place = renderer_.home(wind_from_deg_);
   if (view_) {
     place.heading_deg = view_->heading_deg;
     place.pitch_deg = view_->pitch_deg;
     place.distance_m = view_->distance_m;
   }
-  camera_.frame(place);
+  return place;
 }
 
 void PictureDirector::take_status(const wire::Sensors& status, double fade_s) {
@@ -82,6 +92,7 @@ void PictureDirector::frame_scenes(bool are_all) {
 }
 
 void PictureDirector::advance(double passed_s, double utc_s, const wind::WindVector& wind) {
+  follow_aspect();
   cameras_.advance(passed_s);
   if (utc_s != std::exchange(utc_s_, utc_s)) cameras_.hear_clock(utc_s);
   camera_.advance(passed_s);
@@ -92,6 +103,7 @@ void PictureDirector::advance(double passed_s, double utc_s, const wind::WindVec
 }
 
 void PictureDirector::draw(const stream::PoseMoment& moment) {
+  view_wind_from_deg_ = moment.view_wind_from_deg;
   Picture picture{.moment = moment, .camera = place_for(cameras_.now())};
   if (cameras_.is_fading()) {
     picture.fading_out = place_for(cameras_.before());
@@ -113,7 +125,8 @@ look::Look PictureDirector::look_for(const look::Look& senders) const {
 
 meshes::CameraPlace PictureDirector::place_for(const Shot& shot) const {
   if (!shot.camera) return camera_.place();
-  return place_of(*shot.camera, renderer_.bounds_of(shot.camera->scene), renderer_.aspect(), shot.utc_s);
+  return place_of(*shot.camera, renderer_.bounds_of(shot.camera->scene), renderer_.aspect(), shot.utc_s,
+                  view_wind_from_deg_, renderer_.obstacles());
 }
 
 void PictureDirector::require_scene() const {

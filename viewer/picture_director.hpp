@@ -18,6 +18,8 @@ class PictureDirector {
   /// `source`: who sends the stream, for people. Both others must outlive this.
   PictureDirector(const ViewerOptions& options, Renderer& renderer, std::string source);
 
+  /// Where the sender's wind usually comes from, before its scenes: the first view looks across it.
+  void set_wind_from(double wind_from_deg) { wind_from_deg_ = wind_from_deg; }
   /// Throws ViewerExit where the first ones are without the one that was asked for.
   void set_scenes(std::vector<wire::SceneModel> scenes);
   /// Light, which fades over `fade_s`, and cameras. Throws ViewerExit where the first are without the camera that was
@@ -55,6 +57,8 @@ class PictureDirector {
 
  private:
   void frame();
+  void follow_aspect();
+  meshes::CameraPlace first_place();
   look::Look look_for(const look::Look& senders) const;
   meshes::CameraPlace place_for(const Shot& shot) const;
   void require_scene() const;
@@ -68,6 +72,9 @@ class PictureDirector {
   light::SkyKeeper sky_;
   std::optional<look::Quality> quality_;  // that a person has chosen
   double utc_s_ = 0.0;
+  std::optional<double> view_wind_from_deg_;  // of the last moment
+  double framed_aspect_ = 0.0;
+  double wind_from_deg_ = meshes::kUsualWindFrom_deg;
   bool has_scenes_ = false;
   bool has_status_ = false;
 };

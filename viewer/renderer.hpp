@@ -35,12 +35,15 @@ class Renderer {
 
   /// Width / height of the pictures.
   virtual double aspect() const = 0;
-  /// The camera's first place for what is drawn.
-  virtual meshes::CameraPlace home() const = 0;
+  /// The camera's first place for what is drawn, across a wind that comes from `wind_from_deg`.
+  virtual meshes::CameraPlace home(double wind_from_deg) const = 0;
   /// The place itself, or so far back along its view that no camera stands within an animal.
   virtual meshes::CameraPlace outside(const meshes::CameraPlace& place) const = 0;
   /// The box around the scene of this name; nothing where there is none.
   virtual std::optional<meshes::Bounds> bounds_of(std::string_view scene) const = 0;
+
+  /// The boxes around what stands in a camera's way: all scenes but grass, ground and water.
+  virtual std::vector<meshes::Bounds> obstacles() const { return {}; }
 
   virtual void set_light(const light::Light& light) = 0;
   /// `density`: of the blades of grass, the share (0 to 1] that is drawn.

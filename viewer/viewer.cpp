@@ -300,6 +300,7 @@ class Viewer::Show {
   /// Takes what has arrived, and advances to now.
   void advance() {
     stream::Inbox inbox = connection_.take();
+    if (inbox.wind_from_deg) director_->set_wind_from(*inbox.wind_from_deg);
     if (inbox.scenes) timeline_.set_scenes(std::move(*inbox.scenes));
     const bool is_same_machine = connection_.status().is_same_machine;
     for (stream::TimedFrame& timed : inbox.frames) {

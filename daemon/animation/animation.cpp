@@ -10,6 +10,8 @@
 namespace yuragi::daemon::animation {
 namespace {
 
+constexpr double kLiveWeight = 0.5;  // from here on the wind is the sensors' for cameras that follow it
+
 /// Enough places for every sensor, and no more: a tape takes half a megabyte.
 std::size_t most_pens(const settings::Config& config) {
   return std::min(wind::ground::WindStroke::kMostPens, config.sensors.size() + (config.wind.fallback ? 1 : 0));
@@ -32,13 +34,17 @@ std::unique_ptr<SceneList> first_scenes(const settings::Config& config,
 }  // namespace
 
 Animation::Animation(const settings::Config& config, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts)
-    : scenes_(first_scenes(config, gusts)), pool_(config.animation.threads), tapes_(most_pens(config)) {}
+    : scenes_(first_scenes(config, gusts)),
+      pool_(config.animation.threads),
+      tapes_(most_pens(config)),
+      wind_side_(config.wind.default_direction_deg) {}
 
 void Animation::step(const wind::ground::DrivingWind& wind, double dt_s, std::uint64_t ticks) noexcept {
   if (change_ && !change_->is_over && change_->has_faded_out()) finish_change();
   wind::ground::GroundWind ground = written_to(tapes_, wind);
   tick_ += ticks;
   ground.tick = tick_;
+  wind_side_.advance(dt_s, wind.state.wind.u_m_s, wind.state.wind.v_m_s, wind.state.live_weight >= kLiveWeight);
   SceneList& list = *scenes_;
   const bool is_shared = pool_.size() > 1 && sharing_.is_shared();
   const auto share = [this, is_shared](const auto& work) {

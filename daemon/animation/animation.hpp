@@ -8,6 +8,7 @@
 #include "daemon/animation/scene_change.hpp"
 #include "daemon/animation/scene_list.hpp"
 #include "daemon/settings/config.hpp"
+#include "engine/look/wind_side.hpp"
 #include "engine/pose/reach.hpp"
 #include "engine/wind/wind_state.hpp"
 #include "engine/wire/wire.hpp"
@@ -51,7 +52,13 @@ class Animation {
   std::unique_ptr<SceneChange> take_finished_change() noexcept;
 
   /// The frame of the present poses, size prefix included; valid until the next call.
-  std::span<const std::uint8_t> encode(const wire::FrameInfo& info) { return scenes_->encode(info); }
+  std::span<const std::uint8_t> encode(const wire::FrameInfo& info) {
+    wire::FrameInfo with_view = info;
+    with_view.view_wind_from_deg = view_wind_from_deg();
+    return scenes_->encode(with_view);
+  }
+  /// Where the wind comes from for cameras that keep their angle to it.
+  double view_wind_from_deg() const noexcept { return wind_side_.from_deg(); }
   /// The number of the list of scenes that the frame is of.
   std::uint64_t generation() const noexcept { return scenes_->generation(); }
   /// Sees to it that `buffer` has room for any frame of the present scenes.
@@ -80,6 +87,7 @@ class Animation {
   workers::WorkerPool pool_;
   workers::SharingChoice sharing_;
   wind::ground::WindTapes tapes_;
+  look::WindSide wind_side_;
   std::uint64_t tick_ = 0;  // the number of the last one
 };
 

@@ -103,7 +103,9 @@ void print_summary(const settings::Config& config, const std::filesystem::path& 
     fmt::print("  scene {} ({})\n", scene.name, scene.kind->name);
   for (const settings::CameraConfig& camera : config.cameras) {
     const std::optional<std::string> from = from_text(camera);
-    fmt::print("  camera {}{}\n", camera.name,
+    const std::optional<double>& angle_deg = camera.camera.wind_angle_deg;
+    fmt::print("  camera {}{}{}\n", camera.name,
+               angle_deg ? fmt::format(", keeps {:g} deg to the wind", *angle_deg) : std::string(),
                from ? fmt::format(", from {} ({})", *from, config.clock.zone_name()) : std::string());
   }
   for (const settings::AlertConfig& alert : config.alerts)

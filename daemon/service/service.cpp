@@ -180,6 +180,7 @@ class Service::Io {
     stream::TcpStreamSettings settings;
     settings.hello.software = with_version("yuragi");
     settings.hello.tick_rate_hz = rate_hz_;
+    settings.hello.wind_from_deg = config.wind.default_direction_deg;
     if (animation_) {
       settings.scenes = animation_->describe();
       animation::checked_scenes_message(settings.scenes);

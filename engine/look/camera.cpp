@@ -31,7 +31,7 @@ const Camera& default_camera() {
   return camera;
 }
 
-const std::array<Parameter, 16> kCameraParameters{{
+const std::array<Parameter, 17> kCameraParameters{{
     {.name = "scene",
      .unit = "",
      .default_value = std::string(),
@@ -61,6 +61,15 @@ const std::array<Parameter, 16> kCameraParameters{{
      .min = -360.0,
      .max = 360.0,
      .help = "Direction of view: 0 north, 90 east"},
+    {.name = "wind_angle",
+     .unit = "deg",
+     .default_value = 75.0,
+     .min = -180.0,
+     .max = 180.0,
+     .help = "Follows the mean wind instead of `heading`: the view goes so far to the right of where the wind comes "
+             "from; 0 "
+             "looks into it, 90 and -90 across it. It turns by at most 0.5 deg/s, and never through a scene",
+     .left_out = "`heading` is the direction of view"},
     {.name = "pitch",
      .unit = "deg",
      .default_value = default_camera().pitch_deg,
@@ -147,6 +156,7 @@ Result<Camera, ParameterError> camera_of(std::string name, const ParameterValues
   for (const CameraNumber& number : kNumbers) camera.*number.member = values.number(number.name);
   if (values.has("scene")) camera.scene = values.text("scene");
   if (values.has("distance")) camera.distance_m = values.number("distance");
+  if (values.has("wind_angle")) camera.wind_angle_deg = values.number("wind_angle");
   if (values.has("from")) {
     const std::string& from = values.text("from");
     camera.from_h = time_of_day_h(from);
@@ -165,6 +175,11 @@ Camera within_limits(const Camera& camera) {
   if (to.distance_m) {
     to.distance_m.reset();
     if (std::isfinite(*camera.distance_m)) to.distance_m = limited_number(*camera.distance_m, "distance", 0.0);
+  }
+  if (to.wind_angle_deg) {
+    to.wind_angle_deg.reset();
+    if (std::isfinite(*camera.wind_angle_deg))
+      to.wind_angle_deg = limited_number(*camera.wind_angle_deg, "wind_angle", 0.0);
   }
   if (to.from_h && !(*to.from_h >= 0.0 && *to.from_h < 24.0)) to.from_h.reset();
   return to;

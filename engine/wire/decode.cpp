@@ -48,6 +48,8 @@ bool read(const fb::Hello& from, Hello& to) {
   to.protocol = from.protocol();
   to.tick_rate_hz = from.tick_rate_hz();
   if (from.refused() != nullptr && !read_text(from.refused(), to.refused.emplace())) return false;
+  if (const auto from_deg = from.wind_from_deg(); from_deg && is_within(*from_deg, 0.0, 360.0))
+    to.wind_from_deg = *from_deg;
   return is_within(to.tick_rate_hz, 0.0, 1e6) && read_text(from.software(), to.software);
 }
 
@@ -92,6 +94,9 @@ bool read(const fb::Frame& from, Frame& to) {
   to.info.tick = from.tick();
   to.info.time_s = from.time_s();
   to.info.utc_ns = from.utc_ns();
+  if (const auto from_deg = from.view_wind_from_deg(); from_deg && is_within(*from_deg, 0.0, 360.0)) {
+    to.info.view_wind_from_deg = *from_deg;
+  }
   const std::size_t count = from.scenes() == nullptr ? 0 : from.scenes()->size();
   if (count > kMaxScenes || !is_within(to.info.time_s, 0.0, kMaxDuration_s) || !read(from.wind(), to.info.wind) ||
       !read(from.wind_place(), to.info.wind)) {
@@ -249,6 +254,7 @@ bool read(const fb::Camera& from, look::Camera& to) {
                       .period_s = from.period_s(),
                       .fade_s = from.fade_s()};
   if (const auto distance_m = from.distance_m()) camera.distance_m = *distance_m;
+  if (const auto angle_deg = from.wind_angle_deg()) camera.wind_angle_deg = *angle_deg;
   if (const auto hour = from.from_h()) camera.from_h = *hour;
   to = look::within_limits(camera);
   return read_text(from.name(), to.name) && read_text(from.scene(), to.scene);

@@ -243,6 +243,7 @@ flatbuffers::Offset<fb::Camera> add_camera(Builder& builder, const look::Camera&
   table.add_period_s(camera.period_s);
   if (camera.from_h) table.add_from_h(*camera.from_h);
   table.add_fade_s(camera.fade_s);
+  if (camera.wind_angle_deg) table.add_wind_angle_deg(*camera.wind_angle_deg);
   return table.Finish();
 }
 
@@ -317,8 +318,13 @@ Bytes encode(const Hello& hello) {
   Builder builder;
   const auto software = add_text(builder, hello.software);
   const auto refused = hello.refused ? add_text(builder, *hello.refused) : Text();
-  return finish(builder, fb::Body_Hello,
-                fb::CreateHello(builder, hello.protocol, software, hello.tick_rate_hz, refused));
+  fb::HelloBuilder table(builder);
+  table.add_protocol(hello.protocol);
+  table.add_software(software);
+  table.add_tick_rate_hz(hello.tick_rate_hz);
+  if (hello.refused) table.add_refused(refused);
+  if (hello.wind_from_deg) table.add_wind_from_deg(*hello.wind_from_deg);
+  return finish(builder, fb::Body_Hello, table.Finish());
 }
 
 Bytes encode(const Subscribe& subscribe) {

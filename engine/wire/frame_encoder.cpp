@@ -135,8 +135,9 @@ std::span<const std::uint8_t> FrameEncoder::encode(const FrameInfo& info,
 
   const fb::Wind wind = to_schema(info.wind);
   const fb::WindPlace place = place_to_schema(info.wind);
-  const auto frame =
-      fb::CreateFrame(buffer, info.sequence, info.tick, info.time_s, info.utc_ns, &wind, scene_vector, &place);
+  const auto frame = fb::CreateFrame(
+      buffer, info.sequence, info.tick, info.time_s, info.utc_ns, &wind, scene_vector, &place,
+      info.view_wind_from_deg ? flatbuffers::Optional<double>(*info.view_wind_from_deg) : flatbuffers::nullopt);
   fb::FinishSizePrefixedMessageBuffer(buffer, fb::CreateMessage(buffer, fb::Body_Frame, frame.Union()));
   return {buffer.GetBufferPointer(), buffer.GetSize()};
 }

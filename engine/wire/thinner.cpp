@@ -244,8 +244,9 @@ Bytes Thinner::frame(std::span<const std::uint8_t> message) const {
     if (kept.scene >= count) break;
     scenes.push_back(maker.add_scene(*from->scenes()->Get(static_cast<flatbuffers::uoffset_t>(kept.scene)), kept));
   }
-  const auto frame = fb::CreateFrame(maker.buffer, from->sequence(), from->tick(), from->time_s(), from->utc_ns(),
-                                     from->wind(), maker.buffer.CreateVector(scenes), from->wind_place());
+  const auto frame =
+      fb::CreateFrame(maker.buffer, from->sequence(), from->tick(), from->time_s(), from->utc_ns(), from->wind(),
+                      maker.buffer.CreateVector(scenes), from->wind_place(), from->view_wind_from_deg());
   fb::FinishSizePrefixedMessageBuffer(maker.buffer, fb::CreateMessage(maker.buffer, fb::Body_Frame, frame.Union()));
   return {maker.buffer.GetBufferPointer(), maker.buffer.GetBufferPointer() + maker.buffer.GetSize()};
 }

@@ -65,7 +65,8 @@ struct Hello {
   std::uint32_t protocol = kProtocol;
   std::string software;
   double tick_rate_hz = 0.0;
-  std::optional<std::string> refused = std::nullopt;  ///< why the server closes the connection behind this message
+  std::optional<std::string> refused = std::nullopt;   ///< why the server closes the connection behind this message
+  std::optional<double> wind_from_deg = std::nullopt;  ///< where the wind comes from while no sensor is live, 0 to 360
 };
 
 /// Why a client of this build cannot use the server, for a person, with the server as subject: "speaks protocol 3, this
@@ -112,7 +113,8 @@ struct FrameInfo {
   std::uint64_t tick = 0;
   double time_s = 0.0;
   std::int64_t utc_ns = 0;
-  wind::WindState wind;  ///< its `time` does not travel
+  wind::WindState wind;                                     ///< its `time` does not travel
+  std::optional<double> view_wind_from_deg = std::nullopt;  ///< what cameras with a wind_angle follow, [0, 360)
 };
 
 struct Frame {

@@ -49,6 +49,7 @@ ScenesInWind::ScenesInWind(const daemon::settings::Config& config)
 ScenesInWind::ScenesInWind(const daemon::settings::Config& config,
                            const std::shared_ptr<const wind::turbulence::GustNoise>& gusts)
     : tick_s_(1.0 / config.animation.rate_hz),
+      wind_from_deg_(config.wind.default_direction_deg),
       animation_(config, gusts),
       estimator_(daemon::sensing::make_estimator(config, gusts, animation_.reach_m())) {
   for (const daemon::settings::CameraConfig& camera : config.cameras) cameras_.push_back(camera.camera);
@@ -63,7 +64,7 @@ void ScenesInWind::advance(double duration_s) {
 }
 
 meshes::CameraPlace ScenesInWind::home(const looks::Stage& stage, double aspect, double hour) const {
-  if (cameras_.empty()) return stage.home(aspect);
+  if (cameras_.empty()) return stage.home(aspect, wind_from_deg_);
   const look::Camera& camera = cameras_[look::camera_at(cameras_, hour)];
   return place_of(camera, stage.bounds_of(camera.scene), aspect, 0.0);
 }

@@ -43,6 +43,7 @@ class ScenesInWind {
   ScenesInWind(const daemon::settings::Config& config, const std::shared_ptr<const wind::turbulence::GustNoise>& gusts);
 
   double tick_s_;
+  double wind_from_deg_;
   std::vector<look::Camera> cameras_;
   daemon::animation::Animation animation_;
   wind::blend::BlendedEstimator estimator_;

@@ -1,9 +1,12 @@
 #include "viewer/camera_place.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 
 namespace yuragi::viewer {
@@ -75,6 +78,36 @@ TEST(CameraPlace, TracksToItsRight) {
   EXPECT_NEAR(side.target_m.x - middle.target_m.x, 3.0, 1e-6);
   EXPECT_NEAR(eye_of(side).x - eye_of(middle).x, 3.0, 1e-6);
   EXPECT_EQ(side.heading_deg, middle.heading_deg);
+}
+
+TEST(CameraPlace, KeepsItsAngleToTheWind) {
+  const look::Camera camera{.heading_deg = 30.0, .wind_angle_deg = 75.0, .distance_m = 9.0};
+  const meshes::CameraPlace place = place_of(camera, std::nullopt, kAspect, kNow_s, 240.0);
+  EXPECT_EQ(place.heading_deg, 315.0);
+  EXPECT_EQ(place.distance_m, 9.0);
+  EXPECT_EQ(still(camera).heading_deg, 30.0) << "a daemon that does not send it";
+}
+
+TEST(CameraPlace, TurnsWithTheWindAtOneDistanceAndThroughNothing) {
+  const meshes::Bounds tree{{-2.0F, 0.0F, -2.0F}, {2.0F, 6.0F, 2.0F}};
+  const meshes::Bounds wall{{6.0F, 0.0F, -1.0F}, {7.0F, 3.0F, 1.0F}};
+  const std::array obstacles{tree, wall};
+  const auto is_in = [](const meshes::Bounds& box, const glm::dvec3& eye_m) {
+    return glm::all(glm::greaterThan(eye_m, glm::dvec3(box.low_m))) &&
+           glm::all(glm::lessThan(eye_m, glm::dvec3(box.high_m)));
+  };
+  for (const std::optional<double> distance_m : {std::optional(1.0), std::optional(6.5), std::optional<double>()}) {
+    const look::Camera camera{.target_y_m = -2.0, .wind_angle_deg = -75.0, .distance_m = distance_m};
+    const double first_m = place_of(camera, tree, kAspect, kNow_s, 0.0, obstacles).distance_m;
+    for (double wind_deg = 0.0; wind_deg < 360.0; wind_deg += 1.0) {
+      const meshes::CameraPlace place = place_of(camera, tree, kAspect, kNow_s, wind_deg, obstacles);
+      EXPECT_EQ(place.distance_m, first_m);
+      for (const meshes::Bounds& box : obstacles) EXPECT_FALSE(is_in(box, eye_of(place))) << wind_deg;
+    }
+  }
+  EXPECT_EQ(place_of({.wind_angle_deg = 75.0, .distance_m = 4.0}, tree, kAspect, kNow_s, 0.0, obstacles).distance_m,
+            4.0)
+      << "between tree and wall there is room";
 }
 
 TEST(CameraPlace, NeverJumps) {

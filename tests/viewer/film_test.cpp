@@ -60,7 +60,7 @@ class WatchedRenderer final : public Renderer {
   const std::vector<const wire::SceneModel*>& scenes() const override { return nothing_.scenes(); }
   void show_only(const std::string& /*scene*/) override {}
   double aspect() const override { return nothing_.aspect(); }
-  meshes::CameraPlace home() const override { return nothing_.home(); }
+  meshes::CameraPlace home(double wind_from_deg) const override { return nothing_.home(wind_from_deg); }
   meshes::CameraPlace outside(const meshes::CameraPlace& place) const override { return place; }
   std::optional<meshes::Bounds> bounds_of(std::string_view scene) const override { return nothing_.bounds_of(scene); }
   void set_light(const light::Light& /*light*/) override {}

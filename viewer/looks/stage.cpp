@@ -137,12 +137,12 @@ meshes::Bounds Stage::bounds() const {
   return around(is_thing).value_or(is_ground_alone || only_ ? kPartOfGround : meshes::Bounds{});
 }
 
-meshes::CameraPlace Stage::home(double aspect) const {
+meshes::CameraPlace Stage::home(double aspect, double wind_from_deg) const {
   bool is_all_field = true;
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     is_all_field = is_all_field && (!is_chosen(scene) || views_[scene]->renderer->is_field());
   }
-  if (is_all_field) return meshes::place_across(bounds());
+  if (is_all_field) return meshes::place_across(bounds(), wind_from_deg);
   const auto chosen = [this](std::size_t scene) { return is_chosen(scene) && !views_[scene]->renderer->is_ground(); };
   std::size_t scene = 0;
   std::size_t count = 0;
@@ -151,12 +151,22 @@ meshes::CameraPlace Stage::home(double aspect) const {
     scene = i;
     ++count;
   }
-  if (count == 1 && views_[scene]->shore.is_pond()) return meshes::place_on_shore(views_[scene]->shore);
-  if (count == 1 && views_[scene]->scene.kind == "fur") return meshes::place_beside(bounds());
+  if (count == 1 && views_[scene]->shore.is_pond()) return meshes::place_on_shore(views_[scene]->shore, wind_from_deg);
+  if (count == 1 && views_[scene]->scene.kind == "fur") return meshes::place_beside(bounds(), wind_from_deg);
   // A flag fills the picture, which its pole leaves below.
   if (count == 1 && views_[scene]->scene.kind == "flag")
-    return meshes::place_around(meshes::bounds_of(views_[scene]->scene.skeleton), aspect);
-  return meshes::place_around(bounds(), aspect);
+    return meshes::place_around(meshes::bounds_of(views_[scene]->scene.skeleton), aspect, wind_from_deg);
+  return meshes::place_around(bounds(), aspect, wind_from_deg);
+}
+
+std::vector<meshes::Bounds> Stage::obstacles() const {
+  std::vector<meshes::Bounds> boxes;
+  for (std::size_t scene = 0; scene < views_.size(); ++scene) {
+    const SceneView& view = *views_[scene];
+    if (is_chosen(scene) && !view.renderer->is_field() && !view.renderer->is_ground() && !view.shore.is_pond())
+      boxes.push_back(view.bounds);
+  }
+  return boxes;
 }
 
 meshes::CameraPlace Stage::outside(const meshes::CameraPlace& place) const {

@@ -39,7 +39,9 @@ class Stage {
 
   /// The box around all scenes that are drawn, and the camera's first place for a picture of width / height `aspect`.
   meshes::Bounds bounds() const;
-  meshes::CameraPlace home(double aspect) const;
+  meshes::CameraPlace home(double aspect, double wind_from_deg = meshes::kUsualWindFrom_deg) const;
+  /// The boxes around the scenes that are drawn and that an eye must not be in: all but grass, ground and water.
+  std::vector<meshes::Bounds> obstacles() const;
   /// A camera's place, or one farther back, that is not within a body. What is drawn is seen from there.
   meshes::CameraPlace outside(const meshes::CameraPlace& place) const;
   /// The box around the scene of this name; nothing where there is none.

@@ -14,10 +14,11 @@ constexpr double kGlide_s = 0.08;     // the time constant with which it follows
 constexpr double kTurning_deg_s = 2.0;
 constexpr double kMaxTarget_m = 500.0;  // from the origin
 constexpr double kAcrossPitch_deg = 6.0;
-constexpr double kFieldHeights = 5.0;     // so many times as wide as high: something to look across
-constexpr double kAcrossHeights = 1.05;   // of the eye, in heights of what it looks across
-constexpr double kFromCorner_deg = 32.0;  // how far a broad side is looked at aslant
-constexpr double kFlatHeights = 0.2;      // of what is flat, against its width
+constexpr double kFieldHeights = 5.0;        // so many times as wide as high: something to look across
+constexpr double kAcrossHeights = 1.05;      // of the eye, in heights of what it looks across
+constexpr double kFromCorner_deg = 32.0;     // how far a broad side is looked at aslant, where the wind allows it
+constexpr double kMostAlongWind_deg = 30.0;  // from straight across the wind
+constexpr double kFlatHeights = 0.2;         // of what is flat, against its width
 constexpr double kFlatPitch_deg = 7.0;
 constexpr double kFlatShown = 0.6;  // of its width
 constexpr double kEyeHeights = 0.45;
@@ -76,6 +77,18 @@ double tangent_up(double field_of_view_deg, double aspect) {
 
 void OrbitCamera::frame(const CameraPlace& place) {
   home_ = wanted_ = place_ = limited(place);
+}
+
+void OrbitCamera::move_home(const CameraPlace& place) {
+  CameraPlace home = home_;
+  if (is_turning_) home.heading_deg = wanted_.heading_deg;
+  const bool is_home = wanted_ == home;
+  const double turned_deg = home.heading_deg - home_.heading_deg;
+  home_ = limited(place);
+  if (!is_home) return;
+  wanted_ = home_;
+  wanted_.heading_deg += turned_deg;
+  place_ = wanted_;
 }
 
 void OrbitCamera::go_to(const CameraPlace& place) {
@@ -138,7 +151,22 @@ glm::mat4 OrbitCamera::projection(double aspect) const {
   return glm::mat4(glm::perspective(up_rad, aspect, near_m, kFar_m));
 }
 
-CameraPlace place_across(const Bounds& bounds) {
+double heading_across(double preferred_deg, double broadside_deg, double wind_from_deg) {
+  double best_deg = preferred_deg;
+  double least_turn_deg = 360.0;
+  for (const double side_deg : {90.0, -90.0}) {
+    const double across_deg = wind_from_deg + side_deg;
+    const double off_deg = std::remainder(preferred_deg - across_deg, 360.0);
+    const double heading_deg = across_deg + std::clamp(off_deg, -kMostAlongWind_deg, kMostAlongWind_deg);
+    const double turn_deg = std::abs(std::remainder(heading_deg - broadside_deg, 360.0));
+    if (turn_deg >= least_turn_deg) continue;
+    least_turn_deg = turn_deg;
+    best_deg = heading_deg;
+  }
+  return std::fmod(best_deg + 720.0, 360.0);
+}
+
+CameraPlace place_across(const Bounds& bounds, double wind_from_deg) {
   const glm::dvec3 low(bounds.low_m);
   const glm::dvec3 high(bounds.high_m);
   const double width_m = std::max(high.x - low.x, 0.1);
@@ -147,7 +175,8 @@ CameraPlace place_across(const Bounds& bounds) {
   const double diagonal_m = std::hypot(width_m, depth_m);
 
   CameraPlace place;
-  place.heading_deg = 180.0 + glm::degrees(std::atan2(width_m, depth_m));
+  const double diagonal_deg = 180.0 + glm::degrees(std::atan2(width_m, depth_m));
+  place.heading_deg = heading_across(diagonal_deg, diagonal_deg, wind_from_deg);
   place.pitch_deg = kAcrossPitch_deg;
   if (diagonal_m < kFieldHeights * height_m) {
     // Hardly wider than high: all of it, from outside.
@@ -156,11 +185,15 @@ CameraPlace place_across(const Bounds& bounds) {
     return limited(place);
   }
 
-  // Just inside the north-eastern corner, from where no edge but the far ones is in view, along the diagonal.
+  // Just inside the near edge, over the middle: the streamed blades go on ahead as far as they can.
   const double eye_height_m = kAcrossHeights * height_m;
   place.distance_m = std::min(0.45 * diagonal_m, 0.75 * eye_height_m / std::sin(glm::radians(kAcrossPitch_deg)));
-  const glm::dvec3 corner(high.x - 0.06 * width_m, low.y + eye_height_m, low.z + 0.06 * depth_m);
-  place.target_m = corner + direction(place) * place.distance_m;
+  const double heading = glm::radians(place.heading_deg);
+  const double back_m = std::min(0.44 * width_m / std::max(std::abs(std::sin(heading)), 1e-6),
+                                 0.44 * depth_m / std::max(std::abs(std::cos(heading)), 1e-6));
+  const glm::dvec3 eye_m((low.x + high.x) / 2 - std::sin(heading) * back_m, low.y + eye_height_m,
+                         (low.z + high.z) / 2 + std::cos(heading) * back_m);
+  place.target_m = eye_m + direction(place) * place.distance_m;
   return limited(place);
 }
 
@@ -181,12 +214,13 @@ double distance_to_see(const Bounds& bounds, const CameraPlace& place, double as
   return distance_m;
 }
 
-CameraPlace place_around(const Bounds& bounds, double aspect) {
+CameraPlace place_around(const Bounds& bounds, double aspect, double wind_from_deg) {
   const glm::dvec3 size_m = bounds.high_m - bounds.low_m;
 
-  // At the broad side: to the south-south-west, or to the west-south-west.
+  // At the broad side: to the south-south-west, or to the west-south-west, as far as the wind allows it.
   CameraPlace place;
-  place.heading_deg = size_m.x >= size_m.z ? 180.0 + kFromCorner_deg : 270.0 - kFromCorner_deg;
+  place.heading_deg = size_m.x >= size_m.z ? heading_across(180.0 + kFromCorner_deg, 180.0, wind_from_deg)
+                                           : heading_across(270.0 - kFromCorner_deg, 270.0, wind_from_deg);
   place.target_m = glm::dvec3(bounds.low_m + bounds.high_m) / 2.0;
   if (size_m.y < kFlatHeights * std::hypot(size_m.x, size_m.z)) {
     // From its edge, so that it goes on beyond the picture's sides; in an upright picture from no farther.
@@ -208,30 +242,34 @@ CameraPlace place_around(const Bounds& bounds, double aspect) {
   return limited(place);
 }
 
-CameraPlace place_on_shore(const Shore& shore) {
-  // Across the longer side, from where the evening sun is not behind.
+CameraPlace place_on_shore(const Shore& shore, double wind_from_deg) {
+  // Across the longer side, from where the evening sun is not behind, as far as the wind allows it.
   const bool is_along = shore.half_m().x >= shore.half_m().y;
   glm::dvec2 ahead(is_along ? shore.along() : shore.across());
   if (ahead.x - ahead.y > 0.0) ahead = -ahead;  // toward the south-west
+  const double preferred_deg = glm::degrees(std::atan2(ahead.x, -ahead.y));
+  const double heading_deg = heading_across(preferred_deg, preferred_deg, wind_from_deg);
+  ahead = {std::sin(glm::radians(heading_deg)), -std::cos(glm::radians(heading_deg))};
   const glm::dvec2 half_m(shore.half_m());
   const double bearing_rad = std::atan2(-glm::dot(ahead, glm::dvec2(shore.across())) / half_m.y,
                                         -glm::dot(ahead, glm::dvec2(shore.along())) / half_m.x);
   const glm::dvec2 eye_m(shore.at(static_cast<float>(bearing_rad), kFromShore * shore.scale()));
   const double height_m = kShoreEye_m * static_cast<double>(shore.scale());
   CameraPlace place;
-  place.heading_deg = glm::degrees(std::atan2(ahead.x, -ahead.y));
+  place.heading_deg = heading_deg;
   place.pitch_deg = kShorePitch_deg;
   place.distance_m = 0.8 * height_m / std::sin(glm::radians(kShorePitch_deg));
   place.target_m = glm::dvec3(eye_m.x, height_m, eye_m.y) + direction(place) * place.distance_m;
   return limited(place);
 }
 
-CameraPlace place_beside(const Bounds& bounds) {
+CameraPlace place_beside(const Bounds& bounds, double wind_from_deg) {
   const glm::dvec3 size_m = glm::dvec3(bounds.high_m) - glm::dvec3(bounds.low_m);
   const bool is_long_in_x = size_m.x >= size_m.z;
   const double half_depth_m = 0.5 * std::min(size_m.x, size_m.z);
+  const double broadside_deg = is_long_in_x ? 180.0 : 270.0;
   CameraPlace place;
-  place.heading_deg = is_long_in_x ? 180.0 - kBesideTurn_deg : 270.0 - kBesideTurn_deg;
+  place.heading_deg = heading_across(broadside_deg - kBesideTurn_deg, broadside_deg, wind_from_deg);
   place.pitch_deg = kBesidePitch_deg;
   place.distance_m = kBeside * half_depth_m + 0.9 * size_m.y;
   place.target_m = glm::dvec3(bounds.low_m) + 0.5 * size_m;

@@ -11,6 +11,9 @@
 
 namespace yuragi::viewer::meshes {
 
+/// Where the wind comes from if the sender does not report it: the default of [wind] default_direction.
+inline constexpr double kUsualWindFrom_deg = 240.0;
+
 /// The position of a camera that orbits a target and never rolls.
 struct CameraPlace {
   glm::dvec3 target_m{0.0};
@@ -18,6 +21,8 @@ struct CameraPlace {
   double pitch_deg = 10.0;        ///< of the view below level; below 0 it looks up
   double distance_m = 5.0;        ///< from the target
   double field_of_view_deg = 40;  ///< from the bottom of the picture to its top, at 16:9; see tangent_up()
+
+  friend bool operator==(const CameraPlace&, const CameraPlace&) = default;
 };
 
 /// The eye of a place.
@@ -42,6 +47,9 @@ class OrbitCamera {
   /// Takes the place at once, and as the one that reset() returns to.
   void frame(const CameraPlace& place);
   void reset() { wanted_ = home_; }
+  /// Takes another place as the one that reset() returns to: at once if it is there already, but for its heading while
+  /// it turns; otherwise it stays where it is.
+  void move_home(const CameraPlace& place);
   /// Takes the place at once; reset() returns to where it did.
   void go_to(const CameraPlace& place);
 
@@ -82,25 +90,30 @@ class OrbitCamera {
   std::optional<Frustum> frustum_;
 };
 
-/// A low place to look at the content of `bounds` from, toward the evening sun's side: across a field from just inside
-/// its edge, and at something small from outside.
-CameraPlace place_across(const Bounds& bounds);
+/// Returns the heading nearest to `preferred_deg` that looks across the wind, so that what leans leans to the picture's
+/// side: |sin(heading - wind_from_deg)| >= 0.86. Of the two sides of the wind it takes the one that is nearer to
+/// `broadside_deg`, the heading that sees a thing at its broadest; it is never more than 60 degrees from that.
+double heading_across(double preferred_deg, double broadside_deg, double wind_from_deg);
+
+/// A low place to look at the content of `bounds` from, across the wind and toward the evening sun's side: across a
+/// field from just inside its edge, and at something small from outside.
+CameraPlace place_across(const Bounds& bounds, double wind_from_deg = kUsualWindFrom_deg);
 
 /// How far from the middle of `bounds` a camera with this direction and field of view sees all of it in a picture of
 /// width / height `aspect`.
 double distance_to_see(const Bounds& bounds, const CameraPlace& place, double aspect);
 
-/// A low place outside of `bounds`, toward the evening sun's side, at its broad side and a little from the corner. All
-/// of what stands is in a picture of width / height `aspect`, before the sky; what is flat, as water, fills the picture
-/// from side to side.
-CameraPlace place_around(const Bounds& bounds, double aspect);
+/// A low place outside of `bounds`, across the wind, at its broad side and toward the evening sun's side. All of what
+/// stands is in a picture of width / height `aspect`, before the sky; what is flat, as water, fills the picture from
+/// side to side.
+CameraPlace place_around(const Bounds& bounds, double aspect, double wind_from_deg = kUsualWindFrom_deg);
 
 /// A low place at the near shore of a pond, from where the water goes from the picture's lower edge to the far shore,
-/// and the horizon is in the picture: toward the evening sun's side.
-CameraPlace place_on_shore(const Shore& shore);
+/// and the horizon is in the picture: across the wind, toward the evening sun's side.
+CameraPlace place_on_shore(const Shore& shore, double wind_from_deg = kUsualWindFrom_deg);
 
 /// A place so close to the broad side of something that bulges out of the ground that it fills the picture's lower part
-/// from side to side, lit from the side by the evening sun.
-CameraPlace place_beside(const Bounds& bounds);
+/// from side to side, across the wind, lit from the side by the evening sun.
+CameraPlace place_beside(const Bounds& bounds, double wind_from_deg = kUsualWindFrom_deg);
 
 }  // namespace yuragi::viewer::meshes

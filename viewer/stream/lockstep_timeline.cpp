@@ -25,6 +25,7 @@ bool LockstepTimeline::accept(wire::Frame& frame) {
   std::swap(newest_.opacities, frame.opacities);
   newest_.time_s = frame.info.time_s;
   newest_.wind = frame.info.wind;
+  newest_.view_wind_from_deg = frame.info.view_wind_from_deg;
   count_ = std::min(count_ + 1, 2);
   return true;
 }

@@ -20,6 +20,7 @@ void PoseHistory::push(PoseMoment& moment) {
   PoseMoment& place = moments_[(first_ + count_ - 1) % moments_.size()];
   place.time_s = moment.time_s;
   place.wind = moment.wind;
+  place.view_wind_from_deg = moment.view_wind_from_deg;
   std::swap(place.poses, moment.poses);
   std::swap(place.opacities, moment.opacities);
 }

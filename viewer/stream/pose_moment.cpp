@@ -47,6 +47,12 @@ void blend(const PoseMoment& a, const PoseMoment& b, double weight, PoseMoment& 
   }
   out.time_s = std::lerp(a.time_s, b.time_s, weight);
   out.wind.wind = a.wind.wind + weight * (b.wind.wind - a.wind.wind);
+  if (a.view_wind_from_deg && b.view_wind_from_deg) {
+    const double turn_deg = std::remainder(*b.view_wind_from_deg - *a.view_wind_from_deg, 360.0);
+    out.view_wind_from_deg = *a.view_wind_from_deg + weight * turn_deg;
+  } else {
+    out.view_wind_from_deg = b.view_wind_from_deg;
+  }
   out.wind.live_weight = std::lerp(a.wind.live_weight, b.wind.live_weight, weight);
   out.wind.reading_age_s = std::lerp(a.wind.reading_age_s, b.wind.reading_age_s, weight);
   out.wind.upwind_m = std::lerp(a.wind.upwind_m, b.wind.upwind_m, weight);

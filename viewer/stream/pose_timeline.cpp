@@ -32,6 +32,7 @@ bool PoseTimeline::accept(wire::Frame& frame, double local_s) {
 
   incoming_.time_s = frame.info.time_s;
   incoming_.wind = frame.info.wind;
+  incoming_.view_wind_from_deg = frame.info.view_wind_from_deg;
   std::swap(incoming_.poses, frame.poses);
   std::swap(incoming_.opacities, frame.opacities);
   current().push(incoming_, local_s);

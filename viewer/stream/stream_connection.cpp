@@ -210,6 +210,7 @@ class StreamConnection::Session {
       if (inbox_.replies.size() == kMaxWaitingReplies) inbox_.replies.erase(inbox_.replies.begin());
       inbox_.replies.push_back(std::move(*reply));
     } else if (const auto* hello = std::get_if<wire::Hello>(&message)) {
+      inbox_.wind_from_deg = hello->wind_from_deg;
       status_.text = fmt::format("connected to {} ({})", address(), hello->software);
     }
     announce_change();

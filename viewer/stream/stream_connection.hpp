@@ -19,9 +19,10 @@ struct TimedFrame {
 
 /// What has arrived since the last take(): scenes, then the frames of these scenes.
 struct Inbox {
-  bool is_of_new_connection = false;   ///< replies to what was sent by another one will not come
-  std::optional<wire::Scenes> scenes;  ///< the newest
-  std::vector<TimedFrame> frames;      ///< oldest first
+  bool is_of_new_connection = false;    ///< replies to what was sent by another one will not come
+  std::optional<double> wind_from_deg;  ///< of a new connection's Hello, if it has it
+  std::optional<wire::Scenes> scenes;   ///< the newest
+  std::vector<TimedFrame> frames;       ///< oldest first
   std::optional<wire::Sensors> sensors;
   std::vector<wire::ControlReply> replies;  ///< oldest first
 };

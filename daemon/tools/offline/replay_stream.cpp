@@ -26,7 +26,9 @@ void ReplayStream::write(const ReplayTick& tick) {
 }
 
 void ReplayStream::begin(const ReplayTick& tick) {
-  write_(wire::encode(wire::Hello{.software = with_version("yuragi"), .tick_rate_hz = config_.animation.rate_hz}));
+  write_(wire::encode(wire::Hello{.software = with_version("yuragi"),
+                                  .tick_rate_hz = config_.animation.rate_hz,
+                                  .wind_from_deg = config_.wind.default_direction_deg}));
   write_(animation::checked_scenes_message(tick.animation.describe()));
   wire::PlayerState player;
   player.is_open = true;

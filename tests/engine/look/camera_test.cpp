@@ -27,6 +27,7 @@ TEST(Camera, TakesEveryValue) {
                                    {"target_y", 2.0},
                                    {"target_z", 3.0},
                                    {"heading", 90.0},
+                                   {"wind_angle", -75.0},
                                    {"pitch", -5.0},
                                    {"distance", 12.0},
                                    {"fov", 25.0},
@@ -45,6 +46,7 @@ TEST(Camera, TakesEveryValue) {
                              .target_y_m = 2.0,
                              .target_z_m = 3.0,
                              .heading_deg = 90.0,
+                             .wind_angle_deg = -75.0,
                              .pitch_deg = -5.0,
                              .distance_m = 12.0,
                              .fov_deg = 25.0,
@@ -61,6 +63,7 @@ TEST(Camera, TakesEveryValue) {
 TEST(Camera, RefusesMistakesByName) {
   EXPECT_EQ(camera_from({{"from", std::string("dusk")}}).error().name, "from");
   EXPECT_EQ(camera_from({{"from", std::string("24:00")}}).error().name, "from") << "that is 00:00";
+  EXPECT_EQ(camera_from({{"wind_angle", 200.0}}).error().name, "wind_angle");
   EXPECT_EQ(camera_from({{"fov", 180.0}}).error().name, "fov");
   EXPECT_EQ(camera_from({{"period", 0.0}}).error().name, "period");
   EXPECT_EQ(camera_from({{"zoom", 2.0}}).error().name, "zoom");
@@ -77,10 +80,11 @@ TEST(Camera, IsBroughtWithinLimits) {
     hostile.*member = kNan;
   }
   hostile.distance_m = kInfinity;
+  hostile.wind_angle_deg = kNan;
   hostile.from_h = -1.0;
   EXPECT_EQ(within_limits(hostile), Camera{});
-  EXPECT_EQ(within_limits({.distance_m = 1e9, .period_s = -3.0, .from_h = 24.0}),
-            (Camera{.distance_m = 200.0, .period_s = 10.0}));
+  EXPECT_EQ(within_limits({.wind_angle_deg = -200.0, .distance_m = 1e9, .period_s = -3.0, .from_h = 24.0}),
+            (Camera{.wind_angle_deg = -180.0, .distance_m = 200.0, .period_s = 10.0}));
   EXPECT_EQ(within_limits(Camera{.name = "a"}), Camera{.name = "a"});
 }
 

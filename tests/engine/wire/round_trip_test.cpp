@@ -121,6 +121,7 @@ TEST(WireRoundTrip, AFrameComesBackWithinHalfAQuantisationStep) {
   EXPECT_EQ(frame.info.wind.upwind_m, -12.5);
   EXPECT_EQ(frame.info.wind.to_middle_s, 0.75);
   EXPECT_TRUE(frame.info.wind.is_place_configured);
+  EXPECT_EQ(frame.info.view_wind_from_deg, 123.5);
 
   ASSERT_EQ(frame.poses.size(), 2u);
   const pose::StrandPose bends = samples::bent(37);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -120,6 +121,52 @@ TEST(OrbitCamera, ComesBackWhenReset) {
   EXPECT_NEAR(camera.place().target_m.x, 0.0, 1e-6);
 }
 
+TEST(OrbitCamera, GoesToAnotherHomeOnlyFromTheFirst) {
+  OrbitCamera camera = camera_at({{0.0, 0.5, 0.0}, 45.0, 20.0, 5.0});
+  camera.move_home({{0.0, 0.5, 0.0}, 45.0, 20.0, 8.0});
+  EXPECT_EQ(camera.place().distance_m, 8.0);
+  camera.zoom(1.0);
+  settle(camera);
+  const double by_hand_m = camera.place().distance_m;
+  camera.move_home({{0.0, 0.5, 0.0}, 45.0, 20.0, 12.0});
+  settle(camera);
+  EXPECT_EQ(camera.place().distance_m, by_hand_m);
+  camera.reset();
+  settle(camera);
+  EXPECT_NEAR(camera.place().distance_m, 12.0, 1e-6);
+}
+
+TEST(HeadingAcross, LooksAcrossEveryWindFromNoMoreThan60DegreesBesideTheBroadSide) {
+  for (double wind_deg = 0.0; wind_deg < 360.0; wind_deg += 1.0) {
+    for (const auto& [preferred_deg, broadside_deg] : {std::pair(212.0, 180.0), {238.0, 270.0}, {225.0, 225.0}}) {
+      const double heading_deg = heading_across(preferred_deg, broadside_deg, wind_deg);
+      EXPECT_GE(std::abs(std::sin((heading_deg - wind_deg) * M_PI / 180.0)), 0.85) << wind_deg;
+      EXPECT_LE(std::abs(std::remainder(heading_deg - broadside_deg, 360.0)), 60.1) << wind_deg;
+      EXPECT_GE(heading_deg, 0.0);
+      EXPECT_LT(heading_deg, 360.0);
+    }
+  }
+  EXPECT_EQ(heading_across(212.0, 180.0, 300.0), 212.0) << "across the wind already";
+}
+
+TEST(FirstPlaces, OfEveryKindLookAcrossTheUsualWind) {
+  const auto across = [](const CameraPlace& place, double wind_deg) {
+    return std::abs(std::sin((place.heading_deg - wind_deg) * M_PI / 180.0));
+  };
+  const Shore shore(std::get<pose::SurfaceSkeleton>(test_model("ripple").skeleton));
+  for (const double wind_deg : {240.0, 0.0, 90.0, 200.0, 315.0}) {
+    for (const glm::vec3 size_m : {glm::vec3(2.4F, 2.3F, 0.1F), glm::vec3(0.1F, 4.0F, 2.0F),
+                                   glm::vec3(9.0F, 12.0F, 9.0F), glm::vec3(14.0F, 0.6F, 14.0F)}) {
+      const Bounds bounds{-0.5F * size_m, 0.5F * size_m};
+      EXPECT_GE(across(place_around(bounds, 16.0 / 9.0, wind_deg), wind_deg), 0.85);
+      EXPECT_GE(across(place_across(bounds, wind_deg), wind_deg), 0.85);
+      EXPECT_GE(across(place_beside(bounds, wind_deg), wind_deg), 0.85);
+    }
+    EXPECT_GE(across(place_on_shore(shore, wind_deg), wind_deg), 0.85);
+  }
+  EXPECT_GE(across(place_around({{-1.0F, 0.0F, -1.0F}, {1.0F, 3.0F, 1.0F}}, 1.0), 240.0), 0.85);
+}
+
 TEST(OrbitCamera, TurnsByItselfWhenAsked) {
   OrbitCamera camera = camera_at({{0.0, 0.5, 0.0}, 0.0, 20.0, 5.0});
   camera.set_turning(true);
@@ -208,7 +255,7 @@ TEST(PlaceAround, HasEveryCornerInThePictureAndLooksAtTheBroadSide) {
     const bool is_flat = size_m.y < 0.5F;
     const glm::vec3 low(3.0F, 0.0F, -7.0F);
     const Bounds bounds{low, low + size_m};
-    for (const double aspect : {6.0, 16.0 / 9.0, 1.0, 9.0 / 16.0}) {
+    for (const double aspect : {6.0, 5760.0 / 1080.0, 32.0 / 9.0, 16.0 / 9.0, 1.0, 9.0 / 16.0, 9.0 / 32.0}) {
       const OrbitCamera camera = camera_at(place_around(bounds, aspect));
       EXPECT_GT(camera.eye_m().y, 0.0);
       EXPECT_GT(looks_across(camera, size_m.x >= size_m.z ? 90.0 : 0.0), 0.7);
