@@ -67,5 +67,20 @@ TEST_F(PictureDirectorTest, GoesOnWithoutACrossFadeWhileNoFrameSaysTheTime) {
   EXPECT_NEAR(director_.heading_deg(), heading_deg + 6.0, 0.1);
 }
 
+TEST_F(PictureDirectorTest, ACameraWithAWindAngleFollowsTheWindOfTheFrames) {
+  director_.take_status(status_with({{.name = "across", .heading_deg = 10.0, .wind_angle_deg = 75.0}}));
+  director_.advance(kPicture_s, kClock_s, {});
+  EXPECT_EQ(director_.heading_deg(), 10.0) << "no frame has reported the direction";
+  stream::PoseMoment moment;
+  moment.view_wind_from_deg = 240.0;
+  director_.draw(moment);
+  EXPECT_EQ(director_.heading_deg(), 315.0);
+  moment.view_wind_from_deg = 240.5;
+  director_.draw(moment);
+  director_.advance(kPicture_s, kClock_s, {});
+  EXPECT_EQ(director_.heading_deg(), 315.5);
+  EXPECT_EQ(director_.camera_text(), "camera across") << "it turns, and does not cross-fade";
+}
+
 }  // namespace
 }  // namespace yuragi::viewer

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/pose/pose_arrays.hpp"
+#include "viewer/looks/lee.hpp"
 #include "viewer/meshes/shadow_view.hpp"
 
 namespace yuragi::viewer::looks {
@@ -156,7 +157,13 @@ meshes::CameraPlace Stage::home(double aspect, double wind_from_deg) const {
   // A flag fills the picture, which its pole leaves below.
   if (count == 1 && views_[scene]->scene.kind == "flag")
     return meshes::place_around(meshes::bounds_of(views_[scene]->scene.skeleton), aspect, wind_from_deg);
-  return meshes::place_around(bounds(), aspect, wind_from_deg);
+  std::optional<meshes::Bounds> blown;
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    if (!chosen(i)) continue;
+    const meshes::Bounds box = with_lee(views_[i]->bounds, views_[i]->scene.skeleton, wind_from_deg);
+    blown = blown ? united(*blown, box) : box;
+  }
+  return meshes::place_around(blown.value_or(bounds()), aspect, wind_from_deg);
 }
 
 std::vector<meshes::Bounds> Stage::obstacles() const {

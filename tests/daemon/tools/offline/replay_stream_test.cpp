@@ -107,6 +107,7 @@ TEST_F(ReplayStreamTest, BeginsLikeADaemonsAndHoldsEveryTick) {
   const auto messages = messages_of(stream(2.0));
   ASSERT_GT(messages.size(), 4U);
   EXPECT_EQ(std::get<wire::Hello>(messages[0]).tick_rate_hz, 60.0);
+  EXPECT_TRUE(std::get<wire::Hello>(messages[0]).wind_from_deg) << "for the first view";
   const auto& scenes = std::get<wire::Scenes>(messages[1]);
   EXPECT_NEAR(std::get<wire::ControlReply>(messages[2]).players.at(0).length_s, 59.0, 1.0);
   const auto& status = std::get<wire::Sensors>(messages[3]);
@@ -123,6 +124,20 @@ TEST_F(ReplayStreamTest, BeginsLikeADaemonsAndHoldsEveryTick) {
     EXPECT_TRUE(wire::fits(frame, scenes));
   }
   EXPECT_EQ(tick, 120U);
+}
+
+TEST_F(ReplayStreamTest, HasTheWindThatCamerasFollowInEveryFrameAndTheSameTwice) {
+  const wire::Bytes bytes = stream(2.0);
+  EXPECT_EQ(bytes, stream(2.0));
+  std::size_t frames = 0;
+  for (const wire::Message& message : messages_of(bytes)) {
+    const auto* frame = std::get_if<wire::Frame>(&message);
+    if (frame == nullptr) continue;
+    ++frames;
+    ASSERT_TRUE(frame->info.view_wind_from_deg);
+    EXPECT_TRUE(*frame->info.view_wind_from_deg >= 0.0 && *frame->info.view_wind_from_deg < 360.0);
+  }
+  EXPECT_GT(frames, 100U);
 }
 
 TEST_F(ReplayStreamTest, SaysWhichCameraIsOnByTheRecordedClock) {
