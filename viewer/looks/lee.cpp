@@ -9,8 +9,8 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-constexpr float kCurtainPerHeight = 0.75F;
-constexpr float kFlamePerHeight = 1.0F;
+constexpr float kCurtainPerHeight = 0.65F;
+constexpr float kFlamePerHeight = 0.5F;
 
 float height_m(const meshes::Bounds& bounds) {
   return bounds.high_m.y - bounds.low_m.y;
