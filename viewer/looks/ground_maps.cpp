@@ -68,28 +68,30 @@ void GroundMaps::set_standing(const std::vector<meshes::Standing>& things, float
 }
 
 void GroundMaps::move_to(const meshes::BendGrid& grid, const pose::StrandPose* nodes, const pose::StrandPose* near_by) {
-  const bool is_there = nodes != nullptr && grid.columns > 0;
-  const std::size_t count = is_there ? grid.columns * grid.rows : 1;
-  texels_.assign(2 * count, 0.0F);
+  const bool is_streamed = nodes != nullptr && grid.columns > 0;
   glm::vec2 mean(0.0F);
-  if (is_there) {
-    for (std::size_t i = 0; i < count; ++i) {
-      texels_[2 * i] = nodes->bend_east_rad[i];
-      texels_[2 * i + 1] = nodes->bend_south_rad[i];
-    }
-    mean = mean_of(*nodes, count);
-  } else if (near_by != nullptr) {
-    mean = mean_of(*near_by, near_by->bend_east_rad.size());
+  glm::mat2 sides_m(meshes::MeadowWaves::kSide_m);
+  if (is_streamed) {
+    columns_ = grid.columns;
+    rows_ = grid.rows;
+    texels_.resize(columns_ * rows_);
+    for (std::size_t i = 0; i < texels_.size(); ++i) texels_[i] = {nodes->bend_east_rad[i], nodes->bend_south_rad[i]};
+    mean = mean_of(*nodes, texels_.size());
+    sides_m = glm::mat2(static_cast<float>(columns_) * grid.to_next_m, static_cast<float>(rows_) * grid.to_next_row_m);
+  } else {
+    columns_ = meshes::MeadowWaves::kNodes;
+    rows_ = meshes::MeadowWaves::kNodes;
+    texels_.resize(columns_ * rows_);
+    mean = near_by != nullptr ? mean_of(*near_by, near_by->bend_east_rad.size()) : waves_.mean_bend();
+    waves_.fill(mean, texels_);
   }
   // A node is in the middle of its texel.
-  const glm::mat2 sides_m(static_cast<float>(std::max<std::size_t>(grid.columns, 1)) * grid.to_next_m,
-                          static_cast<float>(std::max<std::size_t>(grid.rows, 1)) * grid.to_next_row_m);
   const glm::mat2 to_parts = glm::inverse(sides_m);
-  ground_.bends_place = {grid.first_m - 0.5F * (grid.to_next_m + grid.to_next_row_m), 0.0F, 0.0F};
+  const glm::vec2 corner_m =
+      is_streamed ? grid.first_m - 0.5F * (grid.to_next_m + grid.to_next_row_m) : waves_.drifted_m();
+  ground_.bends_place = {corner_m, is_streamed ? 0.0F : 1.0F, 0.0F};
   ground_.bends_axes = {to_parts[0], to_parts[1]};
-  ground_.bend_mean = {mean, is_there ? 1.0F : 0.0F, 0.0F};
-  columns_ = is_there ? grid.columns : 1;
-  rows_ = is_there ? grid.rows : 1;
+  ground_.bend_mean = {mean, 0.0F, 0.0F};
   glBindTexture(GL_TEXTURE_2D, bends_.name());
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, static_cast<GLsizei>(columns_), static_cast<GLsizei>(rows_), 0, GL_RG,
                GL_FLOAT, texels_.data());
@@ -97,7 +99,7 @@ void GroundMaps::move_to(const meshes::BendGrid& grid, const pose::StrandPose* n
 
 glm::vec2 GroundMaps::bend_at(const glm::vec2& at_m) const {
   const glm::vec2 mean = mean_bend();
-  if (ground_.bend_mean.z == 0.0F) return mean;
+  if (ground_.bends_place.z > 0.0F) return mean;
   const glm::vec4& axes = ground_.bends_axes;
   const glm::vec2 uv = glm::mat2(axes.x, axes.y, axes.z, axes.w) * (at_m - glm::vec2(ground_.bends_place));
   const glm::vec2 within = glm::fract(uv);
@@ -114,8 +116,7 @@ glm::vec2 GroundMaps::bend_at(const glm::vec2& at_m) const {
   const std::array columns{wrapped(low.x, columns_), wrapped(low.x + 1.0F, columns_)};
   const std::array rows{wrapped(low.y, rows_), wrapped(low.y + 1.0F, rows_)};
   const auto node = [&](std::size_t row, std::size_t column) {
-    const std::size_t i = rows.at(row) * columns_ + columns.at(column);
-    return glm::vec2(texels_[2 * i], texels_[2 * i + 1]);
+    return texels_[rows.at(row) * columns_ + columns.at(column)];
   };
   const glm::vec2 bend =
       glm::mix(glm::mix(node(0, 0), node(0, 1), part.x), glm::mix(node(1, 0), node(1, 1), part.x), part.y);

@@ -74,6 +74,11 @@ meshes::View coarser(meshes::View view, float pixels) {
   return view;
 }
 
+/// The wind toward east and south.
+glm::vec2 wind_m_s_of(const stream::PoseMoment& moment) {
+  return {static_cast<float>(moment.wind.wind.u_m_s), -static_cast<float>(moment.wind.wind.v_m_s)};
+}
+
 bool is_alike(const meshes::Stand& a, const meshes::Stand& b) {
   return a.length_m == b.length_m && a.blades_per_m2 == b.blades_per_m2;
 }
@@ -253,11 +258,10 @@ void Stage::choose_mirror(const meshes::View& view) {
 
 /// Gives each renderer its pose, and asks which light it throws.
 void Stage::move_to(const stream::PoseMoment& moment) {
-  const SceneRenderer::Moment now{
-      .time_s = moment.time_s,
-      .wind_m_s = {static_cast<float>(moment.wind.wind.u_m_s), -static_cast<float>(moment.wind.wind.v_m_s)},
-      .flame_brightness = light::flame_brightness(light_.air.x),
-      .hanging_leaves = light_.leaves.w};
+  const SceneRenderer::Moment now{.time_s = moment.time_s,
+                                  .wind_m_s = wind_m_s_of(moment),
+                                  .flame_brightness = light::flame_brightness(light_.air.x),
+                                  .hanging_leaves = light_.leaves.w};
   fires_.clear();
   for (std::size_t scene = 0; scene < views_.size(); ++scene) {
     const Seen& seen = seen_[scene];
@@ -334,6 +338,7 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
   // While one picture follows another, the bare ground is seen between them.
   landscape_.set_ground_image(image, std::clamp(2.0F * image_opacity - 1.0F, 0.0F, 1.0F));
   ground_.set_standing(standing_, light_.colors.z);
+  ground_.set_moment(moment.time_s, wind_m_s_of(moment));
   ground_.move_to(grid, nodes, near_by);
   ground_.bind(stand_, tall_, tall_door_);
 }

@@ -9,30 +9,35 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-constexpr float kLawnReach_m = 24.0F;
+constexpr float kLawnReach_m = 18.0F;
 constexpr float kLawnLength_m = 0.085F;  // sward.part.glsl has the same
 constexpr float kLawnHeight_m = 0.2F;
-constexpr float kLawnBlades_per_m2 = 700.0F;
+constexpr float kLawnBlades_per_m2 = 2200.0F;
+constexpr float kLawnDrawn = 1.8F;         // as many blades are drawn as of tall grass: they have fewer vertices
 constexpr float kHighest = 2.2F;           // of the mean length
 constexpr float kWidthPerSpacing = 0.26F;  // as of streamed blades (blades.cpp)
-constexpr float kLawnWidth_m = 0.008F;
+constexpr float kLawnWidth_m = 0.004F;
 
+/// A lawn's blades are short: they end nearer, and stand closer.
+meshes::GrassDetail detail_of(Sward::Kind kind, meshes::GrassDetail detail) {
+  if (kind == Sward::Kind::kLawn) {
+    detail.reach_m = std::min(detail.reach_m, kLawnReach_m);
+    detail.drawn_at_1m_per_m2 *= kLawnDrawn;
+  }
+  return detail;
+}
+
+/// `detail`: of this kind.
 meshes::Thinning thinning_of(Sward::Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& detail) {
   return {.blades_per_m2 = kind == Sward::Kind::kTall ? stand.blades_per_m2 : kLawnBlades_per_m2,
           .drawn_at_1m_per_m2 = detail.drawn_at_1m_per_m2};
-}
-
-/// A lawn's blades are short: they end nearer.
-meshes::GrassDetail detail_of(Sward::Kind kind, meshes::GrassDetail detail) {
-  if (kind == Sward::Kind::kLawn) detail.reach_m = std::min(detail.reach_m, kLawnReach_m);
-  return detail;
 }
 
 meshes::SwardTiles tiles_of(Sward::Kind kind, std::size_t blades, const meshes::Stand& stand,
                             const meshes::GrassDetail& detail) {
   const float length_m = kind == Sward::Kind::kTall ? stand.length_m : kLawnLength_m;
   const float height_m = kind == Sward::Kind::kTall ? kHighest * stand.length_m : kLawnHeight_m;
-  return {blades, thinning_of(kind, stand, detail), detail_of(kind, detail), length_m, height_m};
+  return {blades, thinning_of(kind, stand, detail), detail, length_m, height_m};
 }
 
 float width_m_of(Sward::Kind kind, const meshes::Stand& stand) {
@@ -58,10 +63,10 @@ const meshes::GrassDetail& grass_detail(look::Quality quality) {
 
 Sward::Sward(Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& detail)
     : kind_(kind),
-      blades_per_tile_(blades_a_tile(thinning_of(kind, stand, detail))),
-      detail_(detail),
-      thinning_(thinning_of(kind, stand, detail)),
-      tiles_(tiles_of(kind, blades_per_tile_, stand, detail)),
+      detail_(detail_of(kind, detail)),
+      thinning_(thinning_of(kind, stand, detail_)),
+      blades_per_tile_(blades_a_tile(thinning_)),
+      tiles_(tiles_of(kind, blades_per_tile_, stand, detail_)),
       program_(gl::link_program("sward", gl::shaders::kSwardVert, gl::shaders::kShadeFrag)) {
   GroundMaps::set_samplers(program_);
   gl::set_sampler(program_, "blades", gl::kBladesUnit);
@@ -69,7 +74,7 @@ Sward::Sward(Kind kind, const meshes::Stand& stand, const meshes::GrassDetail& d
   const auto place = [this](const char* name) { return glGetUniformLocation(program_.name(), name); };
   glUniform1i(place("blades_per_tile"), static_cast<GLint>(blades_per_tile_));
   glUniform1f(place("tile_m"), meshes::SwardTiles::kTile_m);
-  glUniform1f(place("reach_m"), detail_of(kind, detail).reach_m);
+  glUniform1f(place("reach_m"), detail_.reach_m);
   glUniform1f(place("width_m"), width_m_of(kind, stand));
   glUniform1f(place("tall"), kind == Kind::kTall ? 1.0F : 0.0F);
 

@@ -26,9 +26,9 @@ class Sward {
 
  private:
   Kind kind_;
-  std::size_t blades_per_tile_;
-  meshes::GrassDetail detail_;
+  meshes::GrassDetail detail_;  ///< of this kind
   meshes::Thinning thinning_;
+  std::size_t blades_per_tile_;
   meshes::SwardTiles tiles_;
   gl::GlProgram program_;
   gl::GlVertexArray array_;

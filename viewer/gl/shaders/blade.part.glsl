@@ -45,7 +45,7 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
   float distance_m = length(to_eye);
   to_eye /= distance_m;
   float gust = kGust * seen_from(to_eye) * gust_of(bend);
-  float lean = mix(0.55, length(leaning(foot + turned * 0.5).xz) + gust, tall);
+  float lean = mix(0.55 + kLawnGust * gust, length(leaning(foot + turned * 0.5).xz) + gust, tall);
 
   // The flat side faces the blade's own bearing, turned half way to the eye, so that no blade is seen edge-on.
   vec3 across_eye = normalize(cross(along, to_eye));
@@ -56,8 +56,11 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
   // Widest above the foot, pointed at the tip; a stem with a panicle of seeds, or with petals, whose outlines go in and out
   // from ring to ring. Nowhere else thinner than a pixel.
   float profile = (0.72 + 0.85 * t) * sqrt(1.0 - t) * (1.0 - 0.35 * t * t);
-  vec3 tint = tint_of(patch_at, chance);
-  tint *= 0.8 + 0.4 * fract(chance * 61.0);
+  // Of a lawn neighbours are alike: its color changes from patch to patch.
+  float is_short = 1.0 - smoothstep(0.12, 0.30, length_m);
+  float own = 1.0 - 0.8 * is_short;
+  vec3 tint = tint_of(patch_at, mix(0.5, chance, own));
+  tint *= 1.0 + 0.4 * own * (fract(chance * 61.0) - 0.5);
   float head_m = 0.0;  // half as wide
   float in_head = clamp((t - head_from) / max(1.0 - head_from, 0.01), 0.0, 1.0);
   bool is_out = (v >> 1 & 1) == (rings & 1);
@@ -81,8 +84,7 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
 
   float sunlight = mix(kSunInShadow, 1.0, sunlight_near(place)) * under_cloud(texel_at(noise_tile, in_clouds(foot_m.xz)).r);
   // Of a lawn one sees no single blades from so far.
-  float is_short = 1.0 - smoothstep(0.12, 0.30, length_m);
-  float far = max(smoothstep(kFarFrom_m, kFar_m, distance_m), is_short * smoothstep(0.5, 5.0, distance_m));
+  float far = max(smoothstep(kFarFrom_m, kFar_m, distance_m), is_short * lawn_far(distance_m));
   vec3 light = vec3(0.0);
   if (far < 1.0) {
     // A blade is folded along its middle: the normals of its two edges differ a little.
@@ -94,7 +96,7 @@ void put_corner(int v, vec3 foot_m, float length_m, vec2 foot, vec2 turned, floa
   // Far away it takes on the light of the grass as a whole, as the ground behind it has it.
   if (far > 0.0) {
     // Toward the last ones it is the ground's, so that no edge is seen where blades end.
-    float tufts = ((t - 0.55) * 0.6 + 0.35 * (fract(chance * 61.0) - 0.5)) * (1.0 - smoothstep(0.25 * reach_m, 0.8 * reach_m, distance_m));
+    float tufts = ((t - 0.55) * mix(0.6, 0.4, is_short) + 0.35 * own * (fract(chance * 61.0) - 0.5)) * (1.0 - smoothstep(0.25 * reach_m, 0.8 * reach_m, distance_m));
     tufts += clump_of(texel_at(turf_tile, in_clumps(foot_m.xz)).b);
     vec3 canopy = canopy_light(bend, to_eye, patch_at, tufts, tall * (1.0 - is_short), sunlight);
     light = mix(light, canopy, far);

@@ -25,6 +25,8 @@ void main() {
   }
   vec4 rest = texelFetch(blades, 3 * blade + 1);  // how its foot leans, and how far it is turned up to its tip
   vec2 turned = rest.zw + texelFetch(streamed_bends, slot).rg;
+  // The viewer's own waves do not move streamed blades.
+  vec2 around = bends_place.z > 0.0 ? bend_mean.xy : bend_at(root_length.xz);
   put_corner(gl_VertexID - slot * corners, root_length.xyz, root_length.w * is_up, rest.xy, turned, traits.x * pow(share, -0.7) * is_up,
-             traits.y, traits.z, patches(root_length.xz, 0.0), bend_at(root_length.xz, 1.0), 1.0);
+             traits.y, traits.z, patches(root_length.xz, 0.0), around, 1.0);
 }

@@ -30,7 +30,7 @@ void main() {
 
   float lit = mix(kSunInShadow, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
   lit *= under_clouds(at_m, distance_m * eye_m.w * inversesqrt(max(to_eye.y, 0.02)));
-  vec3 canopy = canopy_light(bend_at(at_m, tall), to_eye, patch_at, tufts, tall, lit);
+  vec3 canopy = canopy_light(bend_at(at_m), to_eye, patch_at, tufts, tall, lit);
 
   // Shaded earth and stems. Seen from above, where a high sun shines between the blades, they are lit.
   float into = 0.13 + 0.25 * max(to_sun.y, 0.0) * to_eye.y * to_eye.y;
@@ -38,7 +38,7 @@ void main() {
   vec3 lawn_floor = 0.55 * tint_of(patch_at, 0.4 + tufts);
   vec3 below = mix(lawn_floor * (sky_light.rgb * 0.7 + sun_light.rgb * (0.25 * lit)), under * (sky_light.rgb * 0.8 + sun_light.rgb * (into * lit)), tall);
 
-  float far = mix(smoothstep(1.0, 14.0, distance_m), smoothstep(3.0, 32.0, distance_m), tall);
+  float far = mix(lawn_far(distance_m), smoothstep(3.0, 32.0, distance_m), tall);
   vec3 light = mix(below, canopy, far);
 
   // Where nothing grows: what is uneven faces the sun or turns away from it.

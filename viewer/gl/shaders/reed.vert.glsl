@@ -15,7 +15,7 @@ void main() {
   bool is_mace = traits.w > 0.90;
   vec2 heading = vec2(sin(traits.x), -cos(traits.x));
   float stiff = is_mace ? 0.35 : 1.0;
-  vec2 bend = (bend_at(root_length.xz, 1.0) * (0.30 + 0.25 * traits.w) + heading * 0.9 * traits.y) * stiff;
+  vec2 bend = (bend_at(root_length.xz) * (0.30 + 0.25 * traits.w) + heading * 0.9 * traits.y) * stiff;
   vec2 tilt = heading * traits.y * stiff;
   float near_m = distance(eye_m.xyz, root_length.xyz + vec3(0.0, 0.5 * root_length.w, 0.0));
   float length_m = root_length.w * (is_mace ? 1.12 : 1.0) * smoothstep(0.7, 1.5, near_m);  // none in the eye

@@ -2,9 +2,9 @@
 // is seen between and behind them, so that none of them ends at a line.
 
 layout(std140) uniform Ground {
-  vec4 bends_place;   // x, z of the corner of the grid of bends
+  vec4 bends_place;   // x, z of the corner of the grid of bends; z: 1 if it is of the viewer's own waves, 0 if it is streamed
   vec4 bends_axes;    // a matrix: from metres behind it to parts of the grid's sides
-  vec4 bend_mean;     // east, south, radians; z: how far its nodes differ is to be seen (0 where there is no grid); w: share of tall grass
+  vec4 bend_mean;     // east, south, radians; w: share of tall grass
   vec4 growth_place;  // x, z of the low corner of the map of growth; 1 / its sides
   vec4 stand;         // tall grass: mean length, metres; curl, radians; number of the door through which it fades; tilt, radians
 };
@@ -15,13 +15,12 @@ uniform sampler2D growth;  // r: 0 bare, 1 nothing keeps grass from growing; g: 
 
 const float kLawnLength_m = 0.085;
 
-// The bend of grass at a place. Beyond the grid its pattern is repeated, calmer at its edges, where it does not fit itself.
-vec2 bend_at(vec2 at_m, float tall) {
+// The bend of grass at a place. Beyond the grid its pattern is repeated, calmer at the edges of a streamed one, which does not fit
+// itself.
+vec2 bend_at(vec2 at_m) {
   vec2 uv = mat2(bends_axes.xy, bends_axes.zw) * (at_m - bends_place.xy);
   vec2 from_edge = 0.5 - abs(fract(uv) - 0.5);
-  float sure = bend_mean.z * smoothstep(0.0, 0.09, min(from_edge.x, from_edge.y));
-  // Without a grid it is known of the streamed blades alone: the tall grass is bent as they are, on the average.
-  if (bend_mean.z == 0.0) return bend_mean.xy * tall;
+  float sure = max(smoothstep(0.0, 0.09, min(from_edge.x, from_edge.y)), bends_place.z);
   return bend_mean.xy + (textureLod(bends, uv, 0.0).rg - bend_mean.xy) * sure;
 }
 
@@ -75,6 +74,7 @@ vec3 leaning(vec2 bend) {
 float kept_share(float thinning, float distance_m) { return min(1.0, thinning * inversesqrt(distance_m) / distance_m); }
 
 const float kGust = 0.5;  // a gust is seen by the light on it: more than its bend alone would show
+const float kLawnGust = 0.8;  // and on a lawn
 
 const float kSunInShadow = 0.16;  // leaves, threads and the air let some through
 
@@ -107,6 +107,10 @@ vec3 blade_light(vec3 to_eye, vec3 along, vec3 normal, float t, vec3 tint, float
 
 const float kShineFar = 0.35;  // of the sheen: blades lie in many directions
 
+// The share of a lawn's light that is that of the grass as a whole, for its blades and for the ground between them: one sees no
+// single blades of it.
+float lawn_far(float distance_m) { return mix(0.62, 1.0, smoothstep(0.5, 6.0, distance_m)); }
+
 // The share of a gust's light that is seen. Grass that leans shows its side, of which one sees less from above; but there it
 // covers the dark ground, between upright blades.
 float seen_from(vec3 to_eye) { return 1.0 - 0.35 * to_eye.y * to_eye.y; }
@@ -121,7 +125,7 @@ vec3 canopy_light(vec2 bend, vec3 to_eye, vec2 patch_at, float tufts, float tall
   vec3 normal = normalize(vec3(to_eye.x, 0.35, to_eye.z) + vec3(along.x, 0.0, along.z) * 0.5);
   float gust = (0.42 + kGust) * seen_from(to_eye) * gust_of(bend);
   // As far as blades do: their own tilt and the wind's bend are seldom one way.
-  float lean = mix(0.55, clamp(length(vec2(0.42, 0.45 * length(bend_mean.xy))) + gust + 0.45 * tufts + 0.40 * patch_at.y, 0.0, 0.88), tall);
+  float lean = mix(0.55 + kLawnGust * gust, clamp(length(vec2(0.42, 0.45 * length(bend_mean.xy))) + gust + 0.45 * tufts + 0.40 * patch_at.y, 0.0, 0.88), tall);
   vec3 light = blade_light(to_eye, along, normal, mix(0.72, 0.82, tall) + 0.3 * tufts, tint_of(patch_at, 0.5 + 0.8 * tufts), lean, kShineFar, sunlight);
   // From above one looks down between the blades.
   return light * (1.0 - tall * (0.15 + 0.30 * to_eye.y * to_eye.y * (1.0 - 0.6 * min(length(bend), 1.0))));

@@ -47,7 +47,7 @@ void main() {
   // An arc: its own tilt and droop, and the wind's bend in proportion to the height.
   vec2 heading = vec2(sin(traits.x), -cos(traits.x));
   vec2 tilt = heading * mix(0.14, stand.w, tall) * traits.z;
-  vec2 bend = bend_at(root_m, tall);
+  vec2 bend = bend_at(root_m);
   vec2 turned = heading * mix(0.6, stand.y, tall) * traits.z + bend * (traits.w * (0.35 + 0.65 * tall));
   put_corner(corner, vec3(root_m.x, 0.0, root_m.y), length_m, tilt, turned, width_m * pow(share, -0.7) * min(is_up * 2.0, 1.0),
              traits.x + form.z, chance, patch_at, bend, tall);
