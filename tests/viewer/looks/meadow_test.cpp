@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -26,9 +27,14 @@ light::Light clear_noon() {
 /// A flag, and nothing else: the viewer's own grass grows around it.
 class MeadowTest : public testing::Test {
  protected:
-  MeadowTest() : models_{test_model("flag")}, target_(kWidth_px, kHeight_px, 4) {
-    stage_.set_scenes(models_);
+  MeadowTest() : target_(kWidth_px, kHeight_px, 4) {
+    show("flag");
     stage_.set_light(clear_noon());
+  }
+
+  void show(const char* kind) {
+    models_ = {test_model(kind)};
+    stage_.set_scenes(models_);
   }
 
   /// Luminances, row after row from the top, 0 to 255. The wind blows toward east.
@@ -88,6 +94,45 @@ TEST_F(MeadowTest, ALawnNearByChangesFromPatchToPatchMoreThanFromBladeToBlade) {
               from_patch_to_patch);
   EXPECT_LT(from_blade_to_blade, from_patch_to_patch);
   EXPECT_GT(from_blade_to_blade, 2.0);  // blades are seen
+}
+
+TEST_F(MeadowTest, NoEdgeIsSeenWhereTheBladesOfAMeadowEnd) {
+  show("grass");
+  // Across the last blades, at 40 m, toward west.
+  const meshes::CameraPlace place{
+      .target_m = {-10.0, 0.0, 0.0}, .heading_deg = 270.0, .pitch_deg = 4.0, .distance_m = 40.0};
+  const std::vector<double> picture = draw(place, 2.0, 0.0);
+  meshes::OrbitCamera camera;
+  camera.frame(place);
+  const glm::mat4 clip(meshes::view_of(camera, kWidth_px, kHeight_px).to_clip);
+  const auto row_at = [&](float distance_m) {
+    const glm::vec4 seen = clip * glm::vec4(30.0F - distance_m, 0.0F, 0.0F, 1.0F);
+    return static_cast<int>(std::lround((0.5F - 0.5F * seen.y / seen.w) * static_cast<float>(kHeight_px)));
+  };
+  // The mean luminance of the rows between two distances, and the mean deviation of a pixel from those beside it.
+  const auto light_between = [&](float near_m, float far_m) {
+    constexpr int kBeside_px = 4;
+    double sum = 0.0, deviations = 0.0, count = 0.0;
+    for (int row = row_at(far_m); row < row_at(near_m); ++row) {
+      const auto* line = &picture.at(static_cast<std::size_t>(row * kWidth_px));
+      for (int column = kBeside_px; column < kWidth_px - kBeside_px; ++column) {
+        double beside = 0.0;
+        for (int other = column - kBeside_px; other <= column + kBeside_px; ++other)
+          beside += line[other] / (2 * kBeside_px + 1);
+        sum += line[column];
+        deviations += std::abs(line[column] - beside);
+        count += 1.0;
+      }
+    }
+    return std::pair(sum / count, deviations / count);
+  };
+  const auto [blades, blades_vary] = light_between(27.0F, 34.0F);
+  const auto [beyond, beyond_vary] = light_between(42.0F, 60.0F);
+  std::printf("blades: luminance %.1f, varies by %.1f; beyond them %.1f, %.1f\n", blades, blades_vary, beyond,
+              beyond_vary);
+  EXPECT_NEAR(blades, beyond, 4.0);
+  EXPECT_GT(beyond_vary, 0.4 * blades_vary);
+  EXPECT_LT(beyond_vary, 1.6 * blades_vary);
 }
 
 TEST_F(MeadowTest, GustsTravelOverTheGrassAroundAFlagAtTheWindsSpeed) {

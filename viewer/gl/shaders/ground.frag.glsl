@@ -6,6 +6,47 @@ uniform vec2 image_form;         // how much of it is seen; its height, in width
 in vec3 place_m;
 out vec4 color;
 
+// Where no blades are drawn any more, tufts stand in rows across one axis of the world, as on upright cards (R. Habel 2007,
+// "Instant animated grass"). Returns how the tuft that one sees differs from its neighbours, about from -0.5 to 0.5. `at_m`: across
+// the rows, and along them; `to_eye`: a direction in the same axes and upright; rows are so far apart, tufts so many a metre.
+float tufts_in_rows(vec2 at_m, vec3 to_eye, float height_m, float row_m, float tufts_per_m) {
+  float wander = 0.10 * sin(0.11 * tufts_per_m * at_m.y) + 0.14 * sin(0.043 * tufts_per_m * at_m.y + 2.0);
+  float row = at_m.x / row_m + wander;
+  float toward = to_eye.x < 0.0 ? -1.0 : 1.0;
+  float rows = toward > 0.0 ? 1.0 - fract(row) : fract(row);  // to the next row toward the eye
+  float per_row_m = row_m / max(abs(to_eye.x), 1e-3);         // of the way to the eye
+  float beside_m = at_m.y + rows * per_row_m * to_eye.y;
+  float number = floor(row) + (toward > 0.0 ? 1.0 : 0.0);
+  vec4 tuft = textureLod(turf_tile, vec2(beside_m * tufts_per_m * (1.0 / 36.0), 0.3711 * number), 0.0);
+  float part = rows * per_row_m * to_eye.z / (height_m * clamp(1.2 + 3.0 * (tuft.g - 0.5), 0.4, 2.0));
+  float own = 2.6 * (tuft.b - 0.5);
+  return mix(0.40 * min(part, 1.0) - 0.19, -0.07, smoothstep(0.95, 1.1, part)) + own;
+}
+
+// The same for all directions: more of the rows that one looks across.
+float upright_tufts(vec2 at_m, vec3 to_eye, float distance_m) {
+  const float kPixels = 2.0;  // a tuft is about so wide
+  float height_m = 0.45 * stand.x;
+  float level = log2(max(distance_m, 1.0));
+  // Powers of two of both, so that tufts stay in their places while the eye moves.
+  float row_at_1m = exp2(floor(log2(height_m / max(abs(eye_m.y), 0.2)) + 0.5));
+  float tufts_at_1m = exp2(-floor(log2(kPixels * eye_m.w) + 0.5));
+  vec2 level_way = normalize(to_eye.xz);
+  float rise = to_eye.y / length(to_eye.xz);
+  float across_x = level_way.x * level_way.x;
+  across_x = smoothstep(0.3, 0.7, across_x);
+  float sum = 0.0;
+  for (int i = 0; i < 2; ++i) {
+    float size = exp2(floor(level) + float(i));
+    float share = i == 0 ? 1.0 - fract(level) : fract(level);
+    float here = 0.0;
+    if (across_x > 0.0) here += across_x * tufts_in_rows(at_m, vec3(level_way, rise), height_m, row_at_1m * size, tufts_at_1m / size);
+    if (across_x < 1.0) here += (1.0 - across_x) * tufts_in_rows(at_m.yx, vec3(level_way.yx, rise), height_m, row_at_1m * size, tufts_at_1m / size);
+    sum += share * here;
+  }
+  return sum;
+}
+
 void main() {
   vec3 from_eye = place_m - eye_m.xyz;
   float distance_m = length(from_eye);
@@ -27,6 +68,10 @@ void main() {
   float fine = textureLod(turf_tile, at_m * per_m, blur).b - 0.5;
   float coarse = textureLod(turf_tile, turned_m, blur - 1.0).b - 0.5;
   float tufts = clamp(3.2 * mix(fine, coarse, next) + clumps_at(at_m, blur - log2(256.0 * per_m)), -0.5, 0.5);
+
+  // Beyond the blades, at a flat angle, as long as they are higher than a pixel.
+  float upright = tall * smoothstep(14.0, 34.0, distance_m) * (1.0 - smoothstep(0.10, 0.30, to_eye.y)) * smoothstep(0.5, 2.0, 0.45 * stand.x / (distance_m * eye_m.w));
+  if (upright > 0.0) tufts = clamp(tufts * (1.0 - 0.8 * upright) + upright * upright_tufts(at_m, to_eye, distance_m), -0.7, 0.7);
 
   float lit = mix(kSunInShadow, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
   lit *= under_clouds(at_m, distance_m * eye_m.w * inversesqrt(max(to_eye.y, 0.02)));
@@ -53,6 +98,6 @@ void main() {
   float grain = clamp(relief * (1.6 * tufts + 0.8 * patch_at.y + 0.5 * patch_at.x), -0.8, 0.8);
   vec3 bare = soil * (sky_light.rgb * (0.85 + 0.3 * grain) + sun_light.rgb * (lit * max(to_sun.y * (0.8 + 0.3 * grain) + 0.25 * grain, 0.0)));
   light = mix(bare, light, smoothstep(0.0, 0.1, growth_here));
-  light += mix(soil, tint_of(patch_at, 0.5), 0.5 * far * smoothstep(0.0, 0.1, growth_here)) * fire_light(place_m, vec3(0.0, 1.0, 0.0));
+  light += mix(soil, tint_of(patch_at, 0.5), 0.85 * far * smoothstep(0.0, 0.1, growth_here)) * fire_light(place_m, vec3(0.0, 1.0, 0.0));
   color = vec4(dithered(seen(light, place_m), gl_FragCoord.xy), 1.0);
 }
