@@ -23,8 +23,9 @@ float tufts_in_rows(vec2 at_m, vec3 to_eye, float height_m, float row_m, float t
   return mix(0.40 * min(part, 1.0) - 0.19, -0.07, smoothstep(0.95, 1.1, part)) + own;
 }
 
-// The same for all directions: more of the rows that one looks across.
-float upright_tufts(vec2 at_m, vec3 to_eye, float distance_m) {
+// The same for all directions: more of the rows that one looks across. 0 if the share of it that is to be seen is 0: its loop is
+// not run then, while both sides of a branch would be.
+float upright_tufts(vec2 at_m, vec3 to_eye, float distance_m, float seen_share) {
   const float kPixels = 2.0;  // a tuft is about so wide
   float height_m = 0.45 * stand.x;
   float level = log2(max(distance_m, 1.0));
@@ -36,7 +37,8 @@ float upright_tufts(vec2 at_m, vec3 to_eye, float distance_m) {
   float across_x = level_way.x * level_way.x;
   across_x = smoothstep(0.3, 0.7, across_x);
   float sum = 0.0;
-  for (int i = 0; i < 2; ++i) {
+  int levels = seen_share > 0.0 ? 2 : 0;
+  for (int i = 0; i < levels; ++i) {
     float size = exp2(floor(level) + float(i));
     float share = i == 0 ? 1.0 - fract(level) : fract(level);
     float here = 0.0;
@@ -71,7 +73,7 @@ void main() {
 
   // Beyond the blades, at a flat angle, as long as they are higher than a pixel.
   float upright = tall * smoothstep(14.0, 34.0, distance_m) * (1.0 - smoothstep(0.10, 0.30, to_eye.y)) * smoothstep(0.5, 2.0, 0.45 * stand.x / (distance_m * eye_m.w));
-  if (upright > 0.0) tufts = clamp(tufts * (1.0 - 0.8 * upright) + upright * upright_tufts(at_m, to_eye, distance_m), -0.7, 0.7);
+  tufts = clamp(tufts * (1.0 - 0.8 * upright) + upright * upright_tufts(at_m, to_eye, distance_m, upright), -0.7, 0.7);
 
   float lit = mix(kSunInShadow, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
   lit *= under_clouds(at_m, distance_m * eye_m.w * inversesqrt(max(to_eye.y, 0.02)));

@@ -19,8 +19,9 @@ const float kLawnLength_m = 0.085;
 // itself.
 vec2 bend_at(vec2 at_m) {
   vec2 uv = mat2(bends_axes.xy, bends_axes.zw) * (at_m - bends_place.xy);
+  if (bends_place.z > 0.0) return textureLod(bends, uv, 0.0).rg;
   vec2 from_edge = 0.5 - abs(fract(uv) - 0.5);
-  float sure = max(smoothstep(0.0, 0.09, min(from_edge.x, from_edge.y)), bends_place.z);
+  float sure = smoothstep(0.0, 0.09, min(from_edge.x, from_edge.y));
   return bend_mean.xy + (textureLod(bends, uv, 0.0).rg - bend_mean.xy) * sure;
 }
 
