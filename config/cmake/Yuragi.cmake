@@ -50,14 +50,18 @@ endif()
 
 # The rooms where a running program spends its time: poses and wind, readings, recordings and their import, the stream, pictures.
 # They are compiled with the preset's optimization. All others (options, settings, JSON, tables, the web page, the set-up of
-# devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. With sanitizers,
-# whose code takes longest to optimize, only the engine has the preset's optimization; what tests run longest in has -O1, the rest -O0.
+# devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. With YURAGI_COLD_UNOPTIMIZED only
+# the engine has the preset's optimization, since compilation takes longer than the tests of all others; most of these have -O0, and
+# -O1 what tests run longest in, with sanitizers more of it.
 set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/stream
                      daemon/tools/csv viewer)
 set(YURAGI_WARM_ROOMS "[^/]+")
+if(YURAGI_COLD_UNOPTIMIZED)
+  set(YURAGI_WARM_ROOMS drivers/decode)
+  set(YURAGI_HOT_ROOMS engine)
+endif()
 if(YURAGI_SANITIZE)
   set(YURAGI_WARM_ROOMS drivers/decode drivers/windlog daemon/tools/csv viewer)
-  set(YURAGI_HOT_ROOMS engine)
 endif()
 list(JOIN YURAGI_HOT_ROOMS "|" YURAGI_HOT_ROOMS)
 list(JOIN YURAGI_WARM_ROOMS "|" YURAGI_WARM_ROOMS)
@@ -92,7 +96,7 @@ function(yuragi_program name)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
   add_executable(${name} main.cpp)
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
-  if(YURAGI_SANITIZE)
+  if(YURAGI_COLD_UNOPTIMIZED)
     target_compile_options(${name} PRIVATE ${YURAGI_UNOPTIMIZED})
   endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)

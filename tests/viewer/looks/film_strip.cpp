@@ -58,7 +58,7 @@ viewer::meshes::OrbitCamera camera_of(const std::string& text, const viewer::loo
     throw std::runtime_error("--camera: is \"" + text +
                              "\"; allowed: home, HEADING,PITCH,DISTANCE or with ,HEIGHT behind");
   }
-  place.target_m.y = static_cast<float>(height_m);
+  place.target_m.y = height_m;
   camera.frame(place);
   return camera;
 }
