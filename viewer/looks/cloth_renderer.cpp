@@ -19,7 +19,7 @@ constexpr float kKeep = 0.15F;  // of a level: so far beyond its bounds it is ke
 constexpr float kNearest_m = 0.1F;
 constexpr std::size_t kLooks = 12;            // joints along each side that are asked how far they are
 constexpr float kHalfHem_m = 0.0015F;         // half the thickness of a hem
-const glm::vec3 kLinen{0.70F, 0.63F, 0.51F};  // cloth.frag.glsl's
+const glm::vec3 kLinen{0.70F, 0.63F, 0.51F};  // curtain.frag.glsl's
 constexpr float kDarkestPaint = 0.012F;
 constexpr float kLightestPaint = 0.78F;
 constexpr float kShadowCell_px = 12.0F;  // of a shadow's mesh
@@ -89,6 +89,18 @@ glm::vec3 light_through(const look::ClothLook& look) {
   return kThrough * 1.25F * paint * glm::sqrt(paint);
 }
 
+gl::GlProgram program_of(meshes::ClothStyle style) {
+  switch (style) {
+    case meshes::ClothStyle::kFlag:
+      return gl::link_program("flag", gl::shaders::kClothVert, gl::shaders::kFlagFrag);
+    case meshes::ClothStyle::kBanner:
+      return gl::link_program("banner", gl::shaders::kClothVert, gl::shaders::kBannerFrag);
+    case meshes::ClothStyle::kCurtain:
+      break;
+  }
+  return gl::link_program("curtain", gl::shaders::kClothVert, gl::shaders::kCurtainFrag);
+}
+
 /// Of its vertices; `none` where there are none.
 meshes::Bounds bounds_of(const meshes::SolidMesh& mesh, const meshes::Bounds& none) {
   if (mesh.vertices().empty()) return none;
@@ -115,11 +127,10 @@ ClothRenderer::ClothRenderer(const pose::GridSkeleton& cloth, meshes::ClothStyle
       holder_(holder),
       wire_m_(2.0F * holder.wire_radius_m()),
       floor_(meshes::cloth_floor(style_, cloth)),
-      program_(gl::link_program("cloth", gl::shaders::kClothVert, gl::shaders::kClothFrag)) {
+      program_(program_of(style_)) {
   if (floor_) boards_.emplace(*floor_, light_through(look));
   glUseProgram(program_.name());
   glUniform2f(glGetUniformLocation(program_.name(), "size_m"), lies_.size_m.x, lies_.size_m.y);
-  glUniform1i(glGetUniformLocation(program_.name(), "style"), static_cast<GLint>(style_));
   glUniform4fv(glGetUniformLocation(program_.name(), "color_1"), 1, &paint_of(look.color)[0]);
   glUniform4fv(glGetUniformLocation(program_.name(), "color_2"), 1, &paint_of(look.color_2)[0]);
   glUniform1i(glGetUniformLocation(program_.name(), "has_picture"), look.image != nullptr ? 1 : 0);

@@ -27,7 +27,8 @@ void set_body(const gl::GlProgram& program, const meshes::Body& body) {
 }  // namespace
 
 FurRenderer::FurRenderer(const pose::StrandSkeleton& strands, look::Quality quality)
-    : body_(meshes::body_of(strands)),
+    : do_hairs_shade_(quality != look::Quality::kLow),
+      body_(meshes::body_of(strands)),
       ribbons_(strands, hairs_of(quality)),
       partings_(strands, body_),
       hair_(gl::link_program("hair", gl::shaders::kHairVert, gl::shaders::kShadeFrag)),
@@ -102,9 +103,8 @@ void FurRenderer::draw(const meshes::View& view) {
 }
 
 void FurRenderer::draw_shadow(const meshes::View& view) {
-  // A body's shadow on the ground does as well without its hairs; in a map they shade each other.
-  const bool is_map = view.to_clip[0][3] == 0.0F && view.to_clip[1][3] == 0.0F && view.to_clip[2][3] == 0.0F;
-  if (is_map) ribbons_.draw(hair_, view);
+  // The ground needs no hairs of it; but hairs shade each other, where they look it up.
+  if (do_hairs_shade_) ribbons_.draw(hair_, view);
   draw_skin(false);
 }
 

@@ -33,6 +33,7 @@ class FurRenderer : public SceneRenderer {
   void draw_skin(bool has_hairs) const;
   void make_limbs(const meshes::Limbs& limbs);
 
+  bool do_hairs_shade_;  ///< with quality low hairs look no shadow up
   meshes::Body body_;
   StrandRibbons ribbons_;
   meshes::Partings partings_;

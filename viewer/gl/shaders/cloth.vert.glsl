@@ -14,11 +14,13 @@ out vec3 place_m;
 out vec3 normal;
 out vec2 cloth_m;
 out float bend_per_m;
+out float clouds_let_through;
 
 void main() {
   place_m = vec3(x_m, y_m, z_m);
   normal = vec3(normal_x, normal_y, normal_z);
   cloth_m = vec2(right_m, down_m);
   bend_per_m = bend;
+  clouds_let_through = below_clouds(place_m);
   gl_Position = to_clip * vec4(place_m, 1.0);
 }

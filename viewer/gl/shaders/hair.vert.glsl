@@ -120,7 +120,8 @@ void main() {
   float sun_up = dot(out_of_body, to_sun.xyz);
   float deep = (1.0 - t * mix(0.8, 1.0, longer)) * (is_guard ? 0.85 : 1.0);
   float lit = smoothstep(-0.30, 0.35, sun_up) * exp(-1.15 * deep / (0.35 + max(sun_up, 0.0)));
-  lit *= below_clouds(own_root) * mix(0.2, 1.0, sunlight_near(own_root + 0.15 * out_of_body));
+  float sun_through = below_clouds(own_root);  // clouds
+  lit *= sun_through * mix(0.2, 1.0, sunlight_near(own_root + 0.15 * out_of_body));
   float open_sky = 0.42 + 0.66 * (1.0 - deep) * (1.0 - deep) + 0.15 * (1.0 - deep);
 
   float along_sun = dot(along, to_sun.xyz);
@@ -136,6 +137,6 @@ void main() {
   sum += albedo * fire_light(place, out_of_body) * open_sky;
   sum += albedo * sun_light.rgb * (0.80 * across_sun * lit);
   sum += sun_light.rgb * lit * (vec3(0.085) * surface + albedo * (0.55 * within)) * smoothstep(-0.1, 0.3, sun_up);
-  sum += albedo * sun_light.rgb * (0.9 * rim * rim * against * against * t * mix(0.4, 1.0, lit) * below_clouds(own_root));
+  sum += albedo * sun_light.rgb * (0.9 * rim * rim * against * against * t * mix(0.4, 1.0, lit) * sun_through);
   shade = seen(sum, place);
 }

@@ -1,5 +1,5 @@
-// Woven cloth, lit from both sides and through: plain linen, a flag, a banner.
-uniform int style;  // 0 curtain, 1 flag, 2 banner
+// Woven cloth, lit from both sides and through. Each kind of cloth has a program of its own, which sews and paints it: a
+// processor that draws would go through those of all.
 uniform vec2 size_m;
 uniform vec4 color_1;  // of the cloth; w: 1 where an installation wants it
 uniform vec4 color_2;  // of its pattern
@@ -9,15 +9,10 @@ uniform sampler2D picture;  // covers all of it
 in vec3 place_m;
 in vec3 normal;
 in vec2 cloth_m;
+in float clouds_let_through;  // of the sun's light
 in float bend_per_m;  // above 0: hollow on the side of the normal
 out vec4 color;
 
-const vec3 kInk = vec3(0.020, 0.060, 0.235);
-const vec3 kVermilion = vec3(0.60, 0.062, 0.022);
-const vec3 kGold = vec3(0.86, 0.44, 0.050);
-const vec3 kSnow = vec3(0.76, 0.74, 0.68);
-const vec3 kLinen = vec3(0.70, 0.63, 0.51);
-const vec3 kCanvas = vec3(0.66, 0.62, 0.53);
 const float kFineFolds = 0.30;  // how far they lean, the tangent
 
 float chance(float n) { return fract(sin(n * 12.9898) * 43758.5453); }
@@ -72,68 +67,19 @@ vec3 hem(float edge_m, float along_m, float width_m) {
 bool is_plain() { return color_1.w > color_2.w; }
 vec3 wanted(vec4 color, vec3 otherwise) { return mix(otherwise, color.rgb, color.w); }
 
-// A golden sun behind three gusts on a dark blue sky. Unit: the flag's height.
-vec3 flag(vec2 p, float aspect) {
-  vec3 sky = wanted(color_1, kInk);
-  if (is_plain()) return sky;
-  vec3 sun = wanted(color_2, kGold);
-  vec3 gusts = wanted(color_2, kSnow);
-  vec3 paint = mix(sky * 1.15, sky * 0.85, p.y);
-  paint = mix(paint, sun, cover(0.235 - length(p - vec2(0.40 * aspect, 0.45))));
-  for (int i = 0; i < 3; ++i) {
-    float n = float(i);
-    float swing = 0.065 * sin(4.6 * p.x / aspect * 1.35 + 1.1 * n + 0.4) + 0.018 * sin(11.0 * p.x / aspect + 2.0 * n);
-    float along = clamp(p.x / aspect, 0.0, 1.0);
-    float begins = 0.10 + 0.07 * n;
-    float half_width = (0.034 - 0.006 * n) * smoothstep(begins, begins + 0.35, along) * smoothstep(1.0, 0.72 - 0.08 * n, along);
-    float line = half_width - abs(p.y - (0.545 + 0.125 * n + swing));
-    paint = mix(paint, gusts, cover(line) * step(0.0005, half_width));
-  }
-  return paint;
-}
+// How a piece of cloth is made at a place.
+struct Sewn {
+  vec3 paint;
+  vec3 seams;     // hem()
+  float through;  // how much of the light comes through it
+  float satin;    // how much it shines
+  float thread_m;
+  vec2 brass;      // of an eyelet: its ring and its hole
+  float wrinkle_m;  // how wide its wrinkles are
+};
 
-// White, with a red head, a crest of three gusts, and a dark blue foot of waves. Unit: the banner's width.
-vec3 banner(vec2 p, float tall) {
-  vec3 ground = wanted(color_1, kSnow);
-  if (is_plain()) return ground;
-  vec3 ink = wanted(color_2, kInk);
-  vec3 red = wanted(color_2, kVermilion);
-  vec3 paint = ground;
-  paint = mix(paint, red, cover(0.36 - p.y));
-  paint = mix(paint, ground, cover(0.022 - abs(p.y - 0.29)));
-
-  vec2 from_crest = p - vec2(0.5, 0.92);
-  float radius = length(from_crest);
-  float turn = atan(from_crest.y, from_crest.x);
-  float gusts = sin(3.0 * turn - 15.0 * radius);
-  paint = mix(paint, ink, cover(0.355 - radius));
-  paint = mix(paint, ground, cover(0.30 - radius) * cover(gusts * (0.12 + radius)));
-  paint = mix(paint, red, cover(0.055 - radius));
-
-  for (int i = 0; i < 3; ++i) {
-    float n = float(i);
-    float foot = tall - 1.15 + 0.30 * n + 0.055 * sin(6.2832 * (p.x * 1.5 + 0.31 * n));
-    paint = mix(paint, i == 1 ? ground : ink, cover(p.y - foot));
-  }
-  float stem = 0.030 * smoothstep(1.36, 2.1, p.y) * smoothstep(tall - 1.34, tall - 1.9, p.y);
-  float thread = stem - abs(p.x - 0.5 - 0.11 * sin(2.6 * p.y + 0.6));
-  paint = mix(paint, red, cover(thread) * step(1.36, p.y) * step(p.y, tall - 1.34));
-  return paint;
-}
-
-// Linen, with broad stripes that hang down where they are wanted. In metres.
-vec3 curtain(vec2 at_m) {
-  vec3 ground = wanted(color_1, kLinen);
-  return mix(ground, color_2.rgb, color_2.w * cover(0.25 - abs(fract(at_m.x / 0.30) - 0.5)));
-}
-
-// A brass eyelet in its middle: 1 on its ring (x), 1 in its hole (y).
-vec2 eyelet(vec2 from_middle_m) {
-  float radius_m = length(from_middle_m);
-  return vec2(cover(0.0125 - radius_m), cover(0.0060 - radius_m));
-}
-
-void main() {
+// The cloth's light on the screen.
+void show(Sewn sewn) {
   // The sun's map of depths needs no colour.
   if (shadow.x == 0.0 && shadow.w > 0.0) {
     color = vec4(0.0);
@@ -144,42 +90,12 @@ void main() {
   float side = dot(facing, from_eye) > 0.0 ? -1.0 : 1.0;
   facing *= side;
 
-  // Hems are folded: more layers, which let less light through.
-  vec2 to_end_m = size_m - cloth_m;
-  vec2 inside_m = min(cloth_m, to_end_m);
-  vec3 paint;
-  vec3 seams;
-  float through;
-  float satin = 0.0;
-  float thread_m = 0.0015;
-  vec2 brass = vec2(0.0);
-  vec2 on_picture = cloth_m / size_m;
-  vec3 printed = has_picture ? mix(vec3(0.012), vec3(0.78), texture(picture, on_picture).rgb) : vec3(0.0);
-  if (style == 0) {
-    seams = max(hem(inside_m.x, cloth_m.y, 0.020), hem(to_end_m.y, cloth_m.x, 0.070));
-    seams = max(seams, hem(cloth_m.y, cloth_m.x, 0.055));
-    paint = curtain(cloth_m);
-    through = 0.62;
-    thread_m = 0.0025;
-  } else if (style == 1) {
-    seams = max(hem(inside_m.y, cloth_m.x, 0.014), hem(to_end_m.x, cloth_m.y, 0.026));
-    seams.y = max(seams.y, hem(to_end_m.x, cloth_m.y, 0.015).y);
-    paint = flag(cloth_m / size_m.y, size_m.x / size_m.y);
-    through = 0.50;
-    satin = 1.0;
-    // A heading of canvas along the hoist, with eyelets in its ends.
-    float heading_m = 0.075 * min(size_m.y, 1.4);
-    if (!has_picture) paint = mix(paint, kCanvas, cover(heading_m - cloth_m.x));
-    seams = max(seams, hem(cloth_m.x, cloth_m.y, heading_m));
-    brass = eyelet(vec2(cloth_m.x - 0.75 * heading_m, inside_m.y - 0.035));
-  } else {
-    seams = max(hem(inside_m.x, cloth_m.y, 0.012), hem(inside_m.y, cloth_m.x, 0.014));
-    paint = banner(cloth_m / size_m.x, size_m.y / size_m.x);
-    through = 0.56;
-    satin = 0.4;
-  }
-  if (has_picture) paint = printed;
-  vec3 threads = weave(cloth_m, thread_m);
+  vec3 paint = sewn.paint;
+  vec3 seams = sewn.seams;
+  vec2 brass = sewn.brass;
+  float through = sewn.through;
+  if (has_picture) paint = mix(vec3(0.012), vec3(0.78), texture(picture, cloth_m / size_m).rgb);
+  vec3 threads = weave(cloth_m, sewn.thread_m);
   paint *= threads.z * (1.0 - 0.05 * seams.x) * (1.0 - 0.22 * seams.z);
   paint = mix(paint, min(paint * 1.25 + 0.03, 0.8), 0.6 * seams.y);
   through *= (1.0 - 0.45 * seams.x) * (1.0 - brass.x);
@@ -199,7 +115,7 @@ void main() {
   float area = max(abs(right_m.x * down_m.y - right_m.y * down_m.x), 1e-20);
   vec3 per_x = along_x / area;
   vec3 per_y = along_y / area;
-  float width_m = style == 0 ? 0.11 : 0.13;
+  float width_m = sewn.wrinkle_m;
   float seen_near = 1.0 - smoothstep(0.12, 0.40, max(length(right_m), length(down_m)) / width_m);
   const vec2 kWays[4] = vec2[4](vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(0.7071, 0.7071), vec2(0.7071, -0.7071));
   for (int i = 0; i < 4; ++i) {
@@ -217,7 +133,7 @@ void main() {
   // What has come through threads has the cloth's colour, deeper.
   vec3 deep = paint * sqrt(max(paint, vec3(0.0))) * 1.25;
   float shade = sunlight_at(place_m + 0.04 * to_sun.xyz, pixel_chance(gl_FragCoord.xy));
-  vec3 sun = sun_light.rgb * below_clouds(place_m) * mix(0.5 * deep, vec3(1.0), shade);
+  vec3 sun = sun_light.rgb * clouds_let_through * mix(0.5 * deep, vec3(1.0), shade);
   float height = dot(facing, to_sun.xyz);
   // Folds finer than the mesh lean either way: where the sun only grazes the cloth, some of it still falls on each side.
   float grazed = sqrt(height * height + kFineFolds * kFineFolds);
@@ -239,6 +155,6 @@ void main() {
   shine *= shine;
   shine *= shine;
   shine *= shine;
-  light += (0.045 * satin + 0.5 * brass.x * (1.0 - brass.y)) * shine * on * sun;
+  light += (0.045 * sewn.satin + 0.5 * brass.x * (1.0 - brass.y)) * shine * on * sun;
   color = vec4(seen(light, place_m), 1.0);
 }
