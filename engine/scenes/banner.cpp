@@ -27,11 +27,13 @@
 // frequency goes with the wind, for its torque goes with the wind's square; in calm air it stays where it was left. The
 // first column is on the pole and never moves. Held by both, the cloth cannot swing out as a whole: a wave turns it by
 // an angle that grows from the pole to the free side and from the arm down, so that along each row it is the integral
-// of that angle's sine that it goes to the side. Threads hang from row to row and keep their length.
+// of that angle's sine that it goes to the side. Below, where only its loops hold it, the same wave turns it about the
+// pole, as a door, so that its lower end swings also in a breeze. Threads hang from row to row and keep their length.
 //
-// The bound of largest_joint_step_m. The angle A at the free side is g (A_w S n + 2 belly S c): it changes by at most
+// The bound of largest_joint_step_m. A wave's angle A is g (A_w S n + 2 belly S c): it changes by at most
 // d_A = A_w (d_n + 2.2 d_S) + 2 belly (d_S + d_c) a tick (ClothNoise, ClothStrength, CriticallyDamped for c, which is
-// within 1). A row's way to the side or back then changes by half the width times d_A at most; a knot's slope by
+// within 1), and counts by h, the hinge, at the pole and by 1 + h at the free side. A row's way to the side or back
+// then changes by (1/2 + h) times the width times d_A at most; a knot's slope by
 // sqrt(2) times twice that, over a knot's link; its lean by half as much as the slope. That is generous, since
 // neighbouring rows go together. The arm turns by no more than kFastestTurn a second.
 
@@ -46,8 +48,8 @@ const std::array kBannerParameters = {
     Parameter{"clearance", "m", 0.5, 0, 50, "between the cloth and the ground"},
     Parameter{"turns", "", true, 0, 0, "the arm turns downwind, as a vane; if not, it points to the scene's east"},
     Parameter{"belly", "", 0.08, 0, 0.5, "how far a wind from the side bows the free side, as a part of the width"},
-    Parameter{"max_flutter", "deg", 68.0, 0, 80, "how far the strongest waves turn the free corner to the sides"},
-    Parameter{"half_flutter_speed", "m/s", 4.0, 0.1, 60, "the wind that makes its waves half as high"},
+    Parameter{"max_flutter", "deg", 50.0, 0, 80, "how far the strongest waves turn the free side away from the pole's"},
+    Parameter{"half_flutter_speed", "m/s", 2.8, 0.1, 60, "the wind that makes its waves half as high"},
     Parameter{"wave_length", "m", 2.4, 0.2, 100, "of the longest waves; shorter ones make it flutter faster"},
     Parameter{"wave_speed", "", 0.55, 0, 2, "how fast the waves run down, as a part of the wind's speed"},
     Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
@@ -71,6 +73,9 @@ constexpr double kBannerKnotsAWave = 28.0;
 /// Half of the waves' height is reached so far below the arm, as a part of the banner's height (and 0.4 of it at most,
 /// where nothing below holds it).
 constexpr double kHeldByArm = 0.4;
+
+/// How far a wave turns the cloth about the pole at its lower end, as a part of how far it turns the free side besides.
+constexpr double kHinge = 0.6;
 
 /// The vane: its frequency in a strong wind, the wind that turns it half as fast, its damping, and friction.
 constexpr double kArmHz = 0.5;
@@ -155,7 +160,7 @@ class Banner final : public Scene {
     const double angle_step =
         flutter_rad_ * (waves_.largest_change(kFastestBannerWave_m_s, dt_s) + ClothNoise::kLargest * strength_step) +
         2.0 * belly_ * (strength_step + 2.0 * kBellyOmega_rad_s / std::numbers::e * dt_s);
-    const double side_step_m = 0.5 * width_m_ * angle_step;
+    const double side_step_m = (0.5 + kHinge) * width_m_ * angle_step;
     return cloth_.largest_joint_step_m(dt_s, std::numbers::sqrt2 * side_step_m / knot_link_m_,
                                        turns_ ? kFastestTurn_rad_s * dt_s : 0.0);
   }
@@ -232,6 +237,7 @@ class Banner final : public Scene {
     for (std::size_t row = 0; row <= cloth_.knots().links; ++row) {
       const double down = static_cast<double>(row) / static_cast<double>(cloth_.knots().links);
       growth_.push_back(static_cast<float>((1.0 + kHeldByArm) * down / (down + kHeldByArm)));
+      hinge_.push_back(static_cast<float>(kHinge * down * down));
     }
     for (std::size_t i = 0; i < cloth_.knots().columns + 2; ++i) {
       const double from_pole = std::max(cloth_.across(i), 0.0);
@@ -272,15 +278,16 @@ class Banner final : public Scene {
   /// A row of knots: from the pole on, each step of the cloth is turned by the angle there.
   void lay_out(std::size_t row, float bow, float wave) noexcept {
     const float growth = growth_[row];
+    const float hinge = hinge_[row];
     const float* const waves = waves_.values().data() + row;
     const auto half_step_m = static_cast<float>(0.5 * width_m_ / static_cast<double>(cloth_.knots().columns - 1));
     float ahead_m = 0.0F;
     float aside_m = 0.0F;
-    math::SinCos<float> before{0.0F, 1.0F};  // on the pole
+    math::SinCos<float> before = math::sin_cos(hinge * growth * (bow + wave * waves[0]));  // on the pole
     for (std::size_t i = 2; i < from_pole_.size(); ++i) {
       const float* const near = waves + ahead_rows_[i];
       const float noise = near[0] + ahead_part_[i] * (near[1] - near[0]);
-      const auto here = math::sin_cos(from_pole_[i] * growth * (bow + wave * noise));
+      const auto here = math::sin_cos((hinge + from_pole_[i]) * growth * (bow + wave * noise));
       ahead_m += half_step_m * (before.cos + here.cos);
       aside_m += half_step_m * (before.sin + here.sin);
       row_here_.ahead_m[i] = ahead_m;
@@ -306,7 +313,7 @@ class Banner final : public Scene {
   double knot_link_m_;
   float per_link_m_;
   ClothWaves waves_;                     ///< down the pole, and on
-  std::vector<float> growth_;            ///< of each row of joints between the knots' links
+  std::vector<float> growth_, hinge_;    ///< of each row of joints between the knots' links
   std::vector<float> from_pole_;         ///< of each knot column: 0 on the pole, 1 at the free side
   std::vector<std::size_t> ahead_rows_;  ///< how far ahead of the pole the waves are there: rows, and part of the next
   std::vector<float> ahead_part_;

@@ -28,7 +28,10 @@ ClothWaves::ClothWaves(double shortest_m, double longest_m, const ClothWaveGrid&
   const std::size_t before = behind_ / grid.across_m.size();
   for (std::size_t i = 0; i < before + grid.rows; ++i) {
     const double steps = static_cast<double>(i) - static_cast<double>(before);
-    along_m.insert(along_m.end(), grid.across_m.size(), static_cast<float>(grid.first_m + steps * grid.step_m));
+    for (const float column_m : grid.across_m) {
+      along_m.push_back(
+          static_cast<float>(grid.first_m + steps * grid.step_m - grid.slant * static_cast<double>(column_m)));
+    }
     across_m.insert(across_m.end(), grid.across_m.begin(), grid.across_m.end());
   }
   places_ = noise_.places(along_m, across_m);

@@ -14,6 +14,7 @@ struct ClothWaveGrid {
   double step_m = 0.1;   ///< above 0
   std::size_t rows = 1;
   std::span<const float> across_m;  ///< each column, across the way; at least one
+  double slant = 0.0;  ///< how much later, of its place across the way, a column has the waves: their fronts lean
 };
 
 /// Waves that run along a cloth from its fixed edge to its free one: a ClothNoise of which only what runs counts, by

@@ -30,6 +30,9 @@
 // raises the tension by sqrt(1 + P^2): so it swings on after a gust. Its hem is heavy: steep above, it hangs nearly
 // upright at the hem. A wave runs down in 2 sqrt(L / g), sooner in a curtain that is blown out.
 //
+// In a breeze it breathes: of what the wind carries, bulges pass too quickly to swing it, but longer gusts come about
+// as often as it swings, and fill and empty it as a whole. In a storm they, too, are too quick, and it stands taut.
+//
 // At rest it hangs in gathered folds that open a little toward the hem.
 //
 // The bound of largest_joint_step_m. The knots' P are within kLargestPull and change by at most r = kLargestPull_per_s
@@ -55,9 +58,10 @@ const std::array kCurtainParameters = {
     Parameter{"half_sway_speed", "m/s", 5.0, 0.1, 60,
               "the wind that blows it up to 45 degrees; heavier cloth needs more"},
     Parameter{"give_sideways", "", 0.25, 0, 1, "how far it gives way along itself, as a part of how far across"},
-    Parameter{"bulges", "", 0.22, 0, 0.45, "how unequally gusts fill it from place to place; 0: it swings as a board"},
+    Parameter{"bulges", "", 0.22, 0, 0.45,
+              "how unequally gusts fill it, from place to place and in time; 0: it swings as a board"},
     Parameter{"max_flutter", "deg", 40.0, 0, 80, "how far the strongest wind makes the hem flutter about that"},
-    Parameter{"half_flutter_speed", "m/s", 4.0, 0.1, 60, "the wind that makes it flutter half as much"},
+    Parameter{"half_flutter_speed", "m/s", 3.6, 0.1, 60, "the wind that makes it flutter half as much"},
     Parameter{"wave_length", "m", 2.0, 0.2, 100,
               "of the longest bulges; the hem's waves are somewhat shorter, and shorter ones pass faster"},
     Parameter{"wave_speed", "", 0.36, 0, 1, "how fast bulges and waves pass, as a part of the wind's speed"},
@@ -73,6 +77,12 @@ constexpr double kCurtainGravity_m_s2 = 9.81;
 /// The longest waves over the shortest, and those of the hem over the bulges.
 constexpr double kCurtainBand = 3.0;
 constexpr double kHemWaves = 0.6;
+
+/// The longest gusts that it breathes with, over the longest bulges, the longest of them over the shortest, and how
+/// much they fill it at most, over what bulges do: where its flutter is a third of a storm's.
+constexpr double kBreathWaves = 3.0;
+constexpr double kBreathBand = 2.0;
+constexpr double kBreath = 3.0;
 
 /// Of a hanging chain: its first frequency over sqrt(g / L) / 2 pi (half the first zero of the Bessel function J0), and
 /// the second over the first. How much of a column's swing is in the second.
@@ -198,11 +208,13 @@ class Curtain final : public Scene {
     const double share =
         wave_speed_ * speed_m_s > kFastestCurtainWave_m_s ? kFastestCurtainWave_m_s / speed_m_s : wave_speed_;
     gust_noise_.shift(share * wind_.east_m_s(), share * wind_.south_m_s(), dt_s);
+    breath_noise_.shift(share * wind_.east_m_s(), share * wind_.south_m_s(), dt_s);
     hem_noise_.shift(share * wind_.east_m_s(), share * wind_.south_m_s(), dt_s);
   }
 
   void sample() noexcept override {
     gust_noise_.sample(gust_places_, gust_);
+    breath_noise_.sample(breath_places_, breath_);
     hem_noise_.sample(hem_places_, flutter_now_);
   }
 
@@ -218,10 +230,12 @@ class Curtain final : public Scene {
     // Each part of it swings.
     const std::size_t stride = cloth_.knots().stride;
     const auto strength = static_cast<float>(strength_.value());
+    const double yielding = 1.0 - strength_.value();
+    const double breath = kBreath * 6.75 * yielding * yielding * strength_.value();
     double mean = 0.0;
     for (std::size_t i = 0; i < stride; ++i) {
-      const double target =
-          side_[i] * across_m_s * per_speed * blown_out(load * (1.0 + bulges_ * static_cast<double>(gust_[i])));
+      const double filled = static_cast<double>(gust_[i]) + breath * static_cast<double>(breath_[i]);
+      const double target = side_[i] * across_m_s * per_speed * blown_out(load * std::max(1.0 + bulges_ * filled, 0.0));
       swing(first_[i], first_[i].value, target, first_hz_, dt_s);
       swing(second_[i], first_[i].value, target, kChainSecondPerFirst * first_hz_, dt_s);
       const double out = (1.0 - kSecondShare) * first_[i].value + kSecondShare * second_[i].value;
@@ -287,10 +301,13 @@ class Curtain final : public Scene {
         wind_(setup.placement, setup.gusts),
         gust_noise_(settings.wave_length_m / kCurtainBand, settings.wave_length_m,
                     setup.seed ^ math::stream_id("curtain gusts"), setup.row),
+        breath_noise_(kBreathWaves * settings.wave_length_m / kBreathBand, kBreathWaves * settings.wave_length_m,
+                      setup.seed ^ math::stream_id("curtain breath"), setup.row),
         hem_noise_(kHemWaves * settings.wave_length_m / kCurtainBand, kHemWaves * settings.wave_length_m,
                    setup.seed ^ math::stream_id("curtain noise"), setup.row),
         cloth_(curtain_spec(settings), edge, setup.row),
         gust_(cloth_.knots().stride),
+        breath_(gust_.size()),
         flutter_now_(gust_.size()),
         out_(gust_.size()),
         first_(gust_.size()),
@@ -307,6 +324,7 @@ class Curtain final : public Scene {
       side_.push_back(kSideForce + (1.0 - kSideForce) * std::sin(kPi * std::clamp(cloth_.across(i), 0.0, 1.0)));
     }
     gust_places_ = gust_noise_.places(x_m, z_m);
+    breath_places_ = breath_noise_.places(x_m, z_m);
     hem_places_ = hem_noise_.places(x_m, z_m);
     for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
       const double left = 1.0 - cloth_.along(link);
@@ -342,12 +360,12 @@ class Curtain final : public Scene {
 
   SceneWind wind_;
   ClothStrength strength_;
-  ClothNoise gust_noise_, hem_noise_;
+  ClothNoise gust_noise_, breath_noise_, hem_noise_;
   Cloth cloth_;
-  CarriedPlaces gust_places_, hem_places_;
-  std::vector<float> gust_, flutter_now_;  ///< each knot column's, like the next
-  std::vector<float> out_;                 ///< how far it is blown out: a tangent
-  std::vector<double> side_;               ///< its part of the wind's force
+  CarriedPlaces gust_places_, breath_places_, hem_places_;
+  std::vector<float> gust_, breath_, flutter_now_;  ///< each knot column's, like the next
+  std::vector<float> out_;                          ///< how far it is blown out: a tangent
+  std::vector<double> side_;                        ///< its part of the wind's force
   std::vector<ClothSwing> first_, second_;
   ClothSwing sideways_;
   std::vector<float> still_;

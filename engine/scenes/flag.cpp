@@ -32,6 +32,10 @@
 // 3 m/s for light nylon of 0.07 kg/m2 with the C_D of 0.12 of a fluttering flag (Munson and others, Fundamentals of
 // fluid mechanics). It comes and goes as a damped oscillator, so that the flag sinks in a lull and rises with a gust.
 //
+// It hangs from the upper hoist corner: tension runs from there to the lower fly corner, and folds lie along it. So
+// fronts of the waves lean: the lower, the later. At the free corners of the fly nothing holds the cloth: waves turn it
+// farther there, and it curls, the lower corner more.
+//
 // Row 0 is the hoist, from top to bottom. At rest the flag hangs limp beside its pole, for so does a real one when
 // there is no wind: each thread nearly straight down from where it is fixed, out toward the scene's north by `droop`.
 // It is lifted as a hanging thing is that the wind blows against; and since a limp flag may swing to any side, a wind
@@ -39,10 +43,11 @@
 //
 // The bound of largest_joint_step_m. A link's lean is l = tan(lift / 2) downwind, turned by the wave's angle psi. l is
 // an oscillator that a vector of length 1 at most drives: it is never longer than G = largest_gain and changes by at
-// most R = largest_rate a second (oscillator_job.hpp). psi is A S g n: n changes by at most d_n a tick
-// (ClothNoise::largest_change, carried at no more than the fastest), S by d_S (ClothStrength), and S, g are 1 at most.
+// most R = largest_rate a second (oscillator_job.hpp). psi is A S g c n: n changes by at most d_n a tick
+// (ClothNoise::largest_change, carried at no more than the fastest), S by d_S (ClothStrength), and S, g are 1 at most,
+// and c, of the curl, 1 + kLowerCurl.
 // What is kept of the rest lean is cos^2(lift), which changes by at most 2 a unit of l. So a lean changes by at most
-//   R dt (1 + 2 rest) + G A (d_n + 2.2 d_S).
+//   R dt (1 + 2 rest) + G A (1 + kLowerCurl) (d_n + 2.2 d_S).
 
 namespace yuragi::scenes {
 namespace {
@@ -82,6 +87,15 @@ constexpr double kFlagEdgeBegins = 0.6;
 /// How much the noise changes from the top to the bottom, against its change along the flag: a wave's front goes from
 /// top to bottom nearly straight.
 constexpr double kHeightOnNoise = 0.3;
+
+/// How far the waves' fronts lean from the hoist: the tangent, which makes 35 degrees of the cloth.
+constexpr double kFoldSlant = 0.7;
+
+/// How much farther the waves turn the cloth at the lower fly corner and at the upper, of what they do beside it, and
+/// where along the flag that begins.
+constexpr double kLowerCurl = 0.9;
+constexpr double kUpperCurl = 0.45;
+constexpr double kCurlBegins = 0.72;
 
 /// In the longest; the edge's shortest waves then have five.
 constexpr double kKnotsAWave = 32.0;
@@ -185,8 +199,8 @@ class Flag final : public Scene {
                               edge_flutter_ * edge_waves_.largest_change(kFastestWave_m_s, dt_s) +
                               (1.0 + edge_flutter_) * ClothNoise::kLargest * ClothStrength::largest_step(dt_s);
     const double longest = operators::OscillatorStep::largest_gain(kFlagLiftDamping);
-    return cloth_.largest_joint_step_m(dt_s,
-                                       lift_step * (1.0 + 2.0 * longest_rest_) + longest * flutter_rad_ * noise_step);
+    return cloth_.largest_joint_step_m(
+        dt_s, lift_step * (1.0 + 2.0 * longest_rest_) + longest * (1.0 + kLowerCurl) * flutter_rad_ * noise_step);
   }
 
   void shift(const wind::ground::GroundWind& wind, double dt_s) noexcept override {
@@ -227,7 +241,9 @@ class Flag final : public Scene {
       if (link >= edge_begins) {
         const std::size_t row = link - edge_begins;
         const std::span<const float> edge_wave = edge_waves_.values().subspan(row * stride, stride);
-        for (std::size_t i = 0; i < stride; ++i) angle_rad_[i] += edge_rad_[row] * strength * edge_wave[i];
+        for (std::size_t i = 0; i < stride; ++i) {
+          angle_rad_[i] = (angle_rad_[i] + edge_rad_[row] * strength * edge_wave[i]) * (1.0F + curl_[row] * corner_[i]);
+        }
       }
       float* const lean_east = lean.data() + link * 2 * stride;
       float* const lean_south = lean_east + stride;
@@ -279,15 +295,28 @@ class Flag final : public Scene {
                setup.seed ^ math::stream_id("flag noise"), setup.row),
         edge_waves_(kFlagEdgeWaves * settings.wave_length_m / kFlagBand, kFlagEdgeWaves * settings.wave_length_m,
                     wave_grid(settings, kFlagEdgeBegins), setup.seed ^ math::stream_id("flag edge noise"), setup.row),
+        corner_(corners(cloth_)),
         angle_rad_(cloth_.knots().stride),
         gusts_(cloth_.knots().stride) {
     for (std::size_t link = 0; link < cloth_.knots().links; ++link) {
       const double along = cloth_.along(link);
       wave_rad_.push_back(static_cast<float>(flutter_rad_ * std::pow(along, settings.growth)));
       if (along < kFlagEdgeBegins) continue;
+      const double curled = std::max(along - kCurlBegins, 0.0) / (1.0 - kCurlBegins);
+      curl_.push_back(static_cast<float>(curled * curled));
       edge_rad_.push_back(
           static_cast<float>(flutter_rad_ * edge_flutter_ * (along - kFlagEdgeBegins) / (1.0 - kFlagEdgeBegins)));
     }
+  }
+
+  /// How much each knot column curls at the fly: the lower corner and the upper.
+  static std::vector<float> corners(const Cloth& cloth) {
+    std::vector<float> curl;
+    for (std::size_t i = 0; i < cloth.knots().stride; ++i) {
+      const double beside = 2.0 * std::clamp(cloth.across(i), 0.0, 1.0) - 1.0;
+      curl.push_back(static_cast<float>((beside > 0.0 ? kLowerCurl : kUpperCurl) * beside * beside));
+    }
+    return curl;
   }
 
   /// How far below the top each knot column is, as the noise reads it.
@@ -307,7 +336,8 @@ class Flag final : public Scene {
     return {.first_m = cloth_.along(first) * length_m,
             .step_m = length_m / static_cast<double>(cloth_.knots().links),
             .rows = cloth_.knots().links - first,
-            .across_m = down_m_};
+            .across_m = down_m_,
+            .slant = kFoldSlant / kHeightOnNoise};
   }
 
   double half_lift_speed_m_s_;
@@ -325,6 +355,7 @@ class Flag final : public Scene {
   std::vector<float> down_m_;
   ClothWaves waves_, edge_waves_;           ///< of all knots, and of those near the fly
   std::vector<float> wave_rad_, edge_rad_;  ///< each knot link's, of waves of height 1 at full strength
+  std::vector<float> corner_, curl_;        ///< of each knot column, and of each of the links near the fly
   std::vector<float> angle_rad_;
   std::vector<float> gusts_;
 };

@@ -10,19 +10,19 @@
 #include "tests/answer/spectra.hpp"
 
 // A nobori: its cross-arm turns with the wind as a vane does, which turns by 0.8 of the turbulence intensity, rad;
-// waves run down its free side, carried as those of a flag are. No measurement of a nobori is known: the other bounds
-// are what looks right.
+// waves run down its free side, carried as those of a flag are. Its lower end, which loops hold alone, goes the
+// farthest, and is seen to go in a breeze. No measurement of a nobori is known: the other bounds are what looks right.
 
 namespace yuragi::answer {
 namespace {
 
 constexpr std::array kBannerBounds = {
     Bound{"arm against the wind of 3 s, rms", "deg", 1, {{kAny, at_most(15), at_most(12), at_most(12)}}},
-    Bound{"free corner across, sd / width", "", 3, {{at_most(0.03), {0.06, 0.17}, {0.10, 0.24}, {0.12, 0.26}}}},
+    Bound{"free corner across, sd / width", "", 3, {{at_most(0.03), {0.12, 0.24}, {0.14, 0.26}, {0.16, 0.28}}}},
     Bound{"free edge > 0.3 Hz, centroid", "Hz", 2, {{kAny, {1.0, 2.0}, {2.1, 4.1}, {3.4, 6.5}}}},
     Bound{"phase speed / U", "", 2, {{kAny, {0.4, 0.75}, {0.4, 0.75}, {0.4, 0.75}}}},
     Bound{"correlation at that lag", "", 2, {}},
-    Bound{"growth: mid height over the bottom", "", 2, {{kAny, {0.6, 1.3}, {0.6, 1.3}, {0.6, 1.3}}}},
+    Bound{"growth: mid height over the bottom", "", 2, {{kAny, {0.45, 1}, {0.45, 1}, {0.45, 1}}}},
     Bound{"free corner, speed", "m/s", 2, {}},
     Bound{"free corner, speed / the number before", "", 2, {{kAny, at_least(2), at_least(1.2), at_least(1)}}},
 };

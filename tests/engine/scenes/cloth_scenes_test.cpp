@@ -293,6 +293,83 @@ TEST(ClothSceneTest, CurtainAndFlagHaveThePapers30000Joints) {
   }
 }
 
+/// How far a flag's links are turned from the hoist to the fly, seen from above, from downwind (toward south).
+double turn_rad(const Scene& scene, std::size_t column, std::size_t row) {
+  const Place way = place_at(scene, column, row + 1) - place_at(scene, column, row);
+  return std::atan2(way.x, way.z);
+}
+
+TEST(FlagTest, ItsFoldsLieAlongTheTensionFromTheUpperHoistCorner) {
+  // The structure tensor of the turns over the cloth as it lies flat: across the folds is its larger axis.
+  const auto scene = cloth(kFlagScene);
+  const pose::GridSkeleton& grid = grid_of(*scene);
+  const double along_m = 1.8 / static_cast<double>(grid.rows - 1);
+  const double down_m = 1.2 / static_cast<double>(grid.columns - 1);
+  for (const double speed_m_s : {6.0, 12.0}) {
+    double xx = 0.0, xy = 0.0, yy = 0.0;
+    for (int moment = 0; moment < 60; ++moment) {
+      blow_on(*scene, cloth_wind(180.0, speed_m_s), 10);
+      for (std::size_t row = grid.rows / 3; row + 12 < grid.rows; row += 5) {
+        for (std::size_t column = 0; column + 10 < grid.columns; column += 7) {
+          const double turn = turn_rad(*scene, column, row);
+          const double x = (turn_rad(*scene, column, row + 5) - turn) / (5.0 * along_m);
+          const double y = (turn_rad(*scene, column + 10, row) - turn) / (10.0 * down_m);
+          if (std::abs(x) > 20.0 || std::abs(y) > 20.0) continue;  // it has turned about
+          xx += x * x;
+          xy += x * y;
+          yy += y * y;
+        }
+      }
+    }
+    // Of the folds to the hoist; above 0 they go down toward the fly.
+    const double lean_deg = -0.5 * std::atan2(2.0 * xy, xx - yy) / kRadPerDeg;
+    EXPECT_GT(lean_deg, 15.0) << speed_m_s;
+    EXPECT_LT(lean_deg, 60.0) << speed_m_s;
+  }
+}
+
+TEST(FlagTest, TheFlysCornersCurl) {
+  const auto scene = cloth(kFlagScene);
+  const pose::GridSkeleton& grid = grid_of(*scene);
+  double lower = 0.0, upper = 0.0, middle = 0.0;
+  for (int moment = 0; moment < 600; ++moment) {
+    blow_on(*scene, cloth_wind(180.0, 9.0), 3);
+    // Over the last sixth of the way to the fly.
+    const auto curl_rad = [&](std::size_t column) {
+      const double turn = turn_rad(*scene, column, grid.rows - 2) - turn_rad(*scene, column, grid.rows * 5 / 6);
+      return std::remainder(turn, 2.0 * kPi);
+    };
+    lower += std::pow(curl_rad(grid.columns - 1), 2);
+    upper += std::pow(curl_rad(0), 2);
+    middle += std::pow(curl_rad(grid.columns / 2), 2);
+  }
+  EXPECT_GT(lower, 1.5 * middle);
+  EXPECT_GT(upper, 1.1 * middle);
+  EXPECT_GT(lower, upper);
+}
+
+/// The root of the mean square of a number's distance from its mean, over so many ticks of a steady wind.
+template <typename Number>
+double deviation_in(Scene& scene, wind::WindVector wind, int ticks, Number number) {
+  double sum = 0.0, square = 0.0;
+  for (int tick = 0; tick < ticks; ++tick) {
+    scene.tick(wind, kClothTick_s);
+    const double value = number();
+    sum += value / ticks;
+    square += value * value / ticks;
+  }
+  return std::sqrt(square - sum * sum);
+}
+
+TEST(BannerTest, ItsLowerEndSwingsInABreeze) {
+  const auto scene = cloth(kBannerScene);
+  const pose::GridSkeleton& grid = grid_of(*scene);
+  const wind::WindVector wind = cloth_wind(90.0, 4.0);  // along its arm
+  blow_on(*scene, wind, 300);
+  EXPECT_GT(deviation_in(*scene, wind, 1800, [&] { return offset_at(*scene, grid.columns - 1, grid.rows - 1).z; }),
+            0.09);
+}
+
 TEST(CurtainTest, AWindAlongTheCurtainRunsAlongIt) {
   const auto scene = cloth(kCurtainScene, {{"wave_speed", 0.5}});
   const pose::GridSkeleton& grid = grid_of(*scene);
@@ -329,6 +406,15 @@ TEST(CurtainTest, TheWindHoldsItWhereItsForceAndItsWeightAre) {
   EXPECT_NEAR(first.z / -first.y, 0.8, 0.03);
   EXPECT_LT(last.z / -last.y, 0.1);
   EXPECT_GT(hem_m(*scene), 1.0);
+}
+
+TEST(CurtainTest, BreathesInASteadyBreeze) {
+  for (const double speed_m_s : {2.0, 3.0, 4.0}) {
+    const auto scene = cloth(kCurtainScene);
+    blow_on(*scene, cloth_wind(180.0, speed_m_s), 600);
+    const double breath_m = deviation_in(*scene, cloth_wind(180.0, speed_m_s), 3600, [&] { return hem_m(*scene); });
+    EXPECT_GT(breath_m, 0.03 * speed_m_s) << speed_m_s;
+  }
 }
 
 TEST(CurtainTest, SwingsOnAsAHangingChainDoes) {
