@@ -82,7 +82,7 @@ constexpr double kHemWaves = 0.6;
 /// much they fill it at most, over what bulges do: where its flutter is a third of a storm's.
 constexpr double kBreathWaves = 3.0;
 constexpr double kBreathBand = 2.0;
-constexpr double kBreath = 3.0;
+constexpr double kBreath = 4.0;
 
 /// Of a hanging chain: its first frequency over sqrt(g / L) / 2 pi (half the first zero of the Bessel function J0), and
 /// the second over the first. How much of a column's swing is in the second.

@@ -413,7 +413,7 @@ TEST(CurtainTest, BreathesInASteadyBreeze) {
     const auto scene = cloth(kCurtainScene);
     blow_on(*scene, cloth_wind(180.0, speed_m_s), 600);
     const double breath_m = deviation_in(*scene, cloth_wind(180.0, speed_m_s), 3600, [&] { return hem_m(*scene); });
-    EXPECT_GT(breath_m, 0.03 * speed_m_s) << speed_m_s;
+    EXPECT_GT(breath_m, 0.06 * speed_m_s) << speed_m_s;
   }
 }
 

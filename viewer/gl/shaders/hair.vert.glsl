@@ -88,11 +88,10 @@ void main() {
   float distance_m = length(to_eye);
   to_eye /= distance_m;
 
-  // A hair that points at the eye would be a dot, with skin around it: it curves aside, and looks thicker.
+  // A hair that points at the eye would be a dot, with skin around it: it hangs down, as all of them there, and looks
+  // thicker.
   float end_on = smoothstep(0.60, 0.97, abs(dot(along, to_eye)));
-  vec3 curves_to = cross(along, vec3(0.31, 0.17, 0.93));
-  float curve_turn = 1.6 + 2.2 * (other - 0.5);
-  curves_to = normalize(curves_to * cos(curve_turn) + cross(along, curves_to) * sin(curve_turn));
+  vec3 curves_to = normalize(cross(cross(along, vec3(0.0, -1.0, 0.0)), along) + 0.5 * (other - 0.5) * aside + vec3(0.0, -1e-4, 0.0));
   place += curves_to * (0.42 * end_on * t * t * length_m);
   along = normalize(along + curves_to * (0.84 * end_on * t));
 
@@ -118,11 +117,12 @@ void main() {
 
   // How deep in the coat it is, and how far the light comes to it there: less from low above the skin.
   float sun_up = dot(out_of_body, to_sun.xyz);
-  float deep = (1.0 - t * mix(0.8, 1.0, longer)) * (is_guard ? 0.85 : 1.0);
-  float lit = smoothstep(-0.30, 0.35, sun_up) * exp(-1.15 * deep / (0.35 + max(sun_up, 0.0)));
+  // Where the coat is open the light comes farther down.
+  float deep = (1.0 - t * mix(0.8, 1.0, longer)) * (is_guard ? 0.85 : 1.0) * (1.0 - 0.45 * parted);
+  float lit = smoothstep(-0.30, 0.35, sun_up) * exp(-1.9 * deep / (0.35 + max(sun_up, 0.0)));
   float sun_through = below_clouds(own_root);  // clouds
   lit *= sun_through * mix(0.2, 1.0, sunlight_near(own_root + 0.15 * out_of_body));
-  float open_sky = 0.42 + 0.66 * (1.0 - deep) * (1.0 - deep) + 0.15 * (1.0 - deep);
+  float open_sky = 0.16 + 0.80 * (1.0 - deep) * (1.0 - deep) + 0.27 * (1.0 - deep);
 
   float along_sun = dot(along, to_sun.xyz);
   float across_sun = sqrt(max(1.0 - along_sun * along_sun, 0.0));

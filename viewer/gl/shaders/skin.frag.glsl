@@ -11,7 +11,7 @@ void main() {
   vec3 albedo = mix(vec3(0.34, 0.215, 0.120), vec3(0.54, 0.385, 0.240), wool);
   float lit = below_clouds(place_m) * mix(0.25, 1.0, sunlight_near(place_m + 0.14 * facing)) * smoothstep(-0.1, 0.6, dot(facing, to_sun.xyz));
   // What comes down to it has been dimmed and coloured by hairs, as at their roots.
-  vec3 light = albedo * (vec3(0.70, 0.56, 0.43) * soft_light(facing) + vec3(0.44, 0.41, 0.37) * sun_light.rgb * lit);
+  vec3 light = albedo * (vec3(0.42, 0.32, 0.23) * soft_light(facing) + vec3(0.28, 0.25, 0.21) * sun_light.rgb * lit);
   light += 0.5 * albedo * fire_light(place_m, facing);
   color = vec4(seen(light, place_m), 1.0);
 }
