@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
+
+#include <glm/geometric.hpp>
 
 #include "viewer/gl/noise_texture.hpp"
 #include "viewer/gl/shaders.hpp"
@@ -17,7 +20,7 @@ constexpr float kGlowPerHeight = 1.15F;  // the glow's radius
 
 // Of a flame as thick as its radius, in Light's unit: a wood fire is about as bright as a third of white paper in the
 // sun.
-constexpr float kBodyBrightness = 1.6F;
+constexpr float kBodyBrightness = 0.30F;
 constexpr float kSheetBrightness = 2.2F;
 constexpr float kEmbersBrightness = 1.0F;
 constexpr glm::vec3 kGlow{0.050F, 0.017F, 0.004F};
@@ -25,14 +28,10 @@ constexpr glm::vec3 kGlow{0.050F, 0.017F, 0.004F};
 constexpr glm::vec3 kFireLight{0.95F, 0.43F, 0.13F};
 constexpr float kUsualHeat = 0.42F;  // of all points, on average
 
-// Gas rises by so much of sqrt(g h) where most of the flame is (B. McCaffrey 1979, "Purely buoyant diffusion flames").
-// Shown at this part of that, so that no more than three tongues in a second pass a place (WCAG 2.3.1), and with a pose
-// that follows the streamed one within kFollowing_s: flame_flash_test.cpp.
-constexpr double kRise = 0.73;
-constexpr double kShownRise = 0.36;
+// The shown axis follows the streamed one within this time, so that a place does not flash (WCAG 2.3.1):
+// flame_flash_test.cpp.
 constexpr double kFollowing_s = 0.65;
 constexpr double kJump_s = 1.0;
-constexpr double kGravity_m_s2 = 9.81;
 
 constexpr int kStepsLow = 16, kStepsMedium = 20, kStepsHigh = 28;
 
@@ -97,13 +96,15 @@ FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface, look::Quality
   height_m_ = std::max(size_m.y, 0.01F);
   width_m_ = std::max({volume_.is_empty() ? 0.0F : 2.0F * volume_.thickest_m(), 0.02F});
   hot_middle_m_ = (bounds.low_m + bounds.high_m) / 2.0F;
-  if (volume_.is_empty()) {
+  if (!volume_.is_empty()) {
+    gas_.emplace(volume_);
+  } else {
     points_.emplace(surface);
     sheet_.emplace(meshes::layout_of(surface));
     width_m_ = std::max(0.3F * std::max(size_m.x, size_m.z), 0.02F);
   }
 
-  for (const auto& [name, unit] : {std::pair<const char*, GLint>{"heat_tile", 0},
+  for (const auto& [name, unit] : {std::pair<const char*, GLint>{"gas_tile", 0},
                                    {"layer_rows", gl::kFlameRowsUnit},
                                    {"noise_tile", gl::kFlameNoiseUnit},
                                    {"ramp", gl::kFlameRampUnit}}) {
@@ -117,6 +118,7 @@ FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface, look::Quality
   const float floor_m = bowl_.embers_m.y;
   glUniform2f(glGetUniformLocation(fire_program_.name(), "floor_m"), floor_m - 0.06F * width_m_,
               floor_m + 0.20F * width_m_);
+  glUniform1f(glGetUniformLocation(fire_program_.name(), "reach"), meshes::FlameVolume::kReach);
   risen_place_ = glGetUniformLocation(fire_program_.name(), "risen");
   fire_brightness_place_ = glGetUniformLocation(fire_program_.name(), "brightness");
   spark_brightness_place_ = glGetUniformLocation(spark_program_.name(), "brightness");
@@ -133,7 +135,7 @@ FlameRenderer::FlameRenderer(const pose::SurfaceSkeleton& surface, look::Quality
   embers_brightness_place_ = glGetUniformLocation(embers_program_.name(), "brightness");
   embers_breath_place_ = glGetUniformLocation(embers_program_.name(), "breath");
 
-  glBindTexture(GL_TEXTURE_3D, heat_tile_.name());
+  glBindTexture(GL_TEXTURE_3D, gas_tile_.name());
   filter_linearly(GL_TEXTURE_3D);
   glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
   filter_linearly(GL_TEXTURE_2D);
@@ -155,20 +157,30 @@ void FlameRenderer::move_to(const pose::Pose& pose) {
     move_sheet(burning);
   } else {
     const double passed_s = std::abs(moment_.time_s - moved_at_s_);
+    if (passed_s == 0.0 && burning.heat == streamed_heat_) return;  // the same picture again
     // Another moment at the same time is of another stream, or a test: it is taken as it is.
     const double share = passed_s > 0.0 && passed_s < kJump_s ? 1.0 - std::exp(-passed_s / kFollowing_s) : 1.0;
     volume_.move_to(*surface_, burning, static_cast<float>(share));
     moved_at_s_ = moment_.time_s;
+    const auto wind_m_s = static_cast<double>(glm::length(moment_.wind_m_s));
+    if (passed_s > 0.0) {
+      gas_->advance_to(moment_.time_s, wind_m_s, volume_);
+    } else {
+      gas_->settle_at(moment_.time_s, wind_m_s, volume_);
+    }
+    streamed_heat_.assign(burning.heat.begin(), burning.heat.end());
+    volume_.wrap(gas_->extents());
     sparks_.move_to(moment_.time_s, moment_.wind_m_s, volume_);
     heat_ = volume_.mean_heat();
     hot_middle_m_ = volume_.hot_middle_m();
 
-    const auto layers = static_cast<GLsizei>(volume_.layers());
-    constexpr auto across = static_cast<GLsizei>(meshes::FlameVolume::kAcross);
+    const auto layers = static_cast<GLsizei>(volume_.layer_rows().size());
+    constexpr auto across = static_cast<GLsizei>(FlameGas::kAcross);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glBindTexture(GL_TEXTURE_3D, heat_tile_.name());
-    glTexImage3D(GL_TEXTURE_3D, 0, GL_R8, across, across, layers, 0, GL_RED, GL_UNSIGNED_BYTE, volume_.heat().data());
-    gl::count_upload(volume_.heat().size_bytes());
+    glBindTexture(GL_TEXTURE_3D, gas_tile_.name());
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_RG8, across, across, GLsizei{FlameGas::kLayers}, 0, GL_RG, GL_UNSIGNED_BYTE,
+                 gas_->texels().data());
+    gl::count_upload(gas_->texels().size_bytes());
     glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 2, layers, 0, GL_RGBA, GL_FLOAT, volume_.layer_rows().data());
     gl::count_upload(volume_.layer_rows().size_bytes());
@@ -289,16 +301,13 @@ void FlameRenderer::draw_embers() {
 }
 
 void FlameRenderer::draw_body() {
-  // The noises rise as the gas does, one faster than the other; the shader has 0.10 and 0.16 tiles over the height.
-  const double rise_per_s = kShownRise * kRise * std::sqrt(kGravity_m_s2 / static_cast<double>(height_m_));
   glUseProgram(fire_program_.name());
-  glUniform2f(risen_place_, part_of(0.10 * rise_per_s * moment_.time_s),
-              part_of(0.16 * 1.2 * rise_per_s * moment_.time_s));
+  glUniform1f(risen_place_, static_cast<float>(gas_->risen()));
   glUniform1f(fire_brightness_place_, kBodyBrightness * moment_.flame_brightness);
   glActiveTexture(GL_TEXTURE0 + gl::kFlameRowsUnit);
   glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_3D, heat_tile_.name());
+  glBindTexture(GL_TEXTURE_3D, gas_tile_.name());
   glBindVertexArray(hull_array_.name());
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glEnable(GL_CULL_FACE);

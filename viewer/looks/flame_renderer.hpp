@@ -1,9 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "engine/look/look.hpp"
 #include "engine/pose/point_kinematics.hpp"
+#include "viewer/looks/flame_gas.hpp"
 #include "viewer/looks/grid_sheet.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/solids.hpp"
@@ -13,7 +15,7 @@
 
 namespace yuragi::viewer::looks {
 
-/// Draws a surface that burns, over a bowl: a closed one as a body of gas (FlameVolume) with sparks, a flat one as a
+/// Draws a surface that burns, over a bowl: a closed one as burning gas (FlameGas) with sparks, a flat one as a
 /// sheet. Its colours are those of the skeleton's ramp. Light is added to what is behind it as the tone curve nearly
 /// does (1 - (1 - a) (1 - b)), so that it is pale by day and glows by night.
 class FlameRenderer : public SceneRenderer {
@@ -55,11 +57,13 @@ class FlameRenderer : public SceneRenderer {
 
   // A body of gas.
   meshes::FlameVolume volume_;
+  std::optional<FlameGas> gas_;
   meshes::Sparks sparks_;
+  std::vector<float> streamed_heat_;
   double moved_at_s_ = -1e9;
   int steps_;
   gl::GlProgram fire_program_, spark_program_;
-  gl::GlTexture heat_tile_, layer_rows_;
+  gl::GlTexture gas_tile_, layer_rows_;
   gl::GlBuffer hull_buffer_, hull_indices_, spark_buffer_;
   gl::GlVertexArray hull_array_, spark_array_;
   GLint risen_place_ = -1, fire_brightness_place_ = -1, spark_brightness_place_ = -1;

@@ -16,7 +16,7 @@ constexpr float kRoom = 1.45F;
 /// Outside of its outermost shell the heat falls to nothing over this part of the radius.
 constexpr float kSoftEdge = 0.40F;
 /// No layer is thinner than this part of the thickest: where the body ends its tongues do, of their own.
-constexpr float kThinnest = 0.42F;
+constexpr float kThinnest = 0.66F;
 constexpr float kLeastRadius_m = 1e-3F;
 constexpr float kTurn_rad = static_cast<float>(2.0 * kPi);
 
@@ -28,8 +28,8 @@ FlameVolume::FlameVolume(const pose::SurfaceSkeleton& surface) {
   around_ = surface.columns / shells_;
   rows_count_ = surface.rows;
   layers_ = std::min(rows_count_, kMostLayers);
-  rows_.resize(layers_);
-  middles_m_.resize(layers_);
+  rows_.resize(static_cast<std::size_t>(std::lrint(kReach * static_cast<float>(layers_ - 1))) + 1);
+  middles_m_.resize(rows_.size());
   heat_.assign(kAcross * kAcross * layers_, 0);
   radius_.resize(surface.columns * layers_);
   hot_.resize(surface.columns * layers_);
@@ -51,12 +51,14 @@ FlameVolume::FlameVolume(const pose::SurfaceSkeleton& surface) {
     if (radii_m[layer] > radii_m[thickest]) thickest = layer;
   }
   thickest_m_ = radii_m[thickest];
-  height_m_ = middles_m_.back().y - middles_m_.front().y;
+  height_m_ = middles_m_[layers_ - 1].y - middles_m_.front().y;
   for (std::size_t layer = 0; layer < layers_; ++layer) {
     const float v = static_cast<float>(layer) / static_cast<float>(layers_ - 1);
     const float least_m = kThinnest * thickest_m_ * std::min(1.0F, 0.3F + 4.0F * v);
     rows_[layer].half_m = kRoom * std::max({radii_m[layer], least_m, kLeastRadius_m});
   }
+
+  for (std::size_t layer = layers_; layer < rows_.size(); ++layer) rows_[layer].half_m = rows_[layers_ - 1].half_m;
 
   // Where the columns stand around the middle, and the shells within one another.
   const std::size_t row = row_of(thickest) * surface.columns;
@@ -106,8 +108,8 @@ std::size_t FlameVolume::row_of(std::size_t layer) const {
 }
 
 glm::vec3 FlameVolume::place_m(float east_m, float south_m, float v) const {
-  const float at = std::clamp(v, 0.0F, 1.0F) * static_cast<float>(layers_ - 1);
-  const std::size_t layer = std::min(static_cast<std::size_t>(at), layers_ - 2);
+  const float at = std::clamp(v * static_cast<float>(layers_ - 1), 0.0F, static_cast<float>(rows_.size() - 1));
+  const std::size_t layer = std::min(static_cast<std::size_t>(at), rows_.size() - 2);
   const float part = at - static_cast<float>(layer);
   const auto between = [part](const auto& a, const auto& b) { return a + part * (b - a); };
   const Layer& below = rows_[layer];
@@ -194,34 +196,64 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
     }
   }
   mean_heat_ = static_cast<float>(heat / static_cast<double>(layers_ * surface.columns));
-  hot_middle_m_ = heat > 0.0 ? glm::vec3(hot_m / heat) : (middles_m_.front() + middles_m_.back()) / 2.0F;
+  hot_middle_m_ = heat > 0.0 ? glm::vec3(hot_m / heat) : (middles_m_.front() + middles_m_[layers_ - 1]) / 2.0F;
+
+  // Above the top it goes on as it does over the last quarter.
+  const std::size_t last = layers_ - 1;
+  const std::size_t quarter = std::max<std::size_t>(last / 4, 1);
+  const glm::vec3 goes_on_m = (middles_m_[last] - middles_m_[last - quarter]) / static_cast<float>(quarter);
+  for (std::size_t layer = layers_; layer < rows_.size(); ++layer) {
+    middles_m_[layer] = middles_m_[layer - 1] + goes_on_m;
+    rows_[layer].slope_east = rows_[last].slope_east;
+    rows_[layer].slope_south = rows_[last].slope_south;
+  }
 
   const auto layers = static_cast<float>(layers_ - 1);
-  for (std::size_t layer = 0; layer < layers_; ++layer) {
+  for (std::size_t layer = 0; layer < rows_.size(); ++layer) {
     const std::size_t below = layer == 0 ? 0 : layer - 1;
-    const std::size_t above = std::min(layer + 1, layers_ - 1);
+    const std::size_t above = std::min(layer + 1, rows_.size() - 1);
     const float per_v = layers / static_cast<float>(above - below);
     rows_[layer].to_top_m = per_v * (middles_m_[above] - middles_m_[below]);
     rows_[layer].slope_east_grows = per_v * (rows_[above].slope_east - rows_[below].slope_east);
     rows_[layer].slope_south_grows = per_v * (rows_[above].slope_south - rows_[below].slope_south);
   }
+  wrap_to(kReach, {});
+}
 
+void FlameVolume::wrap(std::span<const float> extents) {
+  std::size_t top = extents.size();
+  while (top > 1 && extents[top - 1] <= 0.0F) --top;
+  if (is_empty() || top < 2) return;
+  wrap_to(std::min(kReach, kReach * static_cast<float>(top) / static_cast<float>(extents.size() - 1)), extents);
+}
+
+void FlameVolume::wrap_to(float top_v, std::span<const float> extents) {
   // Its corners stand out so far that its sides do not cut the layers.
   const float out = 1.0F / std::cos(0.5F * kTurn_rad / static_cast<float>(kHullSides));
   const auto put = [&](HullVertex& vertex, float east_m, float south_m, float v) {
     vertex = {place_m(east_m, south_m, v), {east_m, south_m, v}};
   };
+  const float ring_v = top_v / static_cast<float>(kHullRings - 1);
+  // The widest of what is nearer than the next rings.
+  const auto extent_at = [&](float v) {
+    if (extents.empty()) return 1.0F;
+    const float per_v = static_cast<float>(extents.size() - 1) / kReach;
+    const auto from = static_cast<std::size_t>(std::max(std::floor((v - ring_v) * per_v), 0.0F));
+    const auto to = std::min(static_cast<std::size_t>(std::ceil((v + ring_v) * per_v)), extents.size() - 1);
+    return *std::max_element(extents.begin() + static_cast<std::ptrdiff_t>(std::min(from, to)),
+                             extents.begin() + static_cast<std::ptrdiff_t>(to) + 1);
+  };
   for (std::size_t ring = 0; ring < kHullRings; ++ring) {
-    const float v = static_cast<float>(ring) / static_cast<float>(kHullRings - 1);
-    const auto at = static_cast<std::size_t>(std::lrint(v * layers));
-    const float half_m = out * rows_[at].half_m;
+    const float v = ring_v * static_cast<float>(ring);
+    const auto at = static_cast<std::size_t>(std::lrint(v * static_cast<float>(layers_ - 1)));
+    const float half_m = out * extent_at(v) * rows_[std::min(at, rows_.size() - 1)].half_m;
     for (std::size_t side = 0; side < kHullSides; ++side) {
       const float turn_rad = kTurn_rad * static_cast<float>(side) / static_cast<float>(kHullSides);
       put(hull_[ring * kHullSides + side], half_m * std::cos(turn_rad), half_m * std::sin(turn_rad), v);
     }
   }
   put(hull_[kHullRings * kHullSides], 0.0F, 0.0F, 0.0F);
-  put(hull_[kHullRings * kHullSides + 1], 0.0F, 0.0F, 1.0F);
+  put(hull_[kHullRings * kHullSides + 1], 0.0F, 0.0F, top_v);
 }
 
 }  // namespace yuragi::viewer::meshes

@@ -15,13 +15,15 @@ namespace yuragi::viewer::meshes {
 /// well, on a box of texels that bends with the rows. Pure; allocates when it is made, never afterwards.
 ///
 /// A place in it is given by (x, z, v): metres east and south of the middle of its row, and the part of the way from
-/// the foot to the top.
+/// the foot to the top, up to kReach.
 class FlameVolume {
  public:
   static constexpr std::size_t kAcross = 24;      ///< texels from east to west, and from north to south
   static constexpr std::size_t kMostLayers = 96;  ///< rows that are more are left out evenly
   static constexpr std::size_t kHullSides = 12;
-  static constexpr std::size_t kHullRings = 17;
+  static constexpr std::size_t kHullRings = 21;
+  /// The axis goes on above the top, straight: gas that has left the flame flies there. It ends at this v.
+  static constexpr float kReach = 1.9F;
 
   /// Of a closed surface with a ramp; of any other it is empty.
   explicit FlameVolume(const pose::SurfaceSkeleton& surface);
@@ -42,15 +44,19 @@ class FlameVolume {
     float slope_east = 0.0F, slope_south = 0.0F;              ///< down, as SurfacePose has it
     float slope_east_grows = 0.0F, slope_south_grows = 0.0F;  ///< with v
   };
+  /// Of all layers up to kReach: layers() of the flame itself, and as densely those above it.
   std::span<const Layer> layer_rows() const { return rows_; }
 
-  /// A closed skin around it, for its front to be drawn.
+  /// A closed skin around it, for its front to be drawn. After move_to() it is around all that the layers cover.
   struct HullVertex {
     glm::vec3 place_m{0.0F};  ///< in the world
     glm::vec3 inside{0.0F};   ///< (x, z, v)
   };
   std::span<const HullVertex> hull() const { return hull_; }
   std::span<const std::uint16_t> hull_indices() const { return indices_; }
+  /// Draws the skin in to the parts of the layers' half sides that are given, evenly from the foot to kReach; those of
+  /// 0 at the end are left out.
+  void wrap(std::span<const float> extents);
 
   /// The place in the world of (x, z, v).
   glm::vec3 place_m(float east_m, float south_m, float v) const;
@@ -62,6 +68,8 @@ class FlameVolume {
 
  private:
   std::size_t row_of(std::size_t layer) const;
+
+  void wrap_to(float top_v, std::span<const float> extents);
 
   std::size_t layers_ = 0, rows_count_ = 0, shells_ = 0, around_ = 0;
   float height_m_ = 0.0F, thickest_m_ = 0.0F, mean_heat_ = 0.0F;

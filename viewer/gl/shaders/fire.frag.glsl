@@ -1,12 +1,13 @@
 // The body of a flame: the light of all its gas along the ray, which goes straight in the world and bends in the body, row
-// by row. The streamed heat says where it burns; noise that rises through it tears it into tongues, the more the higher.
-uniform sampler3D heat_tile;
+// by row. The gas (FlameGas) has where it burns; noise that rises with it dissolves its edges, the more the higher.
+uniform sampler3D gas_tile;    // heat, soot
 uniform sampler2D layer_rows;  // two texels a layer: FlameVolume::Layer
 uniform sampler2D noise_tile;
 uniform sampler2D ramp;        // 256 colours, sRGB, straight alpha
 uniform int steps;
+uniform float reach;           // the part of the way to the top at which the layers end
 uniform vec2 size_m;           // its radius and its height at rest
-uniform vec2 risen;            // how far both noises have, in tiles
+uniform float risen;           // how far the gas has, in heights
 uniform vec2 floor_m;          // no gas burns below the first height, nothing keeps it from burning above the second
 uniform float brightness;
 
@@ -20,13 +21,16 @@ void main() {
   float v = inside.z;
   float y_m = place_m.y;
   vec2 layers = vec2(textureSize(layer_rows, 0));
+  float gas_layers = float(textureSize(gas_tile, 0).z);
   float chance = 0.3 + 0.4 * pixel_chance(gl_FragCoord.xy);
   vec3 sum = vec3(0.0);
+  float soot = 0.0;
   bool was_inside = false;
   for (int i = 0; i < steps; ++i) {
-    float layer = clamp(v, 0.0, 1.0) * (layers.y - 1.0) + 0.5;
-    vec4 row = textureLod(layer_rows, vec2(0.25, layer / layers.y), 0.0);    // to the top; half its side
-    vec4 slope = textureLod(layer_rows, vec2(0.75, layer / layers.y), 0.0);  // east, south; how they grow
+    float part = clamp(v / reach, 0.0, 1.0);
+    float layer = (part * (layers.y - 1.0) + 0.5) / layers.y;
+    vec4 row = textureLod(layer_rows, vec2(0.25, layer), 0.0);    // to the top; half its side
+    vec4 slope = textureLod(layer_rows, vec2(0.75, layer), 0.0);  // east, south; how they grow
     // How high the body is above one point of the ground, were all of it as this layer is.
     float height_m = max(row.y + dot(slope.xy, row.xz) - dot(slope.zw, at_m), 0.2 * size_m.y);
     float up = (ray.y + dot(slope.xy, ray.xz)) / height_m;
@@ -41,32 +45,30 @@ void main() {
 
     vec2 q = at_m / row.w;
     // The ray begins on a mesh around the body, which may be a little outside of it.
-    bool is_inside = dot(q, q) < 1.2 && v > -0.01 && v < 1.01;
+    bool is_inside = dot(q, q) < 1.2 && v > -0.01 && v < reach + 0.01;
     if (was_inside && !is_inside) break;
     was_inside = is_inside;
-    float heat = is_inside ? textureLod(heat_tile, vec3(0.5 + 0.5 * q, layer / layers.y), 0.0).r : 0.0;
-    if (heat > 0.03) {
-      // Two noises at right angles to each other, drawn out along the flame: long tongues, and what tears them the higher
-      // they come; less where the wind lays them over, for what is short and bright flashes soonest.
+    vec2 gas = is_inside ? textureLod(gas_tile, vec3(0.5 + 0.5 * q, (part * (gas_layers - 1.0) + 0.5) / gas_layers), 0.0).rg
+                         : vec2(0.0);
+    if (gas.r > 0.05) {
+      // Two noises at right angles to each other, drawn out along the flame.
       vec2 across = mat2(0.8, 0.6, -0.6, 0.8) * at_m / size_m.x;
-      float one = textureLod(noise_tile, vec2(0.55 * across.x + 0.16 * across.y, 0.10 * v - risen.x), 2.5).r;
-      float two = textureLod(noise_tile, vec2(0.67 * across.y - 0.14 * across.x + 0.20 * one, 0.16 * v - risen.y), 2.5).r;
-      float torn = 3.4 * (one + two - 1.0);
-      float high = min(v * 2.2, 1.0);
-      float laid = min(length(slope.xy), 1.0);
-      // A flame that lies in the wind burns on far to the lee, where its end is torn off.
-      float level = heat - 0.26 + 0.16 * laid - (0.66 - 0.36 * laid) * smoothstep(0.20, 1.0, v) -
-                    0.9 * smoothstep(0.80, 1.0, v) + torn * (0.28 + (0.80 - 0.25 * laid) * high);
+      float one = textureLod(noise_tile, vec2(0.075 * across.x + 0.012 * across.y, 0.011 * (v - risen)), 0.5).r;
+      float two = textureLod(noise_tile, vec2(0.085 * across.y - 0.012 * across.x, 0.014 * (v - risen) + 0.01 * one), 0.5).r;
+      float torn = one + two - 1.0;
+      float high = min(v * 1.6, 1.0);
+      float level = 1.5 * (gas.r - 0.22) + torn * (0.22 + 0.95 * high);
       level -= 2.5 * smoothstep(floor_m.y, floor_m.x, y_m);
       // It burns in sheets around what is hottest.
-      float thick = smoothstep(0.0, 0.30, level) * (1.0 - 0.55 * smoothstep(0.40, 1.0, level));
-      vec4 hot = textureLod(ramp, vec2((clamp(0.29 + 0.42 * level - 0.10 * v, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
-      // The same gas in less room glows more.
-      thick *= clamp(size_m.y / height_m, 1.0, 3.0);
+      float thick = smoothstep(0.0, 0.45, level) * (1.0 - 0.2 * smoothstep(0.40, 1.0, level));
+      vec4 hot = textureLod(ramp, vec2((clamp(0.29 + 0.42 * level - 0.10 * min(v, 1.0), 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
+      // What flies off is thinner and darker: it passes a place more often than three times in a second.
+      thick *= mix(1.0, 0.28, smoothstep(0.12, 0.60, v));
       sum += hot.rgb * hot.rgb * (thick * step_m);
       // The blue of the root, where air still reaches the gas.
       sum += vec3(0.004, 0.012, 0.06) * (step_m * thick * smoothstep(0.25, 0.08, v) * smoothstep(0.5, 0.0, level));
     }
+    soot += gas.g * step_m;
     at_m += aside * step_m;
     v += up * step_m;
     y_m += ray.y * step_m;
@@ -77,5 +79,6 @@ void main() {
   // As yellow as what glows, also where the eye would see it without color in the dark.
   value.b = min(value.b, value.g * value.g * value.g / max(value.r * value.r, 1e-4));
   // Its soot holds back a part of what is behind it.
-  color = vec4(value, 0.6 * max(value.r, max(value.g, value.b)));
+  float smoke = 0.4 * (1.0 - exp(-1.5 * soot / size_m.x));
+  color = vec4(value, max(0.6 * max(value.r, max(value.g, value.b)), smoke));
 }
