@@ -175,11 +175,11 @@ void FlameRenderer::move_to(const pose::Pose& pose) {
     hot_middle_m_ = volume_.hot_middle_m();
 
     const auto layers = static_cast<GLsizei>(volume_.layer_rows().size());
-    constexpr auto across = static_cast<GLsizei>(FlameGas::kAcross);
+    constexpr auto across = static_cast<GLsizei>(meshes::FlameGas::kAcross);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glBindTexture(GL_TEXTURE_3D, gas_tile_.name());
-    glTexImage3D(GL_TEXTURE_3D, 0, GL_RG8, across, across, GLsizei{FlameGas::kLayers}, 0, GL_RG, GL_UNSIGNED_BYTE,
-                 gas_->texels().data());
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_RG8, across, across, GLsizei{meshes::FlameGas::kLayers}, 0, GL_RG,
+                 GL_UNSIGNED_BYTE, gas_->texels().data());
     gl::count_upload(gas_->texels().size_bytes());
     glBindTexture(GL_TEXTURE_2D, layer_rows_.name());
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, 2, layers, 0, GL_RGBA, GL_FLOAT, volume_.layer_rows().data());

@@ -5,11 +5,11 @@
 
 #include "engine/look/look.hpp"
 #include "engine/pose/point_kinematics.hpp"
-#include "viewer/looks/flame_gas.hpp"
 #include "viewer/looks/grid_sheet.hpp"
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/solids.hpp"
 #include "viewer/meshes/flame_bowl.hpp"
+#include "viewer/meshes/flame_gas.hpp"
 #include "viewer/meshes/flame_volume.hpp"
 #include "viewer/meshes/sparks.hpp"
 
@@ -57,7 +57,7 @@ class FlameRenderer : public SceneRenderer {
 
   // A body of gas.
   meshes::FlameVolume volume_;
-  std::optional<FlameGas> gas_;
+  std::optional<meshes::FlameGas> gas_;
   meshes::Sparks sparks_;
   std::vector<float> streamed_heat_;
   double moved_at_s_ = -1e9;

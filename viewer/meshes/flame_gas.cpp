@@ -1,4 +1,4 @@
-#include "viewer/looks/flame_gas.hpp"
+#include "viewer/meshes/flame_gas.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 
-namespace yuragi::viewer::looks {
+namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr std::size_t kLayerCells = FlameGas::kAcross * FlameGas::kAcross;
@@ -85,7 +85,7 @@ std::vector<std::array<float, 3>> potential() {
 
 }  // namespace
 
-FlameGas::FlameGas(const meshes::FlameVolume& volume)
+FlameGas::FlameGas(const FlameVolume& volume)
     : height_m_(static_cast<double>(volume.height_m())),
       width_m_(2.0 * static_cast<double>(volume.thickest_m())),
       cells_(kLayerCells * kLayers),
@@ -94,7 +94,7 @@ FlameGas::FlameGas(const meshes::FlameVolume& volume)
       eddies_(cells_.size()),
       texels_(2 * cells_.size()) {
   const double fastest_m_s = kRise * std::sqrt(kGravity_m_s2 * height_m_);
-  const double layer_m = height_m_ * static_cast<double>(meshes::FlameVolume::kReach) / (kLayers - 1);
+  const double layer_m = height_m_ * static_cast<double>(FlameVolume::kReach) / (kLayers - 1);
   double risen_s = 0.0;
   for (std::size_t layer = 0; layer < kLayers; ++layer) {
     const double v = static_cast<double>(layer) * layer_m / height_m_;
@@ -131,7 +131,7 @@ FlameGas::FlameGas(const meshes::FlameVolume& volume)
   for (Velocity& eddy : eddies_) eddy = {eddy.x * scale, eddy.z * scale, eddy.up * scale};
 }
 
-void FlameGas::settle_at(double time_s, double wind_m_s, const meshes::FlameVolume& volume) {
+void FlameGas::settle_at(double time_s, double wind_m_s, const FlameVolume& volume) {
   std::ranges::fill(cells_, Cell{});
   std::ranges::fill(shown_, Cell{});
   const auto now = static_cast<std::int64_t>(std::floor(time_s / kStep_s)) + 1;
@@ -146,7 +146,7 @@ void FlameGas::settle_at(double time_s, double wind_m_s, const meshes::FlameVolu
   write_texels(static_cast<float>(time_s / kStep_s - static_cast<double>(steps_ - 1)));
 }
 
-void FlameGas::advance_to(double time_s, double wind_m_s, const meshes::FlameVolume& volume) {
+void FlameGas::advance_to(double time_s, double wind_m_s, const FlameVolume& volume) {
   const double passed_s = time_s - time_s_;
   if (!has_begun_ || passed_s < 0.0 || passed_s > kJump_s) {
     settle_at(time_s, wind_m_s, volume);
@@ -163,7 +163,7 @@ void FlameGas::advance_to(double time_s, double wind_m_s, const meshes::FlameVol
   write_texels(static_cast<float>(time_s / kStep_s - static_cast<double>(steps_ - 1)));
 }
 
-void FlameGas::step(double time_s, double wind_m_s, const meshes::FlameVolume& volume) {
+void FlameGas::step(double time_s, double wind_m_s, const FlameVolume& volume) {
   constexpr std::size_t n = kAcross;
   constexpr float middle = 0.5F * static_cast<float>(n - 1);
   constexpr auto dt_s = static_cast<float>(kStep_s);
@@ -178,7 +178,7 @@ void FlameGas::step(double time_s, double wind_m_s, const meshes::FlameVolume& v
   const auto turned = static_cast<float>(0.9 * time_s);
   const float tilt_x = 0.7F * std::cos(turned);
   const float tilt_z = 0.7F * std::sin(turned);
-  const double layer_m = height_m_ * static_cast<double>(meshes::FlameVolume::kReach) / (kLayers - 1);
+  const double layer_m = height_m_ * static_cast<double>(FlameVolume::kReach) / (kLayers - 1);
   const double full_m_s = static_cast<double>(rise_m_s_.back()) * static_cast<double>(faster);
   risen_ = std::fmod(risen_ + full_m_s * kStep_s / height_m_, kRisenPeriod);
   carried_ = std::fmod(carried_ + full_m_s * kStep_s / layer_m, 4.0 * static_cast<double>(kLayers));
@@ -297,4 +297,4 @@ void FlameGas::write_texels(float part) {
   }
 }
 
-}  // namespace yuragi::viewer::looks
+}  // namespace yuragi::viewer::meshes

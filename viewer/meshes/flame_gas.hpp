@@ -8,7 +8,7 @@
 
 #include "viewer/meshes/flame_volume.hpp"
 
-namespace yuragi::viewer::looks {
+namespace yuragi::viewer::meshes {
 
 /// The burning gas of a flame, which remembers: the heat that the scene streams enters it at the foot, rises, is torn
 /// by eddies and by the puffs of the fire, and burns out on its way. What a puff pinches off flies on above the flame.
@@ -20,19 +20,19 @@ namespace yuragi::viewer::looks {
 /// afterwards. Thread-safe: no.
 class FlameGas {
  public:
-  static constexpr std::size_t kAcross = meshes::FlameVolume::kAcross;
+  static constexpr std::size_t kAcross = FlameVolume::kAcross;
   static constexpr std::size_t kLayers = 64;
   static constexpr double kStep_s = 1.0 / 60.0;
   static constexpr double kSettling_s = 2.5;
   static constexpr double kJump_s = 1.0;
 
   /// Of a volume that is not empty.
-  explicit FlameGas(const meshes::FlameVolume& volume);
+  explicit FlameGas(const FlameVolume& volume);
 
   /// Advances to a moment; the volume is that moment's. The wind is a speed.
-  void advance_to(double time_s, double wind_m_s, const meshes::FlameVolume& volume);
+  void advance_to(double time_s, double wind_m_s, const FlameVolume& volume);
   /// Begins anew, settled, at a moment.
-  void settle_at(double time_s, double wind_m_s, const meshes::FlameVolume& volume);
+  void settle_at(double time_s, double wind_m_s, const FlameVolume& volume);
 
   /// Layer after layer from the foot, two bytes a cell: heat and soot, 0 to 255.
   std::span<const std::uint8_t> texels() const { return texels_; }
@@ -50,7 +50,7 @@ class FlameGas {
     float x = 0.0F, z = 0.0F, up = 0.0F;
   };
 
-  void step(double time_s, double wind_m_s, const meshes::FlameVolume& volume);
+  void step(double time_s, double wind_m_s, const FlameVolume& volume);
   void write_texels(float part);
 
   double height_m_, width_m_;
@@ -65,4 +65,4 @@ class FlameGas {
   double risen_ = 0.0, carried_ = 0.0;
 };
 
-}  // namespace yuragi::viewer::looks
+}  // namespace yuragi::viewer::meshes
