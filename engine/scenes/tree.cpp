@@ -100,7 +100,7 @@ const std::array kTreeParameters = {
               {},
               "transect: of a line through the field, true to the wind; radial: of each mode, the paper's letter",
               kTreeBetaMeanings},
-    Parameter{"leaf_lean", "deg", 50.0, 0, 120,
+    Parameter{"leaf_lean", "deg", 70.0, 0, 120,
               "how far a storm turns the softest leaf (a poplar's) downwind; a cherry's by 0.8 of it"},
     Parameter{"half_lean_speed", "m/s", 8.0, 0.1, 60,
               "the wind that turns leaves half as far: high, and only storms lay them over"},

@@ -23,7 +23,9 @@ constexpr double kLargestVigour = 1.06;
 /// Leaves stand at nodes, this many from a twig's foot to its tip, a spray at 16 that follow one another. (So the
 /// joints that they grow from are few, and lie in the cache.)
 constexpr std::size_t kNodesOfATwig = 36;
-constexpr std::size_t kFirstNode = 3;
+
+/// How long a whorl is, as a share of the way from one to the next.
+constexpr double kWhorlLength = 0.3;
 
 struct TreeVector {
   double x, y, z;
@@ -94,6 +96,17 @@ Course course_of(const Shoot& shoot, std::size_t links) {
   return course;
 }
 
+/// Where branch `i` of `count` grows in whorls of about `whorl`: 0 at the lowest place, 1 at the parent's tip.
+/// `jitter`: 0 to 1, by which it is moved within the whorl.
+double place_in_whorls(std::size_t i, std::size_t count, std::size_t whorl, double jitter) {
+  const double even = (static_cast<double>(i) + 0.2 + 0.6 * jitter) / static_cast<double>(count);
+  if (whorl <= 1) return even;
+  const double whorls = std::max(std::round(static_cast<double>(count) / static_cast<double>(whorl)), 1.0);
+  const double number = std::floor(even * whorls);
+  // The last one ends at the tip.
+  return (number + 1.0 - kWhorlLength * (1.0 - (even * whorls - number))) / whorls;
+}
+
 double interpolated(const std::array<double, 2>& ends, double part) {
   return ends[0] + part * (ends[1] - ends[0]);
 }
@@ -153,7 +166,7 @@ class Grower {
       const Course course = course_of(parents[p], spec_.branch_links);
       for (std::size_t i = 0; i < own; ++i) {
         const std::size_t index = 8 * (first + i);  // of its random numbers
-        const double part = (static_cast<double>(i) + 0.2 + 0.6 * random.uniform(index)) / static_cast<double>(own);
+        const double part = place_in_whorls(i, own, habit.whorl, random.uniform(index));
         const std::size_t link = link_at(habit.first_at + part * (1.0 - habit.first_at));
         const double around_rad = kGoldenAngle_rad * static_cast<double>(first + i) + 0.5 * random.uniform(index + 1);
         const double angle_rad =
@@ -185,11 +198,14 @@ class Grower {
   /// block, and in it by node (JointPositions).
   std::vector<Spray> sprays() const {
     const std::size_t count = (spec_.leaves + pose::kStrandsPerBlock - 1) / pose::kStrandsPerBlock;
-    const std::size_t starts = kNodesOfATwig - pose::kStrandsPerBlock - kFirstNode + 1;
+    const std::size_t most = kNodesOfATwig - pose::kStrandsPerBlock;
+    const auto first =
+        std::min(static_cast<std::size_t>(spec_.habit.leafless_share * static_cast<double>(kNodesOfATwig)), most);
+    const std::size_t starts = most - first + 1;
     std::vector<Spray> sprays;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t left_over = i * twigs_.size() % count;
-      sprays.push_back({i * twigs_.size() / count, kFirstNode + left_over * starts / count});
+      sprays.push_back({i * twigs_.size() / count, first + left_over * starts / count});
     }
     std::stable_sort(sprays.begin(), sprays.end(), [](const Spray& a, const Spray& b) {
       const std::size_t a_block = a.twig / pose::kStrandsPerBlock;

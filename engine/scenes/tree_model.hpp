@@ -14,9 +14,12 @@ struct BranchHabit {
   double first_at = 0.0;                    ///< the lowest stands at this part of the parent's length
   std::array<double, 2> angle_deg = {};     ///< away from the parent's own direction
   std::array<double, 2> length_share = {};  ///< of the tree's height
-  double lift_deg = 0.0;                    ///< how far it curls up to the light from foot to tip; below 0: it droops
+  /// How far it curls up to the light from foot to tip; below 0: outward and down, by its weight.
+  double lift_deg = 0.0;
   /// Every second is a leader; the others, which fill the crown behind the leaders' tips, are only this part as long.
   double minor_share = 1.0;
+  /// They grow in groups of about so many, unequal whorls, with bare wood between; 1: evenly along the parent.
+  std::size_t whorl = 1;
 };
 
 /// What trees of a species have in common.
@@ -29,6 +32,7 @@ struct TreeHabit {
   double leaf_length_m = 0.1;
   double leaf_width_share = 0.5;  ///< of the leaf's length
   double leaf_droop_deg = 40.0;   ///< from petiole to tip
+  double leafless_share = 0.1;    ///< of a twig, from its foot: leaves stand at its end, where there is light
 };
 
 /// Parameters of a tree. At least one of each.
@@ -47,11 +51,12 @@ struct TreeSpec {
 enum TreePart : std::size_t { kTrunk, kLimbs, kTwigs, kLeaves, kTreePartCount };
 
 /// Grows a tree by rule and seed, its foot at the world's origin: a trunk, limbs on it, twigs on the limbs, and leaves
-/// on the twigs in sprays of 16 that are turned as one (`is_turned_by_block`). Each stands a golden angle around its
-/// parent from the one below (phyllotaxis: Vogel 1979, "A better way to construct the sunflower head"), leaves it at
-/// the habit's angle, and curls to the light or droops; lengths and angles differ at random. Where a branch begins, its
-/// section is the sum of those that it carries (the pipe model: Shinozaki and others 1964, "A quantitative analysis of
-/// plant form"). Deterministic by seed. Allocates; may throw std::bad_alloc. Thread-safe: yes. Realtime-safe: no.
+/// on the twigs in sprays of 16 that are turned as one (`is_turned_by_block`). Limbs and twigs grow in whorls, so that
+/// leaves hang in clumps with gaps between. Each stands a golden angle around its parent from the one below
+/// (phyllotaxis: Vogel 1979, "A better way to construct the sunflower head"), leaves it at the habit's angle, and curls
+/// to the light or droops; lengths and angles differ at random. Where a branch begins, its section is the sum of those
+/// that it carries (the pipe model: Shinozaki and others 1964, "A quantitative analysis of plant form"). Deterministic
+/// by seed. Allocates; may throw std::bad_alloc. Thread-safe: yes. Realtime-safe: no.
 pose::TreeSkeleton make_tree(const TreeSpec& spec);
 
 /// Where the other trees of a grove of `trees` in all stand around one at the world's origin: evenly over a disc

@@ -15,7 +15,8 @@
 // motion", at 5 "small trees in leaf begin to sway", at 7 "whole trees in motion" (WMO); bends grow as U^2 and, as the
 // crown gives way, as U^(2 + E) with E = -0.2 to -1.2 (Vogel 1989; de Langre 2008); branches sway at their own
 // frequency, with the damping of open-grown broadleaves (Jackson 2019 and 2021; James, Haritos and Ades 2006); leaves
-// flutter at some 3 to 6 Hz (Tadrist 2018).
+// flutter at some 3 to 6 Hz (Tadrist 2018). There are no data on how far twigs bend: up to 40 degrees on average at
+// Beaufort 7, since with 32 a still picture of a storm looked like one of a breeze.
 
 namespace yuragi::answer {
 namespace {
@@ -32,7 +33,7 @@ std::vector<Bound> tree_bounds(double trunk, double limb, double twig, Bound lea
       Bound{"limb > 0.5 Hz, sd", "deg", 2, {{kAny, {0.3, 1.0}, {0.5, 1.6}, {0.6, 2.7}}}},
   };
   const std::array twig_bounds = {
-      Bound{"twig, mean", "deg", 2, {{at_most(0.5), {1.9, 5}, {7, 16}, {14, 32}}}},
+      Bound{"twig, mean", "deg", 2, {{at_most(0.5), {1.9, 7}, {7, 22}, {14, 40}}}},
       Bound{"twig, sd", "deg", 2, {{at_most(0.2), {0.5, 2.4}, {2.3, 7}, {3.7, 11}}}},
   };
   const Bound peak{"limb > 0.6 Hz, peak", "Hz", 2, {{kAny, {0.8, 1.25}, {0.8, 1.25}, {0.8, 1.25}}}};

@@ -1,7 +1,10 @@
 #include "engine/scenes/tree_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <map>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -140,10 +143,78 @@ TEST(TreeModelTest, EachSpeciesHasItsHabit) {
          {std::pair{cherry, "cherry"}, std::pair{zelkova, "zelkova"}, std::pair{poplar, "poplar"}}) {
       EXPECT_NEAR(outline.height_m, tree_species(species).habit.height_m, 0.25 * outline.height_m) << species;
     }
-    EXPECT_GT(2.0 * cherry.radius_m, 0.8 * cherry.height_m);   // as broad as high
-    EXPECT_GT(zelkova.widest_at_m, 0.45 * zelkova.height_m);   // a vase
-    EXPECT_LT(2.0 * poplar.radius_m, 0.45 * poplar.height_m);  // a column
-    EXPECT_LT(cherry.widest_at_m, zelkova.widest_at_m);
+    EXPECT_GT(2.0 * cherry.radius_m, 1.05 * cherry.height_m);   // broader than high
+    EXPECT_GT(2.0 * zelkova.radius_m, 0.6 * zelkova.height_m);  // a vase
+    EXPECT_LT(2.0 * zelkova.radius_m, 0.8 * 2.0 * cherry.radius_m / cherry.height_m * zelkova.height_m);
+    EXPECT_GT(zelkova.widest_at_m, 0.6 * zelkova.height_m);
+    EXPECT_LT(2.0 * poplar.radius_m, 0.35 * poplar.height_m);  // a column
+  }
+}
+
+/// How far the middle of a limb lies beside the straight line from foot to tip, over the length of that line.
+double bow_of(const pose::TreeSkeleton& tree, const pose::TreeJoints& joints, std::size_t limb) {
+  const pose::StrandSkeleton& limbs = tree.levels[kLimbs].strands;
+  const pose::JointPosition foot{limbs.root_x_m[limb], limbs.root_y_m[limb], limbs.root_z_m[limb]};
+  const pose::JointPosition middle = joints.level(kLimbs).joint(limb, limbs.links_per_strand / 2 - 1);
+  const pose::JointPosition tip = joints.level(kLimbs).joint(limb, limbs.links_per_strand - 1);
+  const pose::JointPosition half_way{0.5F * (foot.x_m + tip.x_m), 0.5F * (foot.y_m + tip.y_m),
+                                     0.5F * (foot.z_m + tip.z_m)};
+  return gap_m(middle, half_way) / gap_m(foot, tip);
+}
+
+TEST(TreeModelTest, LimbsCurve) {
+  for (const auto& [species, least] : {std::pair{"cherry", 0.035}, {"zelkova", 0.018}, {"poplar", 0.03}}) {
+    const pose::TreeSkeleton tree = make_tree(spec_of(species));
+    const pose::TreeJoints joints = joints_in(tree, resting(tree));
+    std::vector<double> bows;
+    for (std::size_t i = 0; i < tree.levels[kLimbs].strands.strand_count; ++i) {
+      bows.push_back(bow_of(tree, joints, i));
+    }
+    std::sort(bows.begin(), bows.end());
+    std::printf("%s: bow %.3f\n", species, bows[bows.size() / 2]);
+    EXPECT_GT(bows[bows.size() / 2], least) << species;
+  }
+}
+
+/// How unevenly leaves fill the crown: the variance of their number in cells of 0.5 m within blocks of 2 m that have
+/// leaves enough, over the square of its mean there, less what chance alone gives (Poisson).
+double clumpiness_of(const pose::TreeSkeleton& tree) {
+  constexpr int kCells = 4;
+  constexpr double kCell_m = 0.5;
+  constexpr double kLeastLeaves = 2.0 * kCells * kCells * kCells;
+  const pose::StrandSkeleton& leaves = tree.levels[kLeaves].strands;
+  std::map<std::array<int, 3>, std::map<std::array<int, 3>, double>> blocks;
+  for (std::size_t i = 0; i < leaves.strand_count; ++i) {
+    const auto cell = [](float place_m) {
+      return static_cast<int>(std::floor(static_cast<double>(place_m) / kCell_m));
+    };
+    const std::array cells{cell(leaves.root_x_m[i]), cell(leaves.root_y_m[i]), cell(leaves.root_z_m[i])};
+    const auto block = [](int place) { return (place + 1000 * kCells) / kCells; };
+    blocks[{block(cells[0]), block(cells[1]), block(cells[2])}][cells] += 1.0;
+  }
+  double sum = 0.0;
+  double count = 0.0;
+  for (const auto& [block, cells] : blocks) {
+    double all = 0.0;
+    double squares = 0.0;
+    for (const auto& [cell, in_cell] : cells) {
+      all += in_cell;
+      squares += in_cell * in_cell;
+    }
+    if (all < kLeastLeaves) continue;
+    const double mean = all / (kCells * kCells * kCells);
+    sum += all * (squares / (kCells * kCells * kCells) - mean * mean - mean) / (mean * mean);
+    count += all;
+  }
+  return sum / count;
+}
+
+TEST(TreeModelTest, LeavesHangInClumpsWithGapsBetween) {
+  for (const auto& [species, least] : {std::pair{"cherry", 3.5}, {"zelkova", 3.5}, {"poplar", 5.5}}) {
+    double clumpiness = 0.0;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) clumpiness += clumpiness_of(make_tree(spec_of(species, seed))) / 5;
+    std::printf("%s: clumpiness %.2f\n", species, clumpiness);
+    EXPECT_GT(clumpiness, least) << species;
   }
 }
 

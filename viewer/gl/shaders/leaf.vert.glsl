@@ -90,6 +90,8 @@ void main() {
   } else {
     // Where the wind turns the strand, each leaf turns a little differently.
     float turn = corner.y == 0.0 ? 0.5 * (chance.x - 0.5) : corner.y * (0.65 + 0.5 * chance.x);
+    // In a storm they lie along the stalk (S. Vogel 1989, "Drag and reconfiguration of broad leaves in high winds").
+    turn *= 1.0 - 0.65 * smoothstep(0.05, 0.6, blown);
     vec3 to = normalize(cos(turn) * along + sin(turn) * across + (0.9 * chance.y - 0.65 + 0.7 * (chance.z - 0.5) * blown) * upper);
     vec3 leaf_across = normalize(cross(to, upper));
     vec3 leaf_up = cross(leaf_across, to);
