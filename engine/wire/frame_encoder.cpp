@@ -3,6 +3,7 @@
 #include <bit>
 #include <cassert>
 #include <cstdint>
+#include <limits>
 
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/pose/quantise.hpp"
@@ -135,9 +136,10 @@ std::span<const std::uint8_t> FrameEncoder::encode(const FrameInfo& info,
 
   const fb::Wind wind = to_schema(info.wind);
   const fb::WindPlace place = place_to_schema(info.wind);
-  const auto frame = fb::CreateFrame(
-      buffer, info.sequence, info.tick, info.time_s, info.utc_ns, &wind, scene_vector, &place,
-      info.view_wind_from_deg ? flatbuffers::Optional<double>(*info.view_wind_from_deg) : flatbuffers::nullopt);
+  // Not a number where there is none: frames of the same scenes have one size, so that none allocates.
+  const double view_wind_from_deg = info.view_wind_from_deg.value_or(std::numeric_limits<double>::quiet_NaN());
+  const auto frame = fb::CreateFrame(buffer, info.sequence, info.tick, info.time_s, info.utc_ns, &wind, scene_vector,
+                                     &place, view_wind_from_deg);
   fb::FinishSizePrefixedMessageBuffer(buffer, fb::CreateMessage(buffer, fb::Body_Frame, frame.Union()));
   return {buffer.GetBufferPointer(), buffer.GetSize()};
 }
