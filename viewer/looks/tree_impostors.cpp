@@ -10,8 +10,8 @@ namespace yuragi::viewer::looks {
 namespace {
 
 constexpr int kPicture_px = 256;
-constexpr int kWidth_px = kPicture_px * static_cast<int>(meshes::kImpostorSides);
-constexpr int kHeight_px = kPicture_px * static_cast<int>(meshes::kImpostorRows);
+constexpr int kWidth_px = kPicture_px * static_cast<int>(meshes::trees::kImpostorSides);
+constexpr int kHeight_px = kPicture_px * static_cast<int>(meshes::trees::kImpostorRows);
 constexpr int kSmallestLevel = 5;  // a picture is 8 pixels wide there
 
 const void* offset_in_tree(std::size_t offset) {
@@ -39,8 +39,8 @@ void LeafColors::set(const gl::GlProgram& program) const {
   glUniform1f(glGetUniformLocation(program.name(), "silver"), silver);
 }
 
-TreeImpostors::TreeImpostors(const meshes::ImpostorBox& box, const glm::vec3& foot_m, meshes::SprayShape::Kind kind,
-                             const LeafColors& colors)
+TreeImpostors::TreeImpostors(const meshes::trees::ImpostorBox& box, const glm::vec3& foot_m,
+                             meshes::trees::SprayShape::Kind kind, const LeafColors& colors)
     : box_(box),
       to_middle_m_(box.middle_m - foot_m),
       kind_(kind),
@@ -51,7 +51,7 @@ TreeImpostors::TreeImpostors(const meshes::ImpostorBox& box, const glm::vec3& fo
   gl::set_sampler(program_, "looks", gl::kImpostorUnit);
   gl::set_sampler(program_, "facing", gl::kImpostorFacingUnit);
 
-  using Tree = meshes::TreeImpostor;
+  using Tree = meshes::trees::TreeImpostor;
   glBindVertexArray(array_.name());
   glBindBuffer(GL_ARRAY_BUFFER, trees_.name());
   for (GLuint attribute = 0; attribute < 3; ++attribute) {
@@ -93,7 +93,7 @@ void TreeImpostors::begin() {
 
 meshes::View TreeImpostors::begin_picture(gl::ViewBuffer& views, std::size_t side, std::size_t row) {
   glViewport(kPicture_px * static_cast<int>(side), kPicture_px * static_cast<int>(row), kPicture_px, kPicture_px);
-  const meshes::View view = meshes::impostor_view(box_, side, row, kPicture_px);
+  const meshes::View view = meshes::trees::impostor_view(box_, side, row, kPicture_px);
   views.set(view);
   return view;
 }
@@ -108,7 +108,7 @@ void TreeImpostors::end() {
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-void TreeImpostors::draw(std::span<const meshes::TreeImpostor> trees, float blown, bool is_by_sun) {
+void TreeImpostors::draw(std::span<const meshes::trees::TreeImpostor> trees, float blown, bool is_by_sun) {
   if (trees.empty()) return;
   glActiveTexture(GL_TEXTURE0 + gl::kImpostorUnit);
   glBindTexture(GL_TEXTURE_2D, looks_.name());

@@ -5,8 +5,8 @@
 
 #include "viewer/gl/gl.hpp"
 #include "viewer/gl/view_buffer.hpp"
-#include "viewer/meshes/sprays.hpp"
-#include "viewer/meshes/tree_impostor.hpp"
+#include "viewer/meshes/trees/sprays.hpp"
+#include "viewer/meshes/trees/tree_impostor.hpp"
 
 namespace yuragi::viewer::looks {
 
@@ -23,31 +23,31 @@ struct LeafColors {
 class TreeImpostors {
  public:
   /// `box` and `foot_m`: of the tree where it stands.
-  TreeImpostors(const meshes::ImpostorBox& box, const glm::vec3& foot_m, meshes::SprayShape::Kind kind,
+  TreeImpostors(const meshes::trees::ImpostorBox& box, const glm::vec3& foot_m, meshes::trees::SprayShape::Kind kind,
                 const LeafColors& colors);
 
   /// Makes all pictures: draw(view) is called for each, with a framebuffer of color and normal bound.
   template <class Draw>
   void make(gl::ViewBuffer& views, Draw&& draw) {
     begin();
-    for (std::size_t row = 0; row < meshes::kImpostorRows; ++row) {
-      for (std::size_t side = 0; side < meshes::kImpostorSides; ++side) draw(begin_picture(views, side, row));
+    for (std::size_t row = 0; row < meshes::trees::kImpostorRows; ++row) {
+      for (std::size_t side = 0; side < meshes::trees::kImpostorSides; ++side) draw(begin_picture(views, side, row));
     }
     end();
   }
 
   /// Draws sheets, which face the eye or, for their shadows, the sun.
   /// `blown`: how far the wind has turned their sprays from rest (SprayPlace), on average.
-  void draw(std::span<const meshes::TreeImpostor> trees, float blown, bool is_by_sun);
+  void draw(std::span<const meshes::trees::TreeImpostor> trees, float blown, bool is_by_sun);
 
  private:
   void begin();
   meshes::View begin_picture(gl::ViewBuffer& views, std::size_t side, std::size_t row);
   void end();
 
-  meshes::ImpostorBox box_;
+  meshes::trees::ImpostorBox box_;
   glm::vec3 to_middle_m_;
-  meshes::SprayShape::Kind kind_;
+  meshes::trees::SprayShape::Kind kind_;
   LeafColors colors_;
   gl::GlTexture looks_, facing_;
   /// What the pictures are drawn into, besides these two.

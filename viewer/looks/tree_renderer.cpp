@@ -9,7 +9,7 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-meshes::SprayDetail detail_of(look::Quality quality) {
+meshes::trees::SprayDetail detail_of(look::Quality quality) {
   switch (quality) {
     case look::Quality::kLow:
       return {.leaf_px = 5.5F, .largest = 4.0F, .shaped_leaf_px = 60.0F, .speck_px = 6.0F, .hidden_share = 0.3F};
@@ -35,13 +35,13 @@ float impostor_px_of(look::Quality quality) {
 constexpr float kImpostorHeight = 0.3F;
 
 /// Of the pictures for impostors.
-constexpr meshes::SprayDetail kPictureDetail{
+constexpr meshes::trees::SprayDetail kPictureDetail{
     .leaf_px = 3.0F, .largest = 3.0F, .shaped_leaf_px = 1e6F, .speck_px = 4.0F, .hidden_share = 0.4F};
 constexpr float kPictureRing_px = 12.0F;
 constexpr float kPictureTwig_px = 0.04F;  // that thin, they cover what they do near by
 
 /// Shadows are soft, and hide what a leaf is like.
-meshes::SprayDetail shadow_detail_of(const meshes::SprayDetail& detail) {
+meshes::trees::SprayDetail shadow_detail_of(const meshes::trees::SprayDetail& detail) {
   return {.leaf_px = 2.0F * detail.leaf_px, .largest = 1.3F * detail.largest, .shaped_leaf_px = 1e6F, .speck_px = 1e6F};
 }
 
@@ -79,7 +79,7 @@ void enable_instances(GLuint attributes) {
 
 /// Lets the bound array read branches of the bound buffer from the `first` on.
 void describe_parts(std::size_t first) {
-  using Part = meshes::TreePart;
+  using Part = meshes::trees::TreePart;
   const std::size_t begin = first * sizeof(Part);
   glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(Part), offset_of(begin + offsetof(Part, root_m)));
   glVertexAttribPointer(1, 4, GL_FLOAT, GL_FALSE, sizeof(Part), offset_of(begin + offsetof(Part, tint)));
@@ -90,13 +90,13 @@ void describe_parts(std::size_t first) {
 
 /// The same of sprays.
 void describe_sprays(std::size_t first) {
-  constexpr std::size_t kVectors = sizeof(meshes::SprayPlace) / sizeof(glm::vec4);
+  constexpr std::size_t kVectors = sizeof(meshes::trees::SprayPlace) / sizeof(glm::vec4);
   for (GLuint vector = 0; vector < kVectors; ++vector) {
-    glVertexAttribPointer(vector, 4, GL_FLOAT, GL_FALSE, sizeof(meshes::SprayPlace),
-                          offset_of(first * sizeof(meshes::SprayPlace) + vector * sizeof(glm::vec4)));
+    glVertexAttribPointer(vector, 4, GL_FLOAT, GL_FALSE, sizeof(meshes::trees::SprayPlace),
+                          offset_of(first * sizeof(meshes::trees::SprayPlace) + vector * sizeof(glm::vec4)));
   }
 }
-static_assert(sizeof(meshes::SprayPlace) == 6 * sizeof(glm::vec4));
+static_assert(sizeof(meshes::trees::SprayPlace) == 6 * sizeof(glm::vec4));
 
 meshes::Bounds crown_bounds(const pose::TreeSkeleton& tree) {
   for (const pose::TreeLevel& level : tree.levels) {
@@ -116,13 +116,13 @@ meshes::Bounds bounds_without_grove(const pose::TreeSkeleton& tree) {
 }
 
 /// Where the trees of a skeleton stand: the streamed one, and its copies.
-std::vector<meshes::TreePlace> places_of(const pose::TreeSkeleton& tree) {
-  meshes::TreePlace own;
+std::vector<meshes::trees::TreePlace> places_of(const pose::TreeSkeleton& tree) {
+  meshes::trees::TreePlace own;
   if (!tree.levels.empty() && tree.levels[0].strands.strand_count > 0) {
     const pose::StrandSkeleton& trunk = tree.levels[0].strands;
     own.from_m = own.to_m = glm::vec3(trunk.root_x_m[0], trunk.root_y_m[0], trunk.root_z_m[0]);
   }
-  std::vector<meshes::TreePlace> places{own};
+  std::vector<meshes::trees::TreePlace> places{own};
   for (std::size_t i = 0; i < tree.copies.x_m.size(); ++i) {
     places.push_back({.from_m = own.from_m,
                       .to_m = {tree.copies.x_m[i], own.from_m.y, tree.copies.z_m[i]},
@@ -149,15 +149,15 @@ float hanging_of(float tree_chance, float leaves) {
 LeafColors colors_of(const pose::TreeSkeleton& tree) {
   LeafColors colors{.has_palette = tree.foliage == pose::FoliageColor::kGreen,
                     .turns_red = 0.2F,
-                    .silver = meshes::spray_shape(tree).silver};
-  switch (meshes::leaf_species(tree)) {
-    case meshes::LeafSpecies::kCherry:
+                    .silver = meshes::trees::spray_shape(tree).silver};
+  switch (meshes::trees::leaf_species(tree)) {
+    case meshes::trees::LeafSpecies::kCherry:
       colors.turns_red = 1.0F;
       break;
-    case meshes::LeafSpecies::kZelkova:
+    case meshes::trees::LeafSpecies::kZelkova:
       colors.turns_red = 0.7F;
       break;
-    case meshes::LeafSpecies::kPoplar:
+    case meshes::trees::LeafSpecies::kPoplar:
       break;
   }
   return colors;
@@ -178,7 +178,7 @@ void set_vec3(const gl::GlProgram& program, const char* name, const glm::vec3& v
   glUniform3f(glGetUniformLocation(program.name(), name), value.x, value.y, value.z);
 }
 
-void set_place(const gl::GlProgram& program, const meshes::TreePlace& place) {
+void set_place(const gl::GlProgram& program, const meshes::trees::TreePlace& place) {
   set_vec3(program, "place_from_m", place.from_m);
   glUniform4f(glGetUniformLocation(program.name(), "place_to_m"), place.to_m.x, place.to_m.y, place.to_m.z,
               place.scale);
@@ -210,12 +210,12 @@ TreeRenderer::TreeRenderer(const pose::TreeSkeleton& tree, look::Quality quality
     enable_instances(5);
     for (std::size_t tube = 0; tube < wood.tubes.size(); ++tube) {
       fill(GL_ELEMENT_ARRAY_BUFFER, wood.tubes.at(tube),
-           tube_triangles(tree.levels[i].strands.links_per_strand, meshes::Branches::kSides.at(tube)));
+           tube_triangles(tree.levels[i].strands.links_per_strand, meshes::trees::Branches::kSides.at(tube)));
     }
   }
   gl::set_sampler(bark_, "joints", 0);
-  for (const meshes::TreePlace& place : places_of(tree)) add_place(place);
-  box_ = meshes::impostor_box(bounds_without_grove(tree));
+  for (const meshes::trees::TreePlace& place : places_of(tree)) add_place(place);
+  box_ = meshes::trees::impostor_box(bounds_without_grove(tree));
   far_trees_.reserve(1 + tree.copies.x_m.size());
   if (woods_.empty()) impostor_px_ = 0.0F;
   move(*trees_.front(), moment_.hanging_leaves);
@@ -226,11 +226,13 @@ void TreeRenderer::add_foliage(std::size_t level, pose::FoliageColor color) {
   Foliage& foliage = *foliages_.emplace_back(std::make_unique<Foliage>());
   foliage.level = level;
   foliage.color = color;
-  foliage.shape = meshes::spray_shape(*tree_, color);
-  make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kSpeck)),
-             meshes::speck_spray(foliage.shape));
-  make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kFar)), meshes::far_spray(foliage.shape));
-  make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::SprayKind::kNear)), meshes::near_spray(foliage.shape));
+  foliage.shape = meshes::trees::spray_shape(*tree_, color);
+  make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::trees::SprayKind::kSpeck)),
+             meshes::trees::speck_spray(foliage.shape));
+  make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::trees::SprayKind::kFar)),
+             meshes::trees::far_spray(foliage.shape));
+  make_spray(foliage.sprays.at(static_cast<std::size_t>(meshes::trees::SprayKind::kNear)),
+             meshes::trees::near_spray(foliage.shape));
 }
 
 /// How much is seen of a foliage, where so many of the leaves hang: leaves, while there are any, twigs when they have
@@ -240,7 +242,7 @@ float TreeRenderer::shown_share(const Foliage& foliage, float hanging) const {
   return foliage.color == tree_->foliage ? hanging : 1.0F - glm::smoothstep(0.0F, kTwigsSeenBelow, hanging);
 }
 
-void TreeRenderer::add_place(const meshes::TreePlace& place) {
+void TreeRenderer::add_place(const meshes::trees::TreePlace& place) {
   constexpr float kAlike = 1e-4F;
   const auto is_alike = [&](const std::unique_ptr<Alike>& alike) {
     return std::abs(alike->cosine - place.cosine) < kAlike && std::abs(alike->sine - place.sine) < kAlike;
@@ -254,7 +256,7 @@ void TreeRenderer::add_place(const meshes::TreePlace& place) {
 }
 
 /// A tree at rest.
-std::unique_ptr<TreeRenderer::Alike> TreeRenderer::tree_at(const meshes::TreePlace& place) const {
+std::unique_ptr<TreeRenderer::Alike> TreeRenderer::tree_at(const meshes::trees::TreePlace& place) const {
   auto tree = std::make_unique<Alike>(Alike{.cosine = place.cosine,
                                             .sine = place.sine,
                                             .places = {place},
@@ -268,18 +270,18 @@ std::unique_ptr<TreeRenderer::Alike> TreeRenderer::tree_at(const meshes::TreePla
   }
   const Alike* const first = trees_.empty() ? nullptr : trees_.front().get();
   for (std::size_t i = 0; i < woods_.size(); ++i) {
-    tree->branches.push_back(first == nullptr ? meshes::Branches(*tree_, woods_[i]->level) : first->branches[i]);
+    tree->branches.push_back(first == nullptr ? meshes::trees::Branches(*tree_, woods_[i]->level) : first->branches[i]);
   }
   for (std::size_t i = 0; i < foliages_.size(); ++i) {
-    tree->crowns.push_back(first == nullptr ? meshes::Crown(*tree_, foliages_[i]->level, foliages_[i]->color)
+    tree->crowns.push_back(first == nullptr ? meshes::trees::Crown(*tree_, foliages_[i]->level, foliages_[i]->color)
                                             : first->crowns[i]);
   }
   glBindBuffer(GL_TEXTURE_BUFFER, tree->joint_buffer.name());  // creates the buffer, even if no pose is ever taken
   return tree;
 }
 
-void TreeRenderer::make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh) {
-  using Corner = meshes::SprayCorner;
+void TreeRenderer::make_spray(SprayOnGpu& spray, const meshes::trees::SprayMesh& mesh) {
+  using Corner = meshes::trees::SprayCorner;
   glBindVertexArray(spray.array.name());
   enable_instances(6);
   fill(GL_ARRAY_BUFFER, spray.corner_buffer, mesh.corners);
@@ -337,7 +339,7 @@ void TreeRenderer::move(Alike& alike, float hanging_leaves) {
   for (std::size_t i = 0; i < foliages_.size(); ++i) {
     if (shown_share(*foliages_[i], fewest) > 0.0F) alike.crowns[i].move_to(alike.joints);
   }
-  for (meshes::Branches& branches : alike.branches) branches.move_to(alike.joints);
+  for (meshes::trees::Branches& branches : alike.branches) branches.move_to(alike.joints);
 
   // The wood's joints, level behind level, in a new buffer each time, since the GPU may still read the old one.
   glBindBuffer(GL_TEXTURE_BUFFER, alike.joint_buffer.name());
@@ -352,11 +354,11 @@ void TreeRenderer::move(Alike& alike, float hanging_leaves) {
   }
 }
 
-float TreeRenderer::impostor_share(const meshes::View& view, const meshes::TreePlace& place) const {
+float TreeRenderer::impostor_share(const meshes::View& view, const meshes::trees::TreePlace& place) const {
   const float distance_m = std::max(glm::distance(glm::vec3(view.eye_m), place.moved(box_.middle_m)), 0.1F);
   const float height = place.scale * 2.0F * box_.half_height_m / distance_m;
-  return std::min(meshes::impostor_share(height / view.eye_m.w, impostor_px_),
-                  meshes::impostor_share(height, kImpostorHeight));
+  return std::min(meshes::trees::impostor_share(height / view.eye_m.w, impostor_px_),
+                  meshes::trees::impostor_share(height, kImpostorHeight));
 }
 
 void TreeRenderer::prepare(const meshes::View& view, gl::ViewBuffer& views) {
@@ -374,12 +376,12 @@ std::unique_ptr<TreeImpostors> TreeRenderer::pictures_of(gl::ViewBuffer& views, 
   const gl::GlProgram bark = gl::link_program("bark's picture", gl::shaders::kBarkVert, gl::shaders::kImpostorLookFrag);
   const gl::GlProgram leaf = gl::link_program("leaf's picture", gl::shaders::kLeafVert, gl::shaders::kImpostorLookFrag);
   gl::set_sampler(bark, "joints", 0);
-  const meshes::TreePlace& own = trees_.front()->places.front();
+  const meshes::trees::TreePlace& own = trees_.front()->places.front();
   const std::unique_ptr<Alike> at_rest = tree_at(own);
   move(*at_rest, hanging);
   const bool is_bare = foliages_.empty() || hanging == 0.0F;
   auto pictures = std::make_unique<TreeImpostors>(
-      box_, own.from_m, is_bare ? meshes::SprayShape::Kind::kTwigs : foliages_.front()->shape.kind, colors_);
+      box_, own.from_m, is_bare ? meshes::trees::SprayShape::Kind::kTwigs : foliages_.front()->shape.kind, colors_);
   pictures->make(views, [&](const meshes::View& picture) {
     draw_tree({bark, leaf, {.silver = colors_.silver}, kPictureTwig_px}, picture, kPictureDetail, kPictureRing_px,
               *at_rest, own, hanging);
@@ -395,21 +397,21 @@ void TreeRenderer::draw_shadow(const meshes::View& view) {
   draw_all(view, shadow_detail_of(detail_), 2.0F * ring_px_, true);
 }
 
-void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail& detail, float ring_px,
+void TreeRenderer::draw_all(const meshes::View& view, const meshes::trees::SprayDetail& detail, float ring_px,
                             bool is_shadow) {
   const auto planes = side_planes(view);
   const float radius_m = std::hypot(box_.half_width_m, box_.half_height_m);
   // Gusts come to the one that stands the farthest upwind first.
-  const auto downwind_m = [&](const meshes::TreePlace& place) {
+  const auto downwind_m = [&](const meshes::trees::TreePlace& place) {
     return sway_.downwind_m({place.to_m.x - place.from_m.x, place.to_m.z - place.from_m.z});
   };
   float first_m = 0.0F;
   for (const auto& alike : trees_) {
-    for (const meshes::TreePlace& place : alike->places) first_m = std::min(first_m, downwind_m(place));
+    for (const meshes::trees::TreePlace& place : alike->places) first_m = std::min(first_m, downwind_m(place));
   }
   far_trees_.clear();
   for (const auto& alike : trees_) {
-    for (const meshes::TreePlace& place : alike->places) {
+    for (const meshes::trees::TreePlace& place : alike->places) {
       const float share = impostors_ ? impostor_share(view, place) : 0.0F;
       const float hanging = loses_leaves(*tree_) ? hanging_of(place.chance(), moment_.hanging_leaves) : 1.0F;
       if (share < 1.0F) draw_tree({bark_, leaf_, colors_}, view, detail, ring_px, *alike, place, hanging);
@@ -433,13 +435,15 @@ void TreeRenderer::draw_all(const meshes::View& view, const meshes::SprayDetail&
   if (!bare_impostors_) return;
   // Behind what is left of the leaves; nothing of those that have enough.
   const auto& twigs = *foliages_.back();
-  std::erase_if(far_trees_, [&](const meshes::TreeImpostor& tree) { return shown_share(twigs, tree.hanging) == 0.0F; });
-  for (meshes::TreeImpostor& tree : far_trees_) tree.hanging = shown_share(twigs, tree.hanging);
+  std::erase_if(far_trees_,
+                [&](const meshes::trees::TreeImpostor& tree) { return shown_share(twigs, tree.hanging) == 0.0F; });
+  for (meshes::trees::TreeImpostor& tree : far_trees_) tree.hanging = shown_share(twigs, tree.hanging);
   bare_impostors_->draw(far_trees_, 0.0F, is_shadow);
 }
 
-void TreeRenderer::draw_tree(const Programs& programs, const meshes::View& view, const meshes::SprayDetail& detail,
-                             float ring_px, Alike& alike, const meshes::TreePlace& place, float hanging) {
+void TreeRenderer::draw_tree(const Programs& programs, const meshes::View& view,
+                             const meshes::trees::SprayDetail& detail, float ring_px, Alike& alike,
+                             const meshes::trees::TreePlace& place, float hanging) {
   if (!alike.is_moved) move(alike, moment_.hanging_leaves);
   // The light in a tree that was bare before, or blossoms, does not change.
   const float leafy = loses_leaves(*tree_) ? hanging : 1.0F;
@@ -477,7 +481,7 @@ void TreeRenderer::draw_light() {
   glUniform1f(glGetUniformLocation(contact_.name(), "radius_m"), tree_->levels[0].base_radius_m[0]);
   glBindVertexArray(woods_[0]->array.name());
   for (const auto& alike : trees_) {
-    for (const meshes::TreePlace& place : alike->places) {
+    for (const meshes::trees::TreePlace& place : alike->places) {
       set_place(contact_, place);
       glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
     }
@@ -487,8 +491,8 @@ void TreeRenderer::draw_light() {
   glDisable(GL_BLEND);
 }
 
-void TreeRenderer::draw_branches(const gl::GlProgram& program, const Wood& wood, const meshes::Branches& branches,
-                                 const meshes::TreePlace& place) {
+void TreeRenderer::draw_branches(const gl::GlProgram& program, const Wood& wood,
+                                 const meshes::trees::Branches& branches, const meshes::trees::TreePlace& place) {
   if (branches.parts().empty()) return;
   glUseProgram(program.name());
   set_place(program, place);
@@ -498,9 +502,9 @@ void TreeRenderer::draw_branches(const gl::GlProgram& program, const Wood& wood,
   set_int(program, "links", tree_->levels[wood.level].strands.links_per_strand);
   glBindVertexArray(wood.array.name());
   gl::stream_to(GL_ARRAY_BUFFER, wood.part_buffer, branches.parts());
-  for (const meshes::BranchGroup& group : branches.groups()) {
+  for (const meshes::trees::BranchGroup& group : branches.groups()) {
     if (group.count == 0) continue;
-    const std::size_t sides = meshes::Branches::kSides.at(group.tube);
+    const std::size_t sides = meshes::trees::Branches::kSides.at(group.tube);
     set_int(program, "rings", group.rings);
     set_int(program, "sides", sides);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, wood.tubes.at(group.tube).name());
@@ -510,12 +514,13 @@ void TreeRenderer::draw_branches(const gl::GlProgram& program, const Wood& wood,
   }
 }
 
-void TreeRenderer::draw_sprays(const gl::GlProgram& program, const Foliage& foliage, const meshes::Crown& crown) {
+void TreeRenderer::draw_sprays(const gl::GlProgram& program, const Foliage& foliage,
+                               const meshes::trees::Crown& crown) {
   if (crown.places().empty()) return;
   glUseProgram(program.name());
   set_int(program, "kind", static_cast<std::size_t>(foliage.shape.kind));
   gl::stream_to(GL_ARRAY_BUFFER, foliage.place_buffer, crown.places());
-  for (const meshes::SprayGroup& group : crown.groups()) {
+  for (const meshes::trees::SprayGroup& group : crown.groups()) {
     if (group.count == 0) continue;
     const SprayOnGpu& spray = foliage.sprays.at(static_cast<std::size_t>(group.kind));
     glBindVertexArray(spray.array.name());

@@ -9,9 +9,9 @@
 #include "viewer/looks/scene_renderer.hpp"
 #include "viewer/looks/tree_impostors.hpp"
 #include "viewer/meshes/bounds.hpp"
-#include "viewer/meshes/branches.hpp"
-#include "viewer/meshes/crown.hpp"
 #include "viewer/meshes/sway_history.hpp"
+#include "viewer/meshes/trees/branches.hpp"
+#include "viewer/meshes/trees/crown.hpp"
 
 namespace yuragi::viewer::looks {
 
@@ -45,7 +45,7 @@ class TreeRenderer : public SceneRenderer {
   struct Wood {
     std::size_t level = 0;
     gl::GlBuffer part_buffer = {};
-    std::array<gl::GlBuffer, meshes::Branches::kSides.size()> tubes = {};  // triangles, ring behind ring
+    std::array<gl::GlBuffer, meshes::trees::Branches::kSides.size()> tubes = {};  // triangles, ring behind ring
     gl::GlVertexArray array = {};
   };
 
@@ -62,7 +62,7 @@ class TreeRenderer : public SceneRenderer {
   struct Foliage {
     std::size_t level = 0;
     pose::FoliageColor color = pose::FoliageColor::kGreen;
-    meshes::SprayShape shape = {};
+    meshes::trees::SprayShape shape = {};
     gl::GlBuffer place_buffer = {};
     std::array<SprayOnGpu, 3> sprays = {};  // by SprayKind
   };
@@ -71,38 +71,38 @@ class TreeRenderer : public SceneRenderer {
   struct Alike {
     float cosine = 1.0F;
     float sine = 0.0F;
-    std::vector<meshes::TreePlace> places;
+    std::vector<meshes::trees::TreePlace> places;
     pose::TreePose bends;   // turned back
     bool is_moved = false;  // what is below has them
     pose::TreeJoints joints;
-    std::vector<meshes::Branches> branches;  // of woods_
-    std::vector<meshes::Crown> crowns;       // of foliages_
+    std::vector<meshes::trees::Branches> branches;  // of woods_
+    std::vector<meshes::trees::Crown> crowns;       // of foliages_
     gl::GlBuffer joint_buffer = {};
     gl::GlTexture joint_texture = {};
   };
 
-  void add_place(const meshes::TreePlace& place);
-  std::unique_ptr<Alike> tree_at(const meshes::TreePlace& place) const;
+  void add_place(const meshes::trees::TreePlace& place);
+  std::unique_ptr<Alike> tree_at(const meshes::trees::TreePlace& place) const;
   static void turn_back(Alike& alike, const pose::TreePose& bends);
   void move(Alike& alike, float hanging_leaves);
-  float impostor_share(const meshes::View& view, const meshes::TreePlace& place) const;
+  float impostor_share(const meshes::View& view, const meshes::trees::TreePlace& place) const;
   glm::vec3 middle_m(const Alike& alike) const;
-  static void make_spray(SprayOnGpu& spray, const meshes::SprayMesh& mesh);
-  void draw_all(const meshes::View& view, const meshes::SprayDetail& detail, float ring_px, bool is_shadow);
-  void draw_tree(const Programs& programs, const meshes::View& view, const meshes::SprayDetail& detail, float ring_px,
-                 Alike& alike, const meshes::TreePlace& place, float hanging);
-  void draw_branches(const gl::GlProgram& program, const Wood& wood, const meshes::Branches& branches,
-                     const meshes::TreePlace& place);
+  static void make_spray(SprayOnGpu& spray, const meshes::trees::SprayMesh& mesh);
+  void draw_all(const meshes::View& view, const meshes::trees::SprayDetail& detail, float ring_px, bool is_shadow);
+  void draw_tree(const Programs& programs, const meshes::View& view, const meshes::trees::SprayDetail& detail,
+                 float ring_px, Alike& alike, const meshes::trees::TreePlace& place, float hanging);
+  void draw_branches(const gl::GlProgram& program, const Wood& wood, const meshes::trees::Branches& branches,
+                     const meshes::trees::TreePlace& place);
   void add_foliage(std::size_t level, pose::FoliageColor color);
   float shown_share(const Foliage& foliage, float hanging) const;
-  static void draw_sprays(const gl::GlProgram& program, const Foliage& foliage, const meshes::Crown& crown);
+  static void draw_sprays(const gl::GlProgram& program, const Foliage& foliage, const meshes::trees::Crown& crown);
   std::unique_ptr<TreeImpostors> pictures_of(gl::ViewBuffer& views, float hanging);
 
   const pose::TreeSkeleton* tree_;
   meshes::Bounds crown_bounds_;  // of the leaves, or of all where there are none
   std::vector<std::unique_ptr<Wood>> woods_;
   std::vector<std::unique_ptr<Foliage>> foliages_;
-  meshes::SprayDetail detail_;
+  meshes::trees::SprayDetail detail_;
   float ring_px_;
   float impostor_px_;
   LeafColors colors_;
@@ -111,12 +111,12 @@ class TreeRenderer : public SceneRenderer {
   gl::GlProgram contact_;
   std::vector<std::unique_ptr<Alike>> trees_;  // the streamed one is the first of the first
   Moment moment_;
-  meshes::ImpostorBox box_;
+  meshes::trees::ImpostorBox box_;
   glm::vec3 middle_at_rest_m_{0.0F};  // of the tips of the thinnest wood
   meshes::SwayHistory sway_;
-  std::unique_ptr<TreeImpostors> impostors_;       // made when first needed
-  std::unique_ptr<TreeImpostors> bare_impostors_;  // of a tree that has lost its leaves
-  std::vector<meshes::TreeImpostor> far_trees_;    // of a picture
+  std::unique_ptr<TreeImpostors> impostors_;            // made when first needed
+  std::unique_ptr<TreeImpostors> bare_impostors_;       // of a tree that has lost its leaves
+  std::vector<meshes::trees::TreeImpostor> far_trees_;  // of a picture
 };
 
 }  // namespace yuragi::viewer::looks

@@ -2,7 +2,7 @@
 uniform int first;  // index of the level's first joint
 uniform int rings;
 uniform int sides;
-// TreePlace (viewer/meshes/tree_place.hpp).
+// TreePlace (viewer/meshes/trees/tree_place.hpp).
 uniform vec3 place_from_m;
 uniform vec4 place_to_m;  // w: scale
 uniform vec2 place_turn;  // cosine, sine

@@ -1,5 +1,5 @@
 #include "foliage.part.glsl"
-// The sheet of a far tree's impostor (viewer/meshes/tree_impostor.hpp): it faces the eye, or the sun, and shows the
+// The sheet of a far tree's impostor (viewer/meshes/trees/tree_impostor.hpp): it faces the eye, or the sun, and shows the
 // picture of the side from which that sees the tree.
 uniform vec3 to_middle_m;  // from the tree's foot to the middle of its pictures
 uniform vec2 half_m;       // of their width and height

@@ -11,7 +11,7 @@ uniform float leafy;   // how many leaves there are around, 0 to 1
 uniform float tree_chance;  // TreePlace::chance()
 uniform float thinnest_px;  // half as wide is a twig at least
 
-// SprayPlace (viewer/meshes/crown.hpp).
+// SprayPlace (viewer/meshes/trees/crown.hpp).
 layout(location = 0) in vec4 root_length;  // metres
 layout(location = 1) in vec4 tip_leaves;   // w: leaves drawn; the last one in part
 layout(location = 2) in vec4 bow_blown;

@@ -1,4 +1,4 @@
-#include "viewer/meshes/tree_parts.hpp"
+#include "viewer/meshes/trees/tree_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
-#include "viewer/meshes/sprays.hpp"
+#include "viewer/meshes/trees/sprays.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 namespace {
 
 const glm::vec3 kBark(0.080F, 0.068F, 0.056F);
@@ -142,4 +142,4 @@ std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t lev
   return parts;
 }
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

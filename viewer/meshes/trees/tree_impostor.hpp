@@ -6,10 +6,10 @@
 #include <glm/vec4.hpp>
 
 #include "viewer/meshes/bounds.hpp"
-#include "viewer/meshes/tree_place.hpp"
+#include "viewer/meshes/trees/tree_place.hpp"
 #include "viewer/meshes/view.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 
 // Far away a tree is drawn as an impostor: a picture of it at rest, on an upright sheet that faces the eye. It is seen
 // from kImpostorSides sides, each from kImpostorRows heights (impostor.vert.glsl has the same numbers).
@@ -43,4 +43,4 @@ struct TreeImpostor {
 /// it fades in over the tree.
 float impostor_share(float height_px, float largest_px);
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

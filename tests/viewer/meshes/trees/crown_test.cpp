@@ -1,4 +1,4 @@
-#include "viewer/meshes/crown.hpp"
+#include "viewer/meshes/trees/crown.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 
 #include "engine/pose/pose_arrays.hpp"
 #include "tests/viewer/test_models.hpp"
-#include "viewer/meshes/branches.hpp"
+#include "viewer/meshes/trees/branches.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 namespace {
 
 class CrownTest : public testing::Test {
@@ -218,4 +218,4 @@ TEST_F(CrownTest, BranchesHaveMoreRingsTheNearerTheyAreAndNoMoreThanLinks) {
 }
 
 }  // namespace
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

@@ -1,8 +1,8 @@
-#include "viewer/meshes/tree_impostor.hpp"
+#include "viewer/meshes/trees/tree_impostor.hpp"
 
 #include <gtest/gtest.h>
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 namespace {
 
 TEST(TreeImpostor, PicturesShowTheWholeTreeFromEverySide) {
@@ -41,4 +41,4 @@ TEST(TreeImpostor, FadesInWithTheDistanceAndIsWholeBeforeTheTreeGoes) {
 }
 
 }  // namespace
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

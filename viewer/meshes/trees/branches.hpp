@@ -8,11 +8,11 @@
 #include <glm/vec3.hpp>
 
 #include "engine/pose/tree_kinematics.hpp"
-#include "viewer/meshes/tree_parts.hpp"
-#include "viewer/meshes/tree_place.hpp"
+#include "viewer/meshes/trees/tree_parts.hpp"
+#include "viewer/meshes/trees/tree_place.hpp"
 #include "viewer/meshes/view.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 
 /// Branches that are drawn as tubes with as many rings of vertices and as many sides.
 struct BranchGroup {
@@ -53,4 +53,4 @@ class Branches {
   std::size_t chosen_count_ = 0;
 };
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

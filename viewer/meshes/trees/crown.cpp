@@ -1,4 +1,4 @@
-#include "viewer/meshes/crown.hpp"
+#include "viewer/meshes/trees/crown.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat4x4.hpp>
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 namespace {
 
 constexpr float kNearest_m = 0.3F;
@@ -287,4 +287,4 @@ void Crown::choose(const View& view, const SprayDetail& detail, const TreePlace&
   }
 }
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

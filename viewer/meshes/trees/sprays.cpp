@@ -1,4 +1,4 @@
-#include "viewer/meshes/sprays.hpp"
+#include "viewer/meshes/trees/sprays.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 namespace {
 
 constexpr std::size_t kLeaves = 13;
@@ -269,4 +269,4 @@ SprayLevel spray_level(const SprayShape& shape, float leaf_px, const SprayDetail
           .kind = is_near ? SprayKind::kNear : (is_speck ? SprayKind::kSpeck : SprayKind::kFar)};
 }
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

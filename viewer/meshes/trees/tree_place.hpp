@@ -3,7 +3,7 @@
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 
 /// Where a copy of a tree stands: turned about the upright axis through its own foot, scaled, and moved.
 struct TreePlace {
@@ -23,4 +23,4 @@ struct TreePlace {
   glm::vec3 moved(const glm::vec3& place_m) const { return to_m + scale * turned(place_m - from_m); }
 };
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

@@ -1,4 +1,4 @@
-#include "viewer/meshes/sprays.hpp"
+#include "viewer/meshes/trees/sprays.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "tests/viewer/test_models.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 namespace {
 
 class SpraysTest : public testing::Test {
@@ -134,4 +134,4 @@ TEST_F(SpraysTest, ATreeWithoutLeavesHasAShapeToo) {
 }
 
 }  // namespace
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

@@ -9,12 +9,12 @@
 #include <glm/vec4.hpp>
 
 #include "engine/pose/tree_kinematics.hpp"
-#include "viewer/meshes/sprays.hpp"
-#include "viewer/meshes/tree_parts.hpp"
-#include "viewer/meshes/tree_place.hpp"
+#include "viewer/meshes/trees/sprays.hpp"
+#include "viewer/meshes/trees/tree_parts.hpp"
+#include "viewer/meshes/trees/tree_place.hpp"
 #include "viewer/meshes/view.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 
 /// A spray as the leaves' shader reads it: it goes from root to tip along a parabola.
 struct SprayPlace {
@@ -99,4 +99,4 @@ class Crown {
 /// Lichtfaktor in den Pflanzengesellschaften", Beer's law with half of the leaf area across the light), at rest.
 std::vector<glm::vec4> crown_openness(const pose::TreeSkeleton& tree, std::size_t level, const SprayShape& shape);
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

@@ -6,7 +6,7 @@
 
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 
 // A strand of a tree's leaves is drawn as a spray: a thin stalk that bears leaves at alternate sides, or flowers.
 
@@ -83,4 +83,4 @@ SprayLevel spray_level(const SprayShape& shape, float leaf_px, const SprayDetail
 /// The mean length of a level's strands, metres; 0 where there are none.
 float mean_length_m(const pose::StrandSkeleton& strands);
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

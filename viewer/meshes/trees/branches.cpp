@@ -1,10 +1,10 @@
-#include "viewer/meshes/branches.hpp"
+#include "viewer/meshes/trees/branches.hpp"
 
 #include <algorithm>
 
 #include <glm/geometric.hpp>
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 namespace {
 
 constexpr float kNearestBranch_m = 0.3F;
@@ -80,4 +80,4 @@ void Branches::choose(const View& view, float ring_px, const TreePlace& place) {
   }
 }
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

@@ -8,7 +8,7 @@
 
 #include "engine/pose/skeleton.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 
 /// An instance for a strand of a tree (a branch or a leaf), in the layout that the tree's shaders read.
 ///
@@ -35,4 +35,4 @@ std::vector<TreePart> tree_parts(const pose::TreeSkeleton& tree, std::size_t lev
 /// The direction of a link of a strand at rest.
 glm::vec3 link_at_rest(const pose::StrandSkeleton& strands, std::size_t strand, std::size_t link);
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

@@ -1,4 +1,4 @@
-#include "viewer/meshes/tree_parts.hpp"
+#include "viewer/meshes/trees/tree_parts.hpp"
 
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "engine/pose/tree_kinematics.hpp"
 #include "tests/viewer/test_models.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 namespace {
 
 class TreePartsTest : public testing::Test {
@@ -91,4 +91,4 @@ TEST_F(TreePartsTest, LeavesHaveTheColorsOfTheirFoliage) {
 }
 
 }  // namespace
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees

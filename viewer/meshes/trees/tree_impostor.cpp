@@ -1,4 +1,4 @@
-#include "viewer/meshes/tree_impostor.hpp"
+#include "viewer/meshes/trees/tree_impostor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "engine/base/units.hpp"
 
-namespace yuragi::viewer::meshes {
+namespace yuragi::viewer::meshes::trees {
 namespace {
 
 constexpr float kImpostorEye_m = 1000.0F;
@@ -52,4 +52,4 @@ float impostor_share(float height_px, float largest_px) {
   return std::clamp((kFadesOver * largest_px - height_px) / ((kFadesOver - 1.0F) * largest_px), 0.0F, 1.0F);
 }
 
-}  // namespace yuragi::viewer::meshes
+}  // namespace yuragi::viewer::meshes::trees
