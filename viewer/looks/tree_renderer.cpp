@@ -343,12 +343,12 @@ void TreeRenderer::move(Alike& alike, float hanging_leaves) {
 
   // The wood's joints, level behind level, in a new buffer each time, since the GPU may still read the old one.
   glBindBuffer(GL_TEXTURE_BUFFER, alike.joint_buffer.name());
-  const std::size_t count = meshes::first_joint_at(*tree_, tree_->levels.size());
+  const std::size_t count = meshes::trees::first_joint_at(*tree_, tree_->levels.size());
   glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(count * sizeof(float)), nullptr, GL_STREAM_DRAW);
   for (const auto& wood : woods_) {
     const std::span<const float> joints = std::as_const(alike.joints).level(wood->level).data();
     glBufferSubData(GL_TEXTURE_BUFFER,
-                    static_cast<GLintptr>(meshes::first_joint_at(*tree_, wood->level) * sizeof(float)),
+                    static_cast<GLintptr>(meshes::trees::first_joint_at(*tree_, wood->level) * sizeof(float)),
                     static_cast<GLsizeiptr>(joints.size_bytes()), joints.data());
     gl::count_upload(joints.size_bytes());
   }
@@ -498,7 +498,7 @@ void TreeRenderer::draw_branches(const gl::GlProgram& program, const Wood& wood,
   set_place(program, place);
   set_vec3(program, "crown_middle_m", place.moved((crown_bounds_.low_m + crown_bounds_.high_m) / 2.0F));
   set_vec3(program, "crown_radius_m", place.scale * (crown_bounds_.high_m - crown_bounds_.low_m) / 2.0F + 0.01F);
-  set_int(program, "first", meshes::first_joint_at(*tree_, wood.level));
+  set_int(program, "first", meshes::trees::first_joint_at(*tree_, wood.level));
   set_int(program, "links", tree_->levels[wood.level].strands.links_per_strand);
   glBindVertexArray(wood.array.name());
   gl::stream_to(GL_ARRAY_BUFFER, wood.part_buffer, branches.parts());

@@ -43,9 +43,12 @@ double lift_of_flag_deg(const wire::Scenes& scenes, const wire::Frame& frame) {
   const auto& offsets = std::get<pose::GridPose>(frame.poses.at(0));
   const std::size_t hoist = grid.columns / 2;
   const std::size_t fly = (grid.rows - 1) * grid.stride() + hoist;
-  const double east_m = double{grid.rest_x_m[fly]} + double{offsets.offset_x_m[fly]} - double{grid.rest_x_m[hoist]};
-  const double up_m = double{grid.rest_y_m[fly]} + double{offsets.offset_y_m[fly]} - double{grid.rest_y_m[hoist]};
-  const double south_m = double{grid.rest_z_m[fly]} + double{offsets.offset_z_m[fly]} - double{grid.rest_z_m[hoist]};
+  const auto from_hoist_m = [&](const auto& rest_m, const auto& offset_m) {
+    return static_cast<double>(rest_m[fly] + offset_m[fly] - rest_m[hoist]);
+  };
+  const double east_m = from_hoist_m(grid.rest_x_m, offsets.offset_x_m);
+  const double up_m = from_hoist_m(grid.rest_y_m, offsets.offset_y_m);
+  const double south_m = from_hoist_m(grid.rest_z_m, offsets.offset_z_m);
   return std::atan2(std::hypot(east_m, south_m), -up_m) / kRadPerDeg;
 }
 
