@@ -51,17 +51,18 @@ endif()
 # The rooms where a running program spends its time: poses and wind, readings, recordings and their import, the stream, pictures.
 # They are compiled with the preset's optimization. All others (options, settings, JSON, tables, the web page, the set-up of
 # devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. With YURAGI_COLD_UNOPTIMIZED only
-# the engine has the preset's optimization, since compilation takes longer than the tests of all others; most of these have -O0, and
-# -O1 what tests run longest in, with sanitizers more of it.
+# engine and decoders have the preset's optimization, all others -O0: their compilation takes longer than their tests. With sanitizers
+# only the engine has it, and what tests run longest in -O1.
 set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/stream
                      daemon/tools/csv viewer)
 set(YURAGI_WARM_ROOMS "[^/]+")
 if(YURAGI_COLD_UNOPTIMIZED)
-  set(YURAGI_WARM_ROOMS drivers/decode)
-  set(YURAGI_HOT_ROOMS engine)
+  set(YURAGI_WARM_ROOMS "")
+  set(YURAGI_HOT_ROOMS engine drivers/decode)
 endif()
 if(YURAGI_SANITIZE)
   set(YURAGI_WARM_ROOMS drivers/decode drivers/windlog daemon/tools/csv viewer)
+  set(YURAGI_HOT_ROOMS engine)
 endif()
 list(JOIN YURAGI_HOT_ROOMS "|" YURAGI_HOT_ROOMS)
 list(JOIN YURAGI_WARM_ROOMS "|" YURAGI_WARM_ROOMS)
