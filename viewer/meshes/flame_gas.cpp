@@ -38,6 +38,11 @@ constexpr float kHeatPerStreamed = 1.5F;
 /// (flame_flash_test.cpp).
 constexpr float kShownPerStep = 0.22F;
 constexpr float kLeastHeat = 0.06F;
+constexpr float kLeastSoot = 0.02F;
+/// Soot is gone before it comes to the grid's sides and its end, which are never seen: from these parts of the way on.
+constexpr float kSootThins = 0.55F;
+constexpr float kSootIsGone = 0.95F;
+constexpr float kSootThinsUp = 0.45F;
 
 /// (std::lerp is exact at both ends, and slow.)
 float mix(float from, float to, float part) {
@@ -93,6 +98,12 @@ FlameGas::FlameGas(const FlameVolume& volume)
       shown_(cells_.size()),
       eddies_(cells_.size()),
       texels_(2 * cells_.size()) {
+  const auto from_middle = [](std::size_t cell) {
+    return (2.0F * static_cast<float>(cell) + 1.0F) / static_cast<float>(kAcross) - 1.0F;
+  };
+  for (std::size_t i = 0; i < kLayerCells; ++i) {
+    to_side_[i] = std::hypot(from_middle(i % kAcross), from_middle(i / kAcross));
+  }
   const double fastest_m_s = kRise * std::sqrt(kGravity_m_s2 * height_m_);
   const double layer_m = height_m_ * static_cast<double>(FlameVolume::kReach) / (kLayers - 1);
   double risen_s = 0.0;
@@ -275,25 +286,24 @@ void FlameGas::step(double time_s, double wind_m_s, const FlameVolume& volume) {
 }
 
 void FlameGas::write_texels(float part) {
-  constexpr std::size_t n = kAcross;
   const auto byte_of = [](float value) {
     return static_cast<std::uint8_t>(255.0F * std::clamp(value, 0.0F, 1.0F) + 0.5F);
   };
   for (std::size_t layer = 0; layer < kLayers; ++layer) {
     float farthest = 0.0F;
+    const float up = static_cast<float>(layer) / static_cast<float>(kLayers - 1);
+    const float left_up = smooth((kSootIsGone - up) / (kSootIsGone - kSootThinsUp));
     for (std::size_t i = 0; i < kLayerCells; ++i) {
       const std::size_t at = layer * kLayerCells + i;
       const float heat = mix(shown_[at].heat, cells_[at].heat, kShownPerStep * part);
-      const float soot = mix(shown_[at].soot, cells_[at].soot, kShownPerStep * part);
+      const float left = left_up * smooth((kSootIsGone - to_side_[i]) / (kSootIsGone - kSootThins));
+      const float soot = left * mix(shown_[at].soot, cells_[at].soot, kShownPerStep * part);
       texels_[2 * at] = byte_of(heat);
       texels_[2 * at + 1] = byte_of(soot);
-      if (heat < kLeastHeat) continue;
-      const auto to_side = [](std::size_t cell) {
-        return (2.0F * static_cast<float>(cell) + 1.0F) / static_cast<float>(n) - 1.0F;
-      };
-      farthest = std::max(farthest, std::hypot(to_side(i % n), to_side(i / n)));
+      if (heat < kLeastHeat && soot < kLeastSoot) continue;
+      farthest = std::max(farthest, to_side_[i]);
     }
-    extents_[layer] = farthest > 0.0F ? std::min(farthest + 2.0F / static_cast<float>(n), 1.1F) : 0.0F;
+    extents_[layer] = farthest > 0.0F ? std::min(farthest + 2.0F / static_cast<float>(kAcross), 1.1F) : 0.0F;
   }
 }
 

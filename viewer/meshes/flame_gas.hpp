@@ -55,7 +55,8 @@ class FlameGas {
 
   double height_m_, width_m_;
   std::vector<Cell> cells_, next_, shown_;
-  std::vector<Velocity> eddies_;  ///< of unit deviation, m/s; repeats after kLayers
+  std::vector<Velocity> eddies_;                    ///< of unit deviation, m/s; repeats after kLayers
+  std::array<float, kAcross * kAcross> to_side_{};  ///< how far a cell is from the middle, in half sides
   std::array<float, kLayers> rise_m_s_{}, rises_for_s_{};
   std::vector<std::uint8_t> texels_;
   std::array<float, kLayers> extents_{};

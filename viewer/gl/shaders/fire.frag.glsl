@@ -78,7 +78,10 @@ void main() {
   value.g = max(value.g, 0.555 * value.r);
   // As yellow as what glows, also where the eye would see it without color in the dark.
   value.b = min(value.b, value.g * value.g * value.g / max(value.r * value.r, 1e-4));
-  // Its soot holds back a part of what is behind it.
-  float smoke = 0.4 * (1.0 - exp(-1.5 * soot / size_m.x));
-  color = vec4(value, max(0.6 * max(value.r, max(value.g, value.b)), smoke));
+  // Glowing soot hides what is behind it, so that the fire keeps its color before a bright sky. Where it no longer glows it is
+  // smoke, lit by sky and sun.
+  float glow = max(value.r, max(value.g, value.b));
+  float smoke = 0.5 * (1.0 - exp(-1.1 * soot / size_m.x)) * (1.0 - glow);
+  value += finish(0.16 * (sky_light.rgb + 0.3 * sun_light.rgb)) * smoke;
+  color = vec4(value, max(0.92 * glow, smoke));
 }
