@@ -46,7 +46,7 @@ GroundMaps::GroundMaps() : noise_(gl::make_noise_texture()), turf_(gl::make_turf
   ground_.growth_place = {-0.5F * side_m, -0.5F * side_m, 1.0F / side_m, 1.0F / side_m};
   set_standing(
       {{.kind = meshes::Standing::Kind::kGrass, .bounds = {}, .opacity = 0.0F, .blades = nullptr, .floor = {}}});
-  move_to({}, nullptr, nullptr);
+  move_to({}, nullptr, nullptr, 0.0F);
 }
 
 void GroundMaps::set_samplers(const gl::GlProgram& program) {
@@ -67,7 +67,8 @@ void GroundMaps::set_standing(const std::vector<meshes::Standing>& things, float
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, side, side, 0, GL_RGB, GL_UNSIGNED_BYTE, map_.texels().data());
 }
 
-void GroundMaps::move_to(const meshes::BendGrid& grid, const pose::StrandPose* nodes, const pose::StrandPose* near_by) {
+void GroundMaps::move_to(const meshes::BendGrid& grid, const pose::StrandPose* nodes, const pose::StrandPose* near_by,
+                         float near_by_share) {
   const bool is_streamed = nodes != nullptr && grid.columns > 0;
   glm::vec2 mean(0.0F);
   glm::mat2 sides_m(meshes::MeadowWaves::kSide_m);
@@ -82,7 +83,8 @@ void GroundMaps::move_to(const meshes::BendGrid& grid, const pose::StrandPose* n
     columns_ = meshes::MeadowWaves::kNodes;
     rows_ = meshes::MeadowWaves::kNodes;
     texels_.resize(columns_ * rows_);
-    mean = near_by != nullptr ? mean_of(*near_by, near_by->bend_east_rad.size()) : waves_.mean_bend();
+    mean = waves_.mean_bend();
+    if (near_by != nullptr) mean = glm::mix(mean, mean_of(*near_by, near_by->bend_east_rad.size()), near_by_share);
     waves_.fill(mean, texels_);
   }
   // A node is in the middle of its texel.

@@ -24,8 +24,9 @@ class GroundMaps {
   /// Before move_to(): the moment of the picture, and the wind toward east and south.
   void set_moment(double time_s, const glm::vec2& wind_m_s) { waves_.advance_to(time_s, wind_m_s); }
   /// The bends of the picture. `grid`: of the nodes of the ground. If there are none, MeadowWaves bend the grass, on
-  /// the average as `near_by` or, if that is null, too, as the wind does.
-  void move_to(const meshes::BendGrid& grid, const pose::StrandPose* nodes, const pose::StrandPose* near_by);
+  /// the average by that share as `near_by`, and else as the wind does.
+  void move_to(const meshes::BendGrid& grid, const pose::StrandPose* nodes, const pose::StrandPose* near_by,
+               float near_by_share);
   const meshes::GrowthMap& growth() const { return map_; }
   /// How far grass is bent by the streamed ground at a place (x, z) in the picture, and on average: east, south,
   /// radians. As bend_at() in sward.part.glsl, but MeadowWaves count as the mean: they are for the eye alone.

@@ -339,7 +339,7 @@ void Stage::move_ground(const stream::PoseMoment& moment) {
   landscape_.set_ground_image(image, std::clamp(2.0F * image_opacity - 1.0F, 0.0F, 1.0F));
   ground_.set_standing(standing_, light_.colors.z);
   ground_.set_moment(moment.time_s, wind_m_s_of(moment));
-  ground_.move_to(grid, nodes, near_by);
+  ground_.move_to(grid, nodes, near_by, tall_);
   ground_.bind(stand_, tall_, tall_door_);
 }
 

@@ -145,10 +145,12 @@ TEST(ClothProjectionJobTest, BandsMakeTheWhole) {
   HangingCloth whole(16);
   HangingCloth bands(16);
   whole.job().run();
-  for (std::size_t link = 0; link < kClothLinks; link += 7) {
+  // (clang 14 optimizes the same with std::min() and the library's assertions to code that fails at the last band.)
+  for (std::size_t link = 0, end = 0; link < kClothLinks; link = end) {
+    end = link + 7 < kClothLinks ? link + 7 : kClothLinks;
     ClothProjectionJob job = bands.job();
     job.first_link = link;
-    job.lean = job.lean.subspan(link * 32, std::min<std::size_t>(7, kClothLinks - link) * 32);
+    job.lean = job.lean.first(end * 32).subspan(link * 32);
     EXPECT_EQ(job.run(), ClothProjectionJob::Problem::kNone);
   }
   EXPECT_EQ(bits_of(bands.pose.offset_x_m), bits_of(whole.pose.offset_x_m));
