@@ -51,14 +51,14 @@ endif()
 # The rooms where a running program spends its time: poses and wind, readings, recordings and their import, the stream, pictures.
 # They are compiled with the preset's optimization. All others (options, settings, JSON, tables, the web page, the set-up of
 # devices, simulators) run once or wait for others: they are compiled with -O1, which is faster. With YURAGI_COLD_UNOPTIMIZED only
-# engine and decoders have the preset's optimization, all others -O0: their compilation takes longer than their tests. With sanitizers
+# those have the preset's optimization in which tests compute for long, all others -O0: their compilation takes longer. With sanitizers
 # only the engine has it, and what tests run longest in -O1.
 set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog daemon/animation daemon/pictures daemon/sensing daemon/stream
                      daemon/tools/csv viewer)
 set(YURAGI_WARM_ROOMS "[^/]+")
 if(YURAGI_COLD_UNOPTIMIZED)
   set(YURAGI_WARM_ROOMS "")
-  set(YURAGI_HOT_ROOMS engine drivers/decode)
+  set(YURAGI_HOT_ROOMS engine drivers/decode drivers/windlog viewer)
 endif()
 if(YURAGI_SANITIZE)
   set(YURAGI_WARM_ROOMS drivers/decode drivers/windlog daemon/tools/csv viewer)
