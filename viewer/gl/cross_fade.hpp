@@ -1,6 +1,7 @@
 #pragma once
 
 #include "viewer/gl/gl.hpp"
+#include "viewer/gl/picture_copy.hpp"
 #include "viewer/gl/render_target.hpp"
 
 namespace yuragi::viewer::gl {
@@ -18,17 +19,10 @@ class CrossFade {
   void draw(const RenderTarget& target, float share);
 
  private:
-  struct Copy {
-    GlTexture texture;
-    int width_px = 0;
-    int height_px = 0;
-  };
-  static void take(Copy& copy, const RenderTarget& target);
-
   GlProgram program_;
   GlVertexArray no_attributes_;
   GLint share_;
-  Copy before_, now_;
+  PictureCopy before_{GL_NEAREST}, now_{GL_NEAREST};
 };
 
 }  // namespace yuragi::viewer::gl

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "viewer/gl/gl.hpp"
+#include "viewer/gl/picture_copy.hpp"
 #include "viewer/gl/render_target.hpp"
 
 namespace yuragi::viewer::gl {
@@ -17,9 +18,7 @@ class EdgeSmoother {
  private:
   GlProgram program_;
   GlVertexArray no_attributes_;
-  GlTexture copy_;
-  int width_px_ = 0;
-  int height_px_ = 0;
+  PictureCopy copy_{GL_LINEAR};
 };
 
 }  // namespace yuragi::viewer::gl

@@ -20,18 +20,7 @@ WallPass::WallPass() : program_(gl::link_program("wall", gl::shaders::kDoorVert,
 
 void WallPass::take(const gl::RenderTarget& target) {
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, picture_.name());
-  if (width_px_ != target.width_px() || height_px_ != target.height_px()) {
-    width_px_ = target.width_px();
-    height_px_ = target.height_px();
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width_px_, height_px_, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-  }
-  target.bind_resolved();
-  glCopyTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, 0, 0, width_px_, height_px_);
+  picture_.take(target);
 }
 
 void WallPass::draw(const output::Window& window, const output::Size& monitor, GLuint vertex_array, bool is_marked) {
@@ -40,7 +29,7 @@ void WallPass::draw(const output::Window& window, const output::Size& monitor, G
   glDisable(GL_BLEND);
   glUseProgram(program_.name());
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, picture_.name());
+  glBindTexture(GL_TEXTURE_2D, picture_.texture());
   const auto number = [](double value) { return static_cast<float>(value); };
   const output::Crop& crop = window.crop;
   const output::Sides blend = blend_of_crop(window);

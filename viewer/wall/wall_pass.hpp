@@ -2,6 +2,7 @@
 
 #include "engine/output/output.hpp"
 #include "viewer/gl/gl.hpp"
+#include "viewer/gl/picture_copy.hpp"
 #include "viewer/gl/render_target.hpp"
 
 namespace yuragi::viewer::wall {
@@ -21,9 +22,7 @@ class WallPass {
 
  private:
   gl::GlProgram program_;
-  gl::GlTexture picture_;
-  int width_px_ = 0;
-  int height_px_ = 0;
+  gl::PictureCopy picture_{GL_LINEAR};
   GLint monitor_px_, to_crop_, crop_, blend_, gamma_, is_marked_;
 };
 
