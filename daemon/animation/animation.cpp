@@ -37,14 +37,14 @@ Animation::Animation(const settings::Config& config, const std::shared_ptr<const
     : scenes_(first_scenes(config, gusts)),
       pool_(config.animation.threads),
       tapes_(most_pens(config)),
-      wind_side_(config.wind.default_direction_deg) {}
+      view_wind_(config.wind.default_direction_deg) {}
 
 void Animation::step(const wind::ground::DrivingWind& wind, double dt_s, std::uint64_t ticks) noexcept {
   if (change_ && !change_->is_over && change_->has_faded_out()) finish_change();
   wind::ground::GroundWind ground = written_to(tapes_, wind);
   tick_ += ticks;
   ground.tick = tick_;
-  wind_side_.advance(dt_s, wind.state.wind.u_m_s, wind.state.wind.v_m_s, wind.state.live_weight >= kLiveWeight);
+  view_wind_.advance(dt_s, wind.state.wind, wind.state.live_weight >= kLiveWeight);
   SceneList& list = *scenes_;
   const bool is_shared = pool_.size() > 1 && sharing_.is_shared();
   const auto share = [this, is_shared](const auto& work) {

@@ -8,8 +8,8 @@
 #include "daemon/animation/scene_change.hpp"
 #include "daemon/animation/scene_list.hpp"
 #include "daemon/settings/config.hpp"
-#include "engine/look/wind_side.hpp"
 #include "engine/pose/reach.hpp"
+#include "engine/wind/view_wind.hpp"
 #include "engine/wind/wind_state.hpp"
 #include "engine/wire/wire.hpp"
 #include "engine/workers/sharing_choice.hpp"
@@ -58,7 +58,7 @@ class Animation {
     return scenes_->encode(with_view);
   }
   /// Where the wind comes from for cameras that keep their angle to it.
-  double view_wind_from_deg() const noexcept { return wind_side_.from_deg(); }
+  double view_wind_from_deg() const noexcept { return view_wind_.from_deg(); }
   /// The number of the list of scenes that the frame is of.
   std::uint64_t generation() const noexcept { return scenes_->generation(); }
   /// Sees to it that `buffer` has room for any frame of the present scenes.
@@ -87,7 +87,7 @@ class Animation {
   workers::WorkerPool pool_;
   workers::SharingChoice sharing_;
   wind::ground::WindTapes tapes_;
-  look::WindSide wind_side_;
+  wind::ViewWind view_wind_;
   std::uint64_t tick_ = 0;  // the number of the last one
 };
 

@@ -1,10 +1,9 @@
-#include "engine/look/wind_side.hpp"
+#include "engine/wind/view_wind.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-namespace yuragi::look {
+namespace yuragi::wind {
 namespace {
 
 constexpr double kReached_deg = 0.01;
@@ -14,28 +13,22 @@ double within_circle_deg(double angle_deg) {
   return std::isfinite(turned_deg) ? turned_deg : 0.0;
 }
 
-double direction_from_deg(double east_m_s, double north_m_s) {
-  return within_circle_deg(std::atan2(-east_m_s, -north_m_s) * 180.0 / std::numbers::pi);
-}
-
 }  // namespace
 
-WindSide::WindSide(double from_deg) noexcept : from_deg_(within_circle_deg(from_deg)) {}
+ViewWind::ViewWind(double from_deg) noexcept : from_deg_(within_circle_deg(from_deg)) {}
 
-void WindSide::advance(double dt_s, double east_m_s, double north_m_s, bool is_live) noexcept {
+void ViewWind::advance(double dt_s, WindVector wind, bool is_live) noexcept {
   if (!(dt_s > 0.0) || !std::isfinite(dt_s)) return;
   const bool is_start = age_s_ < kStart_s;
   if (is_start) age_s_ += dt_s;
-  if (!is_live || !std::isfinite(east_m_s) || !std::isfinite(north_m_s)) return;
+  if (!is_live || !std::isfinite(wind.u_m_s) || !std::isfinite(wind.v_m_s)) return;
 
   const bool is_first = live_s_ == 0.0;
   live_s_ = std::min(live_s_ + dt_s, kMean_s);
-  const double share = std::min(1.0, dt_s / live_s_);
-  east_m_s_ += share * (east_m_s - east_m_s_);
-  north_m_s_ += share * (north_m_s - north_m_s_);
-  if (std::hypot(east_m_s_, north_m_s_) < kMinSpeed_m_s) return;
+  mean_ = mean_ + std::min(1.0, dt_s / live_s_) * (wind - mean_);
+  if (speed_of(mean_) < kMinSpeed_m_s) return;
 
-  const double mean_deg = direction_from_deg(east_m_s_, north_m_s_);
+  const double mean_deg = direction_from_deg(mean_);
   if (is_first && is_start) {
     from_deg_ = mean_deg;
     return;
@@ -48,4 +41,4 @@ void WindSide::advance(double dt_s, double east_m_s, double north_m_s, bool is_l
   from_deg_ = within_circle_deg(from_deg_ + std::clamp(off_deg, -most_deg, most_deg));
 }
 
-}  // namespace yuragi::look
+}  // namespace yuragi::wind

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <optional>
+#include "engine/wind/wind_vector.hpp"
 
-namespace yuragi::look {
+namespace yuragi::wind {
 
 /// The direction of the wind that cameras with a wind_angle keep their angle to: calm enough to look from. It follows
 /// the mean direction of the last 10 minutes, as a vector mean, and stays where it is until that is more than 10
@@ -11,7 +11,7 @@ namespace yuragi::look {
 /// side.
 ///
 /// Pure: time is a parameter; the same steps give the same bits. Always finite. Thread-safe: no. Realtime-safe: yes.
-class WindSide {
+class ViewWind {
  public:
   static constexpr double kMean_s = 600.0;
   static constexpr double kDeadBand_deg = 10.0;
@@ -20,21 +20,20 @@ class WindSide {
   static constexpr double kStart_s = 10.0;
 
   /// `from_deg`: where the wind comes from as long as no sensor is live; anything not finite counts as north.
-  explicit WindSide(double from_deg) noexcept;
+  explicit ViewWind(double from_deg) noexcept;
 
-  /// Advances by dt_s. East and north: the wind, toward which the air moves, m/s. Not live: it comes from no sensor.
-  void advance(double dt_s, double east_m_s, double north_m_s, bool is_live) noexcept;
+  /// Advances by dt_s. Not live: the wind comes from no sensor.
+  void advance(double dt_s, WindVector wind, bool is_live) noexcept;
 
   /// Where the wind comes from, degrees clockwise from north, [0, 360).
   double from_deg() const noexcept { return from_deg_; }
 
  private:
   double from_deg_;
-  double east_m_s_ = 0.0;  // the mean
-  double north_m_s_ = 0.0;
+  WindVector mean_;
   double live_s_ = 0.0;  // over which the mean goes, at most kMean_s
   double age_s_ = 0.0;   // at most a little above kStart_s
   bool is_turning_ = false;
 };
 
-}  // namespace yuragi::look
+}  // namespace yuragi::wind

@@ -1,4 +1,4 @@
-#include "engine/look/wind_side.hpp"
+#include "engine/wind/view_wind.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,46 +6,39 @@
 
 #include <gtest/gtest.h>
 
-namespace yuragi::look {
+namespace yuragi::wind {
 namespace {
 
 constexpr double kTick_s = 0.25;
 
-struct Wind {
-  double east_m_s;
-  double north_m_s;
-};
-
-Wind from(double direction_deg, double speed_m_s = 5.0) {
-  const double angle = direction_deg * M_PI / 180.0;
-  return {-speed_m_s * std::sin(angle), -speed_m_s * std::cos(angle)};
+WindVector from(double direction_deg, double speed_m_s = 5.0) {
+  return wind_from(speed_m_s, direction_deg);
 }
 
-void blow(WindSide& side, double duration_s, Wind wind, bool is_live = true) {
-  for (double passed_s = 0.0; passed_s < duration_s; passed_s += kTick_s)
-    side.advance(kTick_s, wind.east_m_s, wind.north_m_s, is_live);
+void blow(ViewWind& side, double duration_s, WindVector wind, bool is_live = true) {
+  for (double passed_s = 0.0; passed_s < duration_s; passed_s += kTick_s) side.advance(kTick_s, wind, is_live);
 }
 
 double off_deg(double a_deg, double b_deg) {
   return std::abs(std::remainder(a_deg - b_deg, 360.0));
 }
 
-TEST(WindSide, BeginsWithTheClimateAndTakesTheFirstLiveWindAtOnce) {
-  WindSide side(240.0);
+TEST(ViewWind, BeginsWithTheClimateAndTakesTheFirstLiveWindAtOnce) {
+  ViewWind side(240.0);
   EXPECT_EQ(side.from_deg(), 240.0);
   blow(side, 1.0, from(100.0));
   EXPECT_NEAR(side.from_deg(), 100.0, 1e-9);
 }
 
-TEST(WindSide, TurnsToASensorThatComesLateInsteadOfJumping) {
-  WindSide side(240.0);
+TEST(ViewWind, TurnsToASensorThatComesLateInsteadOfJumping) {
+  ViewWind side(240.0);
   blow(side, 60.0, from(240.0), false);
   blow(side, 20.0, from(100.0));
   EXPECT_NEAR(side.from_deg(), 230.0, 0.2);
 }
 
-TEST(WindSide, StaysWithinTheDeadBand) {
-  WindSide side(240.0);
+TEST(ViewWind, StaysWithinTheDeadBand) {
+  ViewWind side(240.0);
   blow(side, 100.0, from(240.0));
   blow(side, 4000.0, from(249.0));
   EXPECT_NEAR(side.from_deg(), 240.0, 1e-9);
@@ -53,17 +46,17 @@ TEST(WindSide, StaysWithinTheDeadBand) {
   EXPECT_NEAR(side.from_deg(), 251.0, 1.1) << "beyond the dead band it follows";
 }
 
-TEST(WindSide, FollowsTheMeanOfTenMinutesAndNotAGust) {
-  WindSide side(240.0);
+TEST(ViewWind, FollowsTheMeanOfTenMinutesAndNotAGust) {
+  ViewWind side(240.0);
   blow(side, 1000.0, from(240.0));
   blow(side, 20.0, from(330.0));
   EXPECT_NEAR(side.from_deg(), 240.0, 1e-9);
   blow(side, 3000.0, from(330.0));
-  EXPECT_NEAR(side.from_deg(), 330.0, WindSide::kDeadBand_deg);
+  EXPECT_NEAR(side.from_deg(), 330.0, ViewWind::kDeadBand_deg);
 }
 
-TEST(WindSide, TurnsByAtMostHalfADegreeASecondTheShortWayThroughNorth) {
-  WindSide side(240.0);
+TEST(ViewWind, TurnsByAtMostHalfADegreeASecondTheShortWayThroughNorth) {
+  ViewWind side(240.0);
   blow(side, 1.0, from(350.0));
   double last_deg = side.from_deg();
   double fastest_deg = 0.0;
@@ -78,39 +71,39 @@ TEST(WindSide, TurnsByAtMostHalfADegreeASecondTheShortWayThroughNorth) {
   }
   EXPECT_LE(fastest_deg, 0.5 * kTick_s + 1e-9);
   EXPECT_LE(farthest_deg, 15.1) << "never through south";
-  EXPECT_LE(off_deg(side.from_deg(), 20.0), WindSide::kDeadBand_deg);
+  EXPECT_LE(off_deg(side.from_deg(), 20.0), ViewWind::kDeadBand_deg);
 }
 
-TEST(WindSide, IsHeldInCalmWithoutLiveWindAndForWhatIsNoNumber) {
+TEST(ViewWind, IsHeldInCalmWithoutLiveWindAndForWhatIsNoNumber) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  WindSide side(240.0);
+  ViewWind side(240.0);
   blow(side, 100.0, from(100.0));
   const double held_deg = side.from_deg();
   blow(side, 1000.0, from(200.0, 5.0), false);
   EXPECT_EQ(side.from_deg(), held_deg);
-  side.advance(kTick_s, kNan, 3.0, true);
-  side.advance(kTick_s, 3.0, std::numeric_limits<double>::infinity(), true);
-  side.advance(kNan, 3.0, 3.0, true);
-  side.advance(-1.0, 3.0, 3.0, true);
+  side.advance(kTick_s, {kNan, 3.0}, true);
+  side.advance(kTick_s, {3.0, std::numeric_limits<double>::infinity()}, true);
+  side.advance(kNan, {3.0, 3.0}, true);
+  side.advance(-1.0, {3.0, 3.0}, true);
   EXPECT_EQ(side.from_deg(), held_deg);
 
-  WindSide calm(240.0);
+  ViewWind calm(240.0);
   blow(calm, 1000.0, from(100.0, 0.9));
   EXPECT_EQ(calm.from_deg(), 240.0);
-  EXPECT_EQ(WindSide(kNan).from_deg(), 0.0);
-  EXPECT_EQ(WindSide(-90.0).from_deg(), 270.0);
+  EXPECT_EQ(ViewWind(kNan).from_deg(), 0.0);
+  EXPECT_EQ(ViewWind(-90.0).from_deg(), 270.0);
 }
 
-TEST(WindSide, GivesTheSameBitsTwice) {
-  WindSide one(240.0);
-  WindSide other(240.0);
+TEST(ViewWind, GivesTheSameBitsTwice) {
+  ViewWind one(240.0);
+  ViewWind other(240.0);
   for (int i = 0; i < 5000; ++i) {
-    const Wind wind = from(200.0 + 80.0 * std::sin(0.01 * i), 3.0 + 2.0 * std::cos(0.1 * i));
-    one.advance(kTick_s, wind.east_m_s, wind.north_m_s, i % 7 != 0);
-    other.advance(kTick_s, wind.east_m_s, wind.north_m_s, i % 7 != 0);
+    const WindVector wind = from(200.0 + 80.0 * std::sin(0.01 * i), 3.0 + 2.0 * std::cos(0.1 * i));
+    one.advance(kTick_s, wind, i % 7 != 0);
+    other.advance(kTick_s, wind, i % 7 != 0);
     ASSERT_EQ(one.from_deg(), other.from_deg());
   }
 }
 
 }  // namespace
-}  // namespace yuragi::look
+}  // namespace yuragi::wind
