@@ -44,6 +44,17 @@ constexpr float kSootThins = 0.55F;
 constexpr float kSootIsGone = 0.95F;
 constexpr float kSootThinsUp = 0.45F;
 
+/// Beyond it a step is no longer a whole number of its unit.
+constexpr double kMaxTime_s = 1e12;
+
+bool is_time(double time_s) {
+  return std::abs(time_s) <= kMaxTime_s;  // not of a NaN
+}
+
+double sound_wind_m_s(double wind_m_s) {
+  return std::isfinite(wind_m_s) ? std::clamp(wind_m_s, 0.0, FlameGas::kMaxWind_m_s) : 0.0;
+}
+
 /// (std::lerp is exact at both ends, and slow.)
 float mix(float from, float to, float part) {
   return from + part * (to - from);
@@ -143,6 +154,7 @@ FlameGas::FlameGas(const FlameVolume& volume)
 }
 
 void FlameGas::settle_at(double time_s, double wind_m_s, const FlameVolume& volume) {
+  if (!is_time(time_s)) return;
   std::ranges::fill(cells_, Cell{});
   std::ranges::fill(shown_, Cell{});
   const auto now = static_cast<std::int64_t>(std::floor(time_s / kStep_s)) + 1;
@@ -158,6 +170,7 @@ void FlameGas::settle_at(double time_s, double wind_m_s, const FlameVolume& volu
 }
 
 void FlameGas::advance_to(double time_s, double wind_m_s, const FlameVolume& volume) {
+  if (!is_time(time_s)) return;
   const double passed_s = time_s - time_s_;
   if (!has_begun_ || passed_s < 0.0 || passed_s > kJump_s) {
     settle_at(time_s, wind_m_s, volume);
@@ -174,7 +187,8 @@ void FlameGas::advance_to(double time_s, double wind_m_s, const FlameVolume& vol
   write_texels(static_cast<float>(time_s / kStep_s - static_cast<double>(steps_ - 1)));
 }
 
-void FlameGas::step(double time_s, double wind_m_s, const FlameVolume& volume) {
+void FlameGas::step(double time_s, double given_wind_m_s, const FlameVolume& volume) {
+  const double wind_m_s = sound_wind_m_s(given_wind_m_s);
   constexpr std::size_t n = kAcross;
   constexpr float middle = 0.5F * static_cast<float>(n - 1);
   constexpr auto dt_s = static_cast<float>(kStep_s);

@@ -25,11 +25,13 @@ class FlameGas {
   static constexpr double kStep_s = 1.0 / 60.0;
   static constexpr double kSettling_s = 2.5;
   static constexpr double kJump_s = 1.0;
+  static constexpr double kMaxWind_m_s = 100.0;  ///< a stronger one counts as this
 
   /// Of a volume that is not empty.
   explicit FlameGas(const FlameVolume& volume);
 
-  /// Advances to a moment; the volume is that moment's. The wind is a speed.
+  /// Advances to a moment; the volume is that moment's. The wind is a speed; one that is negative or not finite counts
+  /// as none. A time that is not finite, or beyond any date, changes nothing.
   void advance_to(double time_s, double wind_m_s, const FlameVolume& volume);
   /// Begins anew, settled, at a moment.
   void settle_at(double time_s, double wind_m_s, const FlameVolume& volume);
