@@ -11,13 +11,13 @@ namespace {
 
 constexpr double kUsualDistance_m = 10.0;
 constexpr double kAway_m = 0.5;  // of an eye from an obstacle
-constexpr double kHeadingStep_deg = 5.0;
+constexpr int kHeadings = 72;
 
 /// The distance at which all of the scene is in the picture from every side.
 double distance_from_all_sides_m(const meshes::Bounds& scene, meshes::CameraPlace place, double aspect) {
   double distance_m = 0.0;
-  for (double heading_deg = 0.0; heading_deg < 360.0; heading_deg += kHeadingStep_deg) {
-    place.heading_deg = heading_deg;
+  for (int heading = 0; heading < kHeadings; ++heading) {
+    place.heading_deg = heading * (360.0 / kHeadings);
     distance_m = std::max(distance_m, distance_to_see(scene, place, aspect));
   }
   return distance_m;

@@ -23,8 +23,8 @@ struct Camera {
   double target_y_m = 0.0;
   double target_z_m = 0.0;
   double heading_deg = 210.0;  ///< direction of view: 0 north, 90 east
-  /// Between the view and where the mean wind comes from (wind::ViewWind), clockwise: the heading follows the wind. Nothing:
-  /// `heading_deg` is the heading
+  /// Between the view and where the mean wind comes from (wind::ViewWind), clockwise: the heading follows the wind.
+  /// Nothing: `heading_deg` is the heading
   std::optional<double> wind_angle_deg = std::nullopt;
   double pitch_deg = 6.0;  ///< of the view below level; below 0 it looks up
   /// Of the eye from the target. Nothing: so far that all of the scene is in the picture; without a scene 10 m

@@ -30,12 +30,16 @@ constexpr double kSettling_s = 6.0;
 constexpr std::uint8_t kFlameRed = 120;  // and more, by night, is flame
 constexpr int kRim_px = 90;              // the row where the bowl begins
 
+std::size_t index_of(int x, int y) {
+  return static_cast<std::size_t>(y) * kWidth_px + static_cast<std::size_t>(x);
+}
+
 /// A picture of the flame by night: which pixels are flame, column after column in rows from the top.
 struct Silhouette {
-  std::vector<bool> is_flame = std::vector<bool>(kWidth_px * kHeight_px);
+  std::vector<bool> is_flame = std::vector<bool>(index_of(0, kHeight_px));
   int saturated = 0;  ///< of its pixels
   int count = 0;
-  bool at(int x, int y) const { return is_flame[static_cast<std::size_t>(y * kWidth_px + x)]; }
+  bool at(int x, int y) const { return is_flame[index_of(x, y)]; }
 };
 
 struct FireFilm {
@@ -45,7 +49,7 @@ struct FireFilm {
 
 Silhouette silhouette_of(const std::vector<std::uint8_t>& rgb) {
   Silhouette shape;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(kRim_px * kWidth_px); ++i) {
+  for (std::size_t i = 0; i < index_of(0, kRim_px); ++i) {
     const std::uint8_t red = rgb[3 * i];
     if (red < kFlameRed || rgb[3 * i + 2] + 40 > red) continue;
     shape.is_flame[i] = true;
@@ -72,7 +76,7 @@ FireFilm film_of(double speed_m_s, double sun_height_deg, const char* name) {
   FireFilm film;
   const meshes::View view = meshes::view_of(camera, kWidth_px, kHeight_px);
   film.metres_per_px = kDistance_m * static_cast<double>(view.eye_m.w);
-  const char* const folder = std::getenv("YURAGI_FIRE_FOLDER");
+  const char* const folder = std::getenv("YURAGI_FIRE_FOLDER");  // NOLINT(concurrency-mt-unsafe): nobody sets it
   Canvas strip(6 * kWidth_px, 2 * kHeight_px);
   for (int picture = 0; picture < kPictures; ++picture) {
     scenes.advance(1.0 / kRate_hz);
@@ -116,7 +120,7 @@ int detached_px(const Silhouette& shape) {
           const int x = at % kWidth_px + dx;
           const int y = at / kWidth_px + dy;
           if (x < 0 || x >= kWidth_px || y < 0 || y >= kHeight_px) continue;
-          const auto next = static_cast<std::size_t>(y * kWidth_px + x);
+          const auto next = index_of(x, y);
           if (!shape.is_flame[next] || piece_of[next] >= 0) continue;
           piece_of[next] = piece;
           stack.push_back(static_cast<int>(next));

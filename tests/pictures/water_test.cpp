@@ -75,7 +75,8 @@ PondFilm film_of(double speed_m_s) {
     for (int row = 0; row < kHeight_px; ++row) {
       for (int column = 0; column < kWidth_px; ++column) white += luminance(down, column, row) > kFoamGrey ? 1.0 : 0.0;
     }
-    film.foam_share += white / (kWidth_px * kHeight_px) / (kPictures / kFromAbove);
+    constexpr int kCounted = kPictures / kFromAbove;
+    film.foam_share += white / (kWidth_px * kHeight_px) / kCounted;
   }
   return film;
 }

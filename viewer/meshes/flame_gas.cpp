@@ -301,7 +301,7 @@ void FlameGas::step(double time_s, double given_wind_m_s, const FlameVolume& vol
 
 void FlameGas::write_texels(float part) {
   const auto byte_of = [](float value) {
-    return static_cast<std::uint8_t>(255.0F * std::clamp(value, 0.0F, 1.0F) + 0.5F);
+    return static_cast<std::uint8_t>(std::lrint(255.0F * std::clamp(value, 0.0F, 1.0F)));
   };
   for (std::size_t layer = 0; layer < kLayers; ++layer) {
     float farthest = 0.0F;

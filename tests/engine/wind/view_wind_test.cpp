@@ -16,7 +16,8 @@ WindVector from(double direction_deg, double speed_m_s = 5.0) {
 }
 
 void blow(ViewWind& side, double duration_s, WindVector wind, bool is_live = true) {
-  for (double passed_s = 0.0; passed_s < duration_s; passed_s += kTick_s) side.advance(kTick_s, wind, is_live);
+  const auto ticks = std::lrint(std::ceil(duration_s / kTick_s));
+  for (long tick = 0; tick < ticks; ++tick) side.advance(kTick_s, wind, is_live);
 }
 
 double off_deg(double a_deg, double b_deg) {

@@ -19,6 +19,11 @@ namespace {
 constexpr int kWidth_px = 320;
 constexpr int kHeight_px = 240;
 
+/// Of a pixel among the luminances of a picture.
+std::size_t index_of(int row, int column) {
+  return static_cast<std::size_t>(row) * kWidth_px + static_cast<std::size_t>(column);
+}
+
 light::Light clear_noon() {
   const std::vector<std::string> look{"sun=fixed", "sun_height=60", "sun_azimuth=180", "clouds=0"};
   return light::light_of(look::edited({}, look).value(), 0.0);
@@ -78,8 +83,7 @@ TEST_F(MeadowTest, ALawnNearByChangesFromPatchToPatchMoreThanFromBladeToBlade) {
     for (int left = 0; left < kWidth_px; left += kSide_px) {
       std::vector<double> square;
       for (int row = top; row < top + kSide_px; ++row) {
-        for (int column = left; column < left + kSide_px; ++column)
-          square.push_back(picture.at(static_cast<std::size_t>(row * kWidth_px + column)));
+        for (int column = left; column < left + kSide_px; ++column) square.push_back(picture.at(index_of(row, column)));
       }
       double sum = 0.0;
       for (const double value : square) sum += value;
@@ -114,7 +118,7 @@ TEST_F(MeadowTest, NoEdgeIsSeenWhereTheBladesOfAMeadowEnd) {
     constexpr int kBeside_px = 4;
     double sum = 0.0, deviations = 0.0, count = 0.0;
     for (int row = row_at(far_m); row < row_at(near_m); ++row) {
-      const auto* line = &picture.at(static_cast<std::size_t>(row * kWidth_px));
+      const auto* line = &picture.at(index_of(row, 0));
       for (int column = kBeside_px; column < kWidth_px - kBeside_px; ++column) {
         double beside = 0.0;
         for (int other = column - kBeside_px; other <= column + kBeside_px; ++other)
@@ -157,8 +161,8 @@ TEST_F(MeadowTest, GustsTravelOverTheGrassAroundAFlagAtTheWindsSpeed) {
     double sum = 0.0, squares_before = 0.0, squares_after = 0.0;
     for (int row = 0; row < kHeight_px; ++row) {
       for (int column = std::max(0, -shift_px); column < std::min(kWidth_px, kWidth_px - shift_px); ++column) {
-        const double a = before[static_cast<std::size_t>(row * kWidth_px + column)];
-        const double b = after[static_cast<std::size_t>(row * kWidth_px + column + shift_px)];
+        const double a = before[index_of(row, column)];
+        const double b = after[index_of(row, column + shift_px)];
         sum += a * b;
         squares_before += a * a;
         squares_after += b * b;
