@@ -1,5 +1,7 @@
 // `yuragi wind`: runs the daemon's estimator over a recording, and prints a table.
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -148,10 +150,14 @@ class Table {
   void add(double time_s, const wind::WindState& state, std::span<const wind::WindVector> at_places) {
     // Just west of north is rounded to 0, not to 360.
     const double direction_deg = std::fmod(std::round(wind::direction_from_deg(state.wind) * 1e4) / 1e4, 360.0);
-    fmt::format_to(std::back_inserter(text_), "{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{}", time_s, state.wind.u_m_s,
-                   state.wind.v_m_s, speed_of(state.wind), direction_deg, state.live_weight, name_of(state.source));
+    add_number(time_s, 6);
+    for (const double value : {state.wind.u_m_s, state.wind.v_m_s, speed_of(state.wind)}) add_cell(value, 6);
+    add_cell(direction_deg, 4);
+    add_cell(state.live_weight, 4);
+    text_.append(1, ',').append(name_of(state.source));
     for (const wind::WindVector wind : at_places) {
-      fmt::format_to(std::back_inserter(text_), ",{:.6f},{:.6f}", wind.u_m_s, wind.v_m_s);
+      add_cell(wind.u_m_s, 6);
+      add_cell(wind.v_m_s, 6);
     }
     text_ += '\n';
     if (text_.size() > kBlock) flush();
@@ -169,6 +175,19 @@ class Table {
 
  private:
   static constexpr std::size_t kBlock = 1 << 16;
+
+  void add_cell(double value, int digits_after_point) {
+    text_ += ',';
+    add_number(value, digits_after_point);
+  }
+  /// Most of what a table with many places costs.
+  void add_number(double value, int digits_after_point) {
+    std::array<char, 400> digits{};  // of any number
+    const auto end =
+        std::to_chars(digits.begin(), digits.end(), value, std::chars_format::fixed, digits_after_point).ptr;
+    text_.append(digits.begin(), end);
+  }
+
   std::FILE* out_;
   std::string text_;
   bool is_complete_ = true;

@@ -11,6 +11,9 @@ namespace {
 /// A time stamp farther than this from now is of another clock, or wrong.
 constexpr Nanoseconds kBelievableAge = std::chrono::seconds(5);
 
+/// A worker that does not start in time has so many times longer at last: the machine may be slow.
+constexpr int kMostPatience = 8;
+
 }  // namespace
 
 MicrophoneSensor::MicrophoneSensor(MicrophoneSettings settings, std::uint32_t seed, std::unique_ptr<bus::BytePort> port)
@@ -22,7 +25,8 @@ Result<MonoTime, Failure> MicrophoneSensor::open(const sensor::Clock& clock) {
   trouble_.clear();
   if (auto opened = port_->open(); !opened) return opened.error();
   const MonoTime now = clock.now().mono;
-  deadline_ = now + settings_.start_timeout;
+  start_timeout_ = settings_.start_timeout * patience_;
+  deadline_ = now + start_timeout_;
   return now;
 }
 
@@ -53,10 +57,11 @@ Result<MonoTime, Failure> MicrophoneSensor::work(const sensor::Clock& clock, sen
           "may show why"};
   }
   sink.refused(decode::Refusal::kTimeout);
+  if (!hello_) patience_ = std::min(2 * patience_, kMostPatience);
   return Failure{hello_ ? fmt::format("{} has been silent for {:g} s: starting it again", hello_->device,
                                       seconds(settings_.sound_timeout))
                         : fmt::format("the microphone's worker has not started within {:g} s: starting it again",
-                                      seconds(settings_.start_timeout))};
+                                      seconds(start_timeout_))};
 }
 
 void MicrophoneSensor::take(const decode::microphone::MicFrameReader::Item& item, const sensor::Clock& clock,
@@ -68,6 +73,7 @@ void MicrophoneSensor::take(const decode::microphone::MicFrameReader::Item& item
     trouble_ = trouble->message;
   } else if (const auto* hello = std::get_if<decode::microphone::MicHello>(&*item.frame)) {
     take(*hello);
+    patience_ = 1;
     deadline_ = now.mono + settings_.sound_timeout;
   } else {
     deadline_ = now.mono + settings_.sound_timeout;

@@ -16,9 +16,11 @@ namespace yuragi::drivers::microphone {
 
 struct MicrophoneSettings {
   decode::microphone::MicEstimatorOptions estimator{};
-  bool is_calibrated = false;                            ///< if not, every reading is uncertain
-  Nanoseconds start_timeout = std::chrono::seconds(15);  ///< for the worker's first frame: sound systems start slowly
-  Nanoseconds sound_timeout = std::chrono::seconds(3);   ///< from block to block, of which there are four a second
+  bool is_calibrated = false;  ///< if not, every reading is uncertain
+  /// For the worker's first frame: sound systems start slowly. After each start that took too long it is doubled, up to
+  /// eight times this.
+  Nanoseconds start_timeout = std::chrono::seconds(15);
+  Nanoseconds sound_timeout = std::chrono::seconds(3);  ///< from block to block, of which there are four a second
 };
 
 /// Wind by microphone. The sound library runs in another process, the worker, whose frames come through `port`; this is
@@ -49,6 +51,8 @@ class MicrophoneSensor final : public sensor::ReopeningSensor {
   std::optional<decode::microphone::MicHello> hello_;
   std::optional<decode::microphone::MicEstimator> estimator_;
   std::string trouble_;  ///< the worker's last message
+  int patience_ = 1;     ///< times settings_.start_timeout
+  Nanoseconds start_timeout_{};
   MonoTime deadline_{};
   std::array<std::uint8_t, 8192> buffer_{};
 };

@@ -202,7 +202,7 @@ class MicrophoneWatchdog : public ProcessPortTest {
 };
 
 TEST_F(MicrophoneWatchdog, BeginsAWorkerAgainThatSpins) {
-  EXPECT_THAT(detail_after(count() + "while :; do :; done"), HasSubstr("has not started within 0.3 s"));
+  EXPECT_THAT(detail_after(count() + "while :; do :; done"), HasSubstr("has not started within"));
   EXPECT_TRUE(is_gone(script_pid()));
   EXPECT_TRUE(sink_.readings.empty());
 }

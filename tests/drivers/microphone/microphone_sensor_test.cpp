@@ -5,6 +5,7 @@
 #include <functional>
 #include <variant>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -207,6 +208,24 @@ TEST_F(MicrophoneSensorTest, KillsAWorkerThatNeverBegins) {
   EXPECT_EQ(port_.closed, 1);
   EXPECT_EQ(sink_.count(decode::Refusal::kTimeout), 1);
   EXPECT_THAT(sink_.last_detail(), HasSubstr("has not started"));
+}
+
+TEST_F(MicrophoneSensorTest, OnASlowMachineGivesTheWorkerMoreTimeToBeginFromStartToStart) {
+  poll();
+  for (const double wait_s : {15.0, 30.0, 60.0, 120.0, 120.0}) {
+    const MonoTime begun = clock_.now().mono;
+    poll();
+    EXPECT_GE(seconds(clock_.now().mono - begun), wait_s);
+    EXPECT_THAT(sink_.last_detail(), HasSubstr(fmt::format("not started within {:g} s", wait_s)));
+    while (port_.opened == port_.closed) poll();
+  }
+  send_hello();
+  hear();
+  say(bus::ByteStatus::kLost);
+  hear();
+  while (port_.opened == port_.closed) poll();
+  poll();
+  EXPECT_THAT(sink_.last_detail(), HasSubstr("not started within 15 s")) << "it has begun since";
 }
 
 TEST_F(MicrophoneSensorTest, KillsAWorkerThatTalksWithoutSayingAnything) {
