@@ -4,7 +4,7 @@
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
-                                  ${CCACHE_PROGRAM})
+                                  CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
   set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
 
@@ -20,6 +20,9 @@ target_compile_options(yuragi_flags INTERFACE
   $<$<BOOL:${YURAGI_WERROR}>:-Werror>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(yuragi_flags INTERFACE --param=ggc-min-heapsize=524288) # its garbage collection waits: 5 to 10 % less CPU time (measured), up to 0.3 GB more memory
+endif()
+if(YURAGI_PRECOMPILE_HEADERS)
+  target_compile_options(yuragi_flags INTERFACE -pthread) # as libraries that some rooms use want it: headers are read once for all
 endif()
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_compile_options(yuragi_flags INTERFACE -Wno-subobject-linkage) # each of our files seems a header there
@@ -164,18 +167,21 @@ std::span<const @ARG_TYPE@* const> @ARG_TABLE@() {
 endfunction()
 
 # yuragi_test(NAME SOURCES ... LINK ... [NEEDS ...] [LABELS ...] [UNSANITIZED ...] [LONG ...] [ALONE]): one GoogleTest program, each of
-# its cases a CTest test; with sanitizers, where a process costs more than a case, a part of its cases is one. Those of the engine but
-# for its base and its workers, in which there are no threads, are labelled `threadless`. NEEDS names other programs that it runs.
-# UNSANITIZED names cases that repeat for their statistics what shorter cases do once: a sanitizer sees the same memory accesses there,
-# and leaves the long ones out; and cases that cannot run with one. LONG names cases that do on other records what the others do on
-# one: they are labelled `long`.
+# its cases a CTest test; with sanitizers, where a process costs more than a case, a part of its cases is one. Those of the engine are
+# labelled `engine`, and but for its base and its workers, in which there are no threads, `engine_threadless`. NEEDS names other programs that
+# it runs. UNSANITIZED names cases that repeat for their statistics what shorter cases do once: a sanitizer sees the same memory accesses
+# there, and leaves the long ones out; and cases that cannot run with one. They are labelled `native`. LONG names cases that do on other
+# records what the others do on one: they are labelled `long`.
 #
 # In a unity build the programs of a folder of tests/ that have the same labels are built as one (yuragi_join_tests), and the program
-# itself only when it is named. ALONE: not this one, which replaces operator new or is compiled in another way.
+# itself only when it is named; with YURAGI_WITHOUT_SANITIZED those with UNSANITIZED cases are one, and the others none. ALONE: not this one, which replaces operator new or
+# is compiled in another way.
 function(yuragi_test name)
   cmake_parse_arguments(ARG "ALONE" "" "SOURCES;LINK;NEEDS;LABELS;LONG;UNSANITIZED" ${ARGN})
-  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/" AND NOT CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/(base|workers)")
-    list(APPEND ARG_LABELS threadless)
+  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/(base|workers)")
+    set(ARG_LABELS engine)
+  elseif(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/" AND NOT ARG_LABELS)
+    set(ARG_LABELS engine_threadless) # one label, since CTest's list of them gets lost in a list of properties
   endif()
   yuragi_test_program(${name})
   if(CMAKE_UNITY_BUILD AND NOT ARG_ALONE)
@@ -184,6 +190,10 @@ function(yuragi_test name)
     foreach(label IN LISTS ARG_LABELS)
       string(APPEND group _${label})
     endforeach()
+    string(REGEX REPLACE "_engine" "" group ${group})
+    if(ARG_UNSANITIZED AND YURAGI_WITHOUT_SANITIZED)
+      string(APPEND group _unsanitized)
+    endif()
     list(TRANSFORM ARG_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ REGEX "^[^/]")
     get_directory_property(ARG_OPTIONS COMPILE_OPTIONS)
     set_property(GLOBAL APPEND PROPERTY YURAGI_TESTS ${group})
@@ -230,7 +240,12 @@ endfunction()
 function(yuragi_add_to_ctest name parts)
   # What a sanitizer leaves out is not built for it.
   if((YURAGI_SANITIZE AND "native" IN_LIST ARG_LABELS) OR
-     (YURAGI_SANITIZE MATCHES thread AND "threadless" IN_LIST ARG_LABELS))
+     (YURAGI_SANITIZE MATCHES thread AND ARG_LABELS MATCHES threadless))
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+    return()
+  endif()
+  # What sanitizers run is not built where that is left to them.
+  if(YURAGI_WITHOUT_SANITIZED AND NOT ARG_UNSANITIZED AND NOT ARG_LABELS MATCHES "native|engine")
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
     return()
   endif()
@@ -241,10 +256,15 @@ function(yuragi_add_to_ctest name parts)
   endif()
   if(NOT YURAGI_SANITIZE)
     list(JOIN ARG_LONG ":" long)
-    gtest_discover_tests(${name} TEST_FILTER "-${long}" DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
+    list(JOIN ARG_UNSANITIZED ":" unsanitized)
+    gtest_discover_tests(${name} TEST_FILTER "-${long}:${unsanitized}" DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})
     if(ARG_LONG)
       gtest_discover_tests(${name} TEST_FILTER "${long}" TEST_LIST ${name}_long DISCOVERY_TIMEOUT 60
         PROPERTIES TIMEOUT 600 LABELS long)
+    endif()
+    if(ARG_UNSANITIZED)
+      gtest_discover_tests(${name} TEST_FILTER "${unsanitized}" TEST_LIST ${name}_unsanitized DISCOVERY_TIMEOUT 60
+        PROPERTIES TIMEOUT 600 LABELS native)
     endif()
     return()
   endif()
@@ -252,7 +272,8 @@ function(yuragi_add_to_ctest name parts)
   math(EXPR last "${parts} - 1")
   foreach(part RANGE ${last})
     add_test(NAME ${name}.${part} COMMAND ${name} --gtest_filter=-${left_out})
-    set_tests_properties(${name}.${part} PROPERTIES ${properties} ENVIRONMENT "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part}")
+    set_tests_properties(${name}.${part} PROPERTIES ${properties} ENVIRONMENT
+      "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part};GTEST_OUTPUT=xml:${PROJECT_BINARY_DIR}/cases/${name}.${part}.xml")
   endforeach()
 endfunction()
 
@@ -309,32 +330,101 @@ function(yuragi_unity_groups)
     return()
   endif()
   set(lines "")
-  set(folders ${PROJECT_SOURCE_DIR})
-  while(folders)
-    list(POP_FRONT folders folder)
-    get_directory_property(below DIRECTORY ${folder} SUBDIRECTORIES)
-    list(APPEND folders ${below})
-    get_directory_property(targets DIRECTORY ${folder} BUILDSYSTEM_TARGETS)
-    foreach(target IN LISTS targets)
-      get_target_property(sources ${target} SOURCES)
-      get_target_property(source_folder ${target} SOURCE_DIR)
-      list(FILTER sources INCLUDE REGEX "^[^$]*\\.cpp$")
-      list(TRANSFORM sources PREPEND ${source_folder}/ REGEX "^[^/]")
-      list(LENGTH sources count)
-      if(count GREATER 1)
-        list(JOIN sources "\t" sources)
-        string(APPEND lines "${target}\t${source_folder}\t${sources}\n")
-        string(REPLACE "\t" ";" sources "${sources}")
-        set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${sources})
-      endif()
-    endforeach()
-  endwhile()
+  yuragi_targets(targets)
+  foreach(target IN LISTS targets)
+    get_target_property(sources ${target} SOURCES)
+    get_target_property(source_folder ${target} SOURCE_DIR)
+    list(FILTER sources INCLUDE REGEX "^[^$]*\\.cpp$")
+    list(TRANSFORM sources PREPEND ${source_folder}/ REGEX "^[^/]")
+    list(LENGTH sources count)
+    if(count GREATER 1)
+      list(JOIN sources "\t" sources)
+      string(APPEND lines "${target}\t${source_folder}\t${sources}\n")
+      string(REPLACE "\t" ";" sources "${sources}")
+      set_property(DIRECTORY ${PROJECT_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${sources})
+    endif()
+  endforeach()
   set(listed ${PROJECT_BINARY_DIR}/unity_targets.txt)
   set(groups ${PROJECT_BINARY_DIR}/unity_groups.cmake)
   file(WRITE ${listed} "${lines}")
   execute_process(COMMAND ${PYTHON3_PROGRAM} ${PROJECT_SOURCE_DIR}/config/cmake/unity_groups.py ${listed}
     OUTPUT_FILE ${groups} COMMAND_ERROR_IS_FATAL ANY)
   include(${groups})
+endfunction()
+
+# yuragi_targets(RESULT): all targets of the project's folders.
+function(yuragi_targets result)
+  set(all "")
+  set(folders ${PROJECT_SOURCE_DIR})
+  while(folders)
+    list(POP_FRONT folders folder)
+    get_directory_property(below DIRECTORY ${folder} SUBDIRECTORIES)
+    list(APPEND folders ${below})
+    get_directory_property(targets DIRECTORY ${folder} BUILDSYSTEM_TARGETS)
+    list(APPEND all ${targets})
+  endwhile()
+  set(${result} ${all} PARENT_SCOPE)
+endfunction()
+
+# yuragi_precompile_headers(): to be called last. With YURAGI_PRECOMPILE_HEADERS the headers that most sources include are read once
+# for all targets that are compiled with the same options: a second of each source's compilation.
+function(yuragi_precompile_headers)
+  if(NOT YURAGI_PRECOMPILE_HEADERS)
+    return()
+  endif()
+  set(headers <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <deque> <filesystem> <fstream> <functional> <map>
+    <memory> <mutex> <numeric> <optional> <random> <ranges> <set> <span> <sstream> <string> <thread> <tuple> <unordered_map> <utility>
+    <variant> <vector> <fmt/format.h> <gmock/gmock.h> <gtest/gtest.h> <nlohmann/json.hpp>)
+  set(empty ${PROJECT_BINARY_DIR}/empty.cpp)
+  file(CONFIGURE OUTPUT ${empty} CONTENT "")
+  set(kinds "")
+  yuragi_targets(targets)
+  foreach(target IN LISTS targets)
+    get_target_property(type ${target} TYPE)
+    get_target_property(options ${target} COMPILE_OPTIONS)
+    get_target_property(sources ${target} SOURCES)
+    list(FILTER sources INCLUDE REGEX "\\.(cpp|cc)$")
+    get_target_property(linked ${target} LINK_LIBRARIES)
+    if(NOT type MATCHES "STATIC_LIBRARY|EXECUTABLE" OR NOT sources OR NOT linked MATCHES "yuragi_") # by which it has yuragi_flags
+      continue()
+    endif()
+    if(NOT options)
+      set(options "")
+    endif()
+    # Of several levels the last counts, each where CMake first met it.
+    list(REMOVE_DUPLICATES options)
+    list(TRANSFORM options REPLACE "^SHELL:" "")
+    set(levels ${options})
+    list(FILTER levels INCLUDE REGEX "^-O")
+    list(FILTER options EXCLUDE REGEX "^-O")
+    if(levels)
+      list(GET levels -1 level)
+      list(APPEND options ${level})
+    endif()
+    string(MAKE_C_IDENTIFIER "yuragi_precompiled_${type}_${options}" kind)
+    list(APPEND kinds ${kind})
+    list(APPEND ${kind} ${target})
+    set(${kind}_options ${options})
+  endforeach()
+  list(REMOVE_DUPLICATES kinds)
+  foreach(kind IN LISTS kinds)
+    list(LENGTH ${kind} count)
+    if(count LESS 4)
+      continue() # it would take longer than it saves
+    endif()
+    add_library(${kind} OBJECT EXCLUDE_FROM_ALL ${empty})
+    if(kind MATCHES EXECUTABLE)
+      list(APPEND ${kind}_options -fPIE) # libraries have -fPIC
+      set_target_properties(${kind} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+    endif()
+    target_link_libraries(${kind} PRIVATE yuragi_flags GTest::gtest nlohmann_json::nlohmann_json fmt::fmt) # with their definitions
+    set_target_properties(${kind} PROPERTIES COMPILE_OPTIONS "${${kind}_options}")
+    target_precompile_headers(${kind} PRIVATE ${headers})
+    foreach(target IN LISTS ${kind})
+      target_precompile_headers(${target} REUSE_FROM ${kind})
+    endforeach()
+    set_target_properties(${kind} ${${kind}} PROPERTIES PCH_WARN_INVALID OFF)
+  endforeach()
 endfunction()
 
 # yuragi_fuzz(NAME SOURCES ... LINK ...): one libFuzzer program; CTest runs it for a few seconds.
@@ -347,6 +437,6 @@ function(yuragi_fuzz name)
   target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK})
   target_compile_options(${name} PRIVATE -fsanitize=fuzzer)
   target_link_options(${name} PRIVATE -fsanitize=fuzzer)
-  add_test(NAME ${name} COMMAND ${name} -max_total_time=5 -timeout=10 -rss_limit_mb=2048)
+  add_test(NAME ${name} COMMAND ${name} -max_total_time=4 -timeout=10 -rss_limit_mb=2048)
   set_tests_properties(${name} PROPERTIES PROCESSORS 2) # a core of its own: it works for so long, however much that is
 endfunction()

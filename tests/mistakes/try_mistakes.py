@@ -27,11 +27,11 @@ MISTAKES = (
         "test", "wind_test", "^Blended"),
     Mistake("an index that is not checked", (
         ("daemon/animation/animation.cpp", "if (cue.scene >= roster.scenes.size()) return;", ""),),
-        "test", "daemon_tests", "^AnimationTest"),
+        "asan", "daemon_tests", "^daemon_tests"),
     Mistake("an off-by-one in a decoder", (
         ("drivers/decode/hid/wmr100.cpp", "const std::size_t body = frame.size() - kWmr100Sum;",
          "const std::size_t body = frame.size() - kWmr100Sum - 1;"),),
-        "test", "drivers_tests_threadless", "Wmr100"),
+        "asan", "drivers_tests_threadless", "^drivers_tests_threadless"),
     Mistake("a constant in a shader", (
         ("viewer/gl/shaders/clouds.frag.glsl", "const float kDensity = 26.0;", "const float kDensity = 2.6;"),),
         "test", "pictures_test", "GoldenPictureTest"),

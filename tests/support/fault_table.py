@@ -3,7 +3,7 @@
 
 usage: fault_table.py RESULTS.xml [RESULTS.xml ...]
 
-Reads CTest's JUnit files and takes the tests that are named `<Driver>Fault.<Kind>` (with whatever GoogleTest adds to
+Reads JUnit files of CTest and of GoogleTest and takes the tests that are named `<Driver>Fault.<Kind>` (with whatever GoogleTest adds to
 either name), or `<Driver>/Fault.<Kind>` where drivers share a suite. A cell says how many tests it stands for; "-" is a
 fault that the driver cannot suffer. Ends with 1 if a test of the table failed or did not run, or if there is none.
 """
@@ -22,10 +22,13 @@ def cells_of(files):
     """{(driver, kind): [did it pass?, ...]}"""
     cells = collections.defaultdict(list)
     for file in files:
-        for case in xml.etree.ElementTree.parse(file).iter("testcase"):
-            name = NAME.search(case.get("name", "").split("  #")[0])
+        results = xml.etree.ElementTree.parse(file).getroot()
+        is_of_googletest = results.tag == "testsuites"
+        for case in results.iter("testcase"):
+            prefix = case.get("classname", "") + "." if is_of_googletest else ""
+            name = NAME.search(prefix + case.get("name", "").split("  #")[0])
             if name:
-                did_pass = case.get("status") == "run" and case.find("skipped") is None
+                did_pass = case.get("status") == "run" and case.find("skipped") is None and case.find("failure") is None
                 cells[name["driver"], name["kind"]].append(did_pass)
     return cells
 

@@ -8,6 +8,7 @@ without_record=0 # of those that were skipped: for want of the real recordings i
 again=0          # of those that passed: only by themselves, after they had failed among all (tests/support/run_again.py)
 stage_times=()
 complaints=()
+configuration=() # options of cmake besides those of a preset
 built_ahead=() # presets that build_ahead() builds
 
 # Nothing here asks a question: no test may wait for a keyboard.
@@ -85,7 +86,7 @@ collect() {
 
 # build_preset PRESET: configures and builds a preset of CMakePresets.json.
 build_preset() {
-  check "configuring $1" cmake --preset "$1" --log-level=WARNING || return
+  check "configuring $1" cmake --preset "$1" --log-level=WARNING "${configuration[@]}" || return
   check "building $1" timed "$1: build" cmake --build --preset "$1" || return
   /usr/bin/python3 tests/support/build_times.py "build/$1" || true
 }
