@@ -15,10 +15,12 @@ void main() {
   vec3 aside = cross(way, to_eye);
   aside = dot(aside, aside) > 1e-12 ? normalize(aside) : right.xyz;
   vec3 along = cross(to_eye, aside);
-  float half_m = radius_m + 0.5 * abs(dot(way, along));
+  float half_way_m = 0.5 * abs(dot(way, along));
+  float half_m = radius_m + half_way_m;
   place += aside * (corner.x * radius_m) + along * (corner.y * half_m) - 0.5 * way;
   across_along = corner;
-  // What is drawn larger than it is is dimmer.
-  glow = place_glow.w * min(1.0, 1.6 * before_radius.w / radius_m);
+  // What is drawn larger than it is is dimmer by as much, and gives no more light: sparks of a pixel, many of which cross a
+  // place in a storm, would flash (WCAG 2.3.1: flame_flash_test.cpp).
+  glow = place_glow.w * before_radius.w * (before_radius.w + half_way_m) / (radius_m * half_m);
   gl_Position = glow > 0.0 ? to_clip * vec4(place, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }
