@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds the test preset (CMakePresets.json) and runs every test. The last line says how many passed and failed.
 #
-#   tests/run.sh                 what CI runs
-#   tests/run.sh --unsanitized   of that, only what sanitizer builds leave out, and the engine's tests: .ci/run runs the others there
+#   tests/run.sh                 every test but the long ones
+#   tests/run.sh --unsanitized   of these the engine's tests and what sanitizer builds leave out: .ci/run runs the others with sanitizers
 #   tests/run.sh --long          everything: also tests that do on other records, seeds and species what others do on one; 10 minutes more
 #   tests/run.sh -R noise -V     arguments go to ctest
 set -euo pipefail

@@ -168,14 +168,14 @@ endfunction()
 
 # yuragi_test(NAME SOURCES ... LINK ... [NEEDS ...] [LABELS ...] [UNSANITIZED ...] [LONG ...] [ALONE]): one GoogleTest program, each of
 # its cases a CTest test; with sanitizers, where a process costs more than a case, a part of its cases is one. Those of the engine are
-# labelled `engine`, and but for its base and its workers, in which there are no threads, `engine_threadless`. NEEDS names other programs that
-# it runs. UNSANITIZED names cases that repeat for their statistics what shorter cases do once: a sanitizer sees the same memory accesses
+# labelled `engine`; where there are no threads (all but its base and its workers) `engine_threadless`. NEEDS names other programs that it
+# runs. UNSANITIZED names cases that repeat for their statistics what shorter cases do once: a sanitizer sees the same memory accesses
 # there, and leaves the long ones out; and cases that cannot run with one. They are labelled `native`. LONG names cases that do on other
 # records what the others do on one: they are labelled `long`.
 #
 # In a unity build the programs of a folder of tests/ that have the same labels are built as one (yuragi_join_tests), and the program
-# itself only when it is named; with YURAGI_WITHOUT_SANITIZED those with UNSANITIZED cases are one, and the others none. ALONE: not this one, which replaces operator new or
-# is compiled in another way.
+# itself only when it is named. With YURAGI_WITHOUT_SANITIZED those with UNSANITIZED cases are a program of their own. ALONE: not this
+# one, which replaces operator new or is compiled in another way.
 function(yuragi_test name)
   cmake_parse_arguments(ARG "ALONE" "" "SOURCES;LINK;NEEDS;LABELS;LONG;UNSANITIZED" ${ARGN})
   if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/(base|workers)")
@@ -244,7 +244,7 @@ function(yuragi_add_to_ctest name parts)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
     return()
   endif()
-  # What sanitizers run is not built where that is left to them.
+  # The sanitizer builds run it: it is not built here.
   if(YURAGI_WITHOUT_SANITIZED AND NOT ARG_UNSANITIZED AND NOT ARG_LABELS MATCHES "native|engine")
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
     return()

@@ -20,7 +20,7 @@ namespace {
 constexpr int kWidth_px = 64;
 constexpr int kHeight_px = 48;
 constexpr double kRate_hz = 60.0;
-constexpr double kLength_s = 1.7;  // or as YURAGI_FLASH_S says
+constexpr double kLength_s = 1.7;  // YURAGI_FLASH_S sets another length
 /// In the storm's gusts after it sparks of a pixel cross one place again and again: when they were as bright as large
 /// ones 0.30 of a field flashed.
 constexpr double kSettling_s = 13.6;

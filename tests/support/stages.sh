@@ -9,7 +9,7 @@ again=0          # of those that passed: only by themselves, after they had fail
 stage_times=()
 complaints=()
 configuration=() # options of cmake besides those of a preset
-built_ahead=() # presets that build_ahead() builds
+built_ahead=()   # presets that build_ahead() builds
 
 # Nothing here asks a question: no test may wait for a keyboard.
 exec </dev/null
