@@ -46,6 +46,11 @@ double lead_of(const ReplayOptions& options) {
   return options.is_to_stdout ? kLead_s : 0.0;
 }
 
+/// Where it begins paused, its first reading is held, and scenes move into that wind before eyes.
+double live_lead_of(const ReplayOptions& options) {
+  return options.is_paused ? 0.0 : kLead_s;
+}
+
 double parse_rate(const std::string& text) {
   char* end = nullptr;
   const double rate = std::strtod(text.c_str(), &end);
@@ -83,11 +88,9 @@ sensing::RecordedInstallation installation_of(const ReplayOptions& options, doub
                     "--same-time-of-day nor --sensor");
   }
   sensing::RecordedInstallation installation =
-      sensing::recorded_installation(options.file, {.playback = options.playback,
-                                                    .rate = rate,
-                                                    .seam_s = options.seam_s,
-                                                    .is_paused = options.is_paused,
-                                                    .lead_s = lead_of(options)})
+      sensing::recorded_installation(
+          options.file,
+          {.playback = options.playback, .rate = rate, .seam_s = options.seam_s, .is_paused = options.is_paused})
           .value();
   for (const std::string& remark : installation.remarks) spdlog::warn("as recorded: {}", remark);
   if (options.run.address) {
@@ -109,7 +112,9 @@ tools::offline::LockstepResult replay_in_lockstep(const ReplayOptions& options,
                                                   const sensing::RecordedInstallation& installation,
                                                   const std::function<void(double)>& progress,
                                                   const tools::offline::UseTick& use) {
-  return tools::offline::replay_in_lockstep(installation, options.run.duration_s.value_or(0.0), progress, use).value();
+  return tools::offline::replay_in_lockstep(installation, lead_of(options), options.run.duration_s.value_or(0.0),
+                                            progress, use)
+      .value();
 }
 
 /// Whoever reads is waited for; once nobody does, SIGPIPE ends this program.
@@ -183,7 +188,8 @@ void replay(const ReplayOptions& options) {
     service::Service(installation.config, {.record = {},
                                            .duration_s = options.run.duration_s,
                                            .end_with_recordings = true,
-                                           .recorded_from = installation.begin})
+                                           .recorded_from = installation.begin,
+                                           .lead_s = live_lead_of(options)})
         .run();
     return;
   }
@@ -194,7 +200,11 @@ void replay(const ReplayOptions& options) {
   settings::Config config = options.run.config();
   config.sensors = {replay_sensor(options, parse_rate(options.rate))};
   config.wind.fallback.reset();
-  service::Service(config, {.record = {}, .duration_s = options.run.duration_s, .end_with_recordings = true}).run();
+  service::Service(config, {.record = {},
+                            .duration_s = options.run.duration_s,
+                            .end_with_recordings = true,
+                            .lead_s = live_lead_of(options)})
+      .run();
 }
 
 void add_replay(CLI::App& app) {

@@ -135,10 +135,8 @@ Result<RecordedInstallation, Failure> recorded_installation(const std::filesyste
 
   auto config = configuration_of(*reader, *session);
   if (!config) return config.error();
-  RecordedInstallation installation{.config = std::move(*config),
-                                    .begin = session->first.utc + (*begin - session->log_begin),
-                                    .lead_s = options.lead_s,
-                                    .remarks = {}};
+  RecordedInstallation installation{
+      .config = std::move(*config), .begin = session->first.utc + (*begin - session->log_begin), .remarks = {}};
   installation.config.wind.fallback.reset();
   installation.config.shaping.site_file.clear();
   leave_out_what_acts_outside(installation.config, installation.remarks);

@@ -15,14 +15,13 @@ namespace yuragi::daemon::sensing {
 struct RecordedInstallation {
   settings::Config config;
   UtcTime begin{};                   ///< what its clock showed where the replay begins
-  double lead_s = 0.0;               ///< its sensors begin so much earlier (PlayerOptions::lead_s)
   std::vector<std::string> remarks;  ///< sentences for the log: what is not as it was recorded
 };
 
 /// Reads the configuration of the session in which the replay begins. Each of its sensors is played from the recording
 /// by its own name, with its own calibration, judging and place in the blend; one without a reading from there on is
 /// silent. What was outside the recording is left out: the fall-back recording, and the file of the site's wind.
-/// `options`: where it begins, rate, seam, lead, paused; it neither loops nor begins at a time of day.
+/// `options`: where it begins, rate, seam, paused; it neither loops nor begins at a time of day.
 ///
 /// Fails where the recording cannot be read, or its session holds no configuration, as one that was imported. Throws
 /// ConfigError where this version does not understand the configuration; each line names a key.

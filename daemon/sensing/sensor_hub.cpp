@@ -133,6 +133,10 @@ SensorHub::SensorHub(const settings::Config& config, const drivers::sensor::Cloc
   }
 }
 
+void SensorHub::begin_threads() {
+  for (const Channel& channel : channels_) channel.runner->begin_thread();
+}
+
 void SensorHub::change(const settings::Config& config) {
   for (std::size_t index = 0; index < channels_.size(); ++index) change(index, config.sensors.at(index));
   fallback_.change(config);

@@ -45,6 +45,9 @@ class SensorHub {
             std::shared_ptr<const wind::turbulence::GustNoise> noise, Listener listener = {}, double reach_m = 0.0,
             SensorThread thread = SensorThread::kOwn);
 
+  /// Polls each sensor on a thread of its own from now on.
+  void begin_threads();
+
   /// Takes what may change while it runs from a configuration with the same sensors in the same order
   /// (ReloadPlan::next): calibration and judging, and the rate of recordings that play. Counts, states and what is
   /// known of each sensor stay; a new calibration is neither a spike nor a contradiction to the other sensors.

@@ -18,9 +18,13 @@ constexpr Nanoseconds kPauseAfterException = std::chrono::seconds(10);
 SensorRunner::SensorRunner(std::unique_ptr<drivers::sensor::Sensor> sensor, const drivers::sensor::Clock& clock,
                            SensorThread thread)
     : sensor_(std::move(sensor)), clock_(clock), thread_kind_(thread) {
-  if (thread == SensorThread::kOwn) {
-    thread_ = std::jthread([this](const std::stop_token& stop) { contain("a sensor's thread", [&] { run(stop); }); });
-  }
+  if (thread == SensorThread::kOwn) begin_thread();
+}
+
+void SensorRunner::begin_thread() {
+  if (thread_.joinable()) return;
+  thread_kind_ = SensorThread::kOwn;
+  thread_ = std::jthread([this](const std::stop_token& stop) { contain("a sensor's thread", [&] { run(stop); }); });
 }
 
 SensorRunner::~SensorRunner() {

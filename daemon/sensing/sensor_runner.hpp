@@ -57,6 +57,9 @@ class SensorRunner final : private drivers::sensor::SensorSink {
   SensorRunner(const SensorRunner&) = delete;
   SensorRunner& operator=(const SensorRunner&) = delete;
 
+  /// Polls the sensor on a thread of its own from now on, unless it does already.
+  void begin_thread();
+
   /// Passes each reading that has arrived to `use`, oldest first.
   template <class Use>
   void drain(Use&& use) {
@@ -123,7 +126,7 @@ class SensorRunner final : private drivers::sensor::SensorSink {
 
   std::unique_ptr<drivers::sensor::Sensor> sensor_;
   const drivers::sensor::Clock& clock_;
-  const SensorThread thread_kind_;
+  SensorThread thread_kind_;
   MonoTime next_poll_ = MonoTime::min();  ///< by the caller
   SpscRing<wind::WindReading> readings_{kRingCapacity};
   SpscRing<wind::StationQuantities> quantities_{kQuantitiesCapacity};

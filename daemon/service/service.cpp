@@ -1,8 +1,10 @@
 #include "daemon/service/service.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <optional>
+#include <thread>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/host_name.hpp>
@@ -25,11 +27,11 @@
 #include "daemon/history/history_reader.hpp"
 #include "daemon/history/wind_history.hpp"
 #include "daemon/recording/recorder.hpp"
+#include "daemon/sensing/held_clock.hpp"
 #include "daemon/sensing/player_director.hpp"
 #include "daemon/sensing/recorded_silence.hpp"
 #include "daemon/sensing/recording_folders.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
-#include "daemon/sensing/system_clock.hpp"
 #include "daemon/service/config_check.hpp"
 #include "daemon/service/hangup.hpp"
 #include "daemon/service/parameter_director.hpp"
@@ -53,6 +55,9 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
+/// A lead-in measures so many ticks, and plans 5/4 of the time that all of them would take.
+constexpr int kMeasuredTicks = 30;
+constexpr int kPlannedTime = 5, kTakenTime = 4;
 /// What could not be opened at the start is tried again so often.
 constexpr auto kTryAgainAfter = std::chrono::seconds(2);
 
@@ -99,7 +104,8 @@ class Service::Io {
         animation_(options.with_scenes ? std::make_unique<animation::Animation>(config, gusts_) : nullptr),
         director_(config, [this](const animation::SceneCue& cue) { return loop_ && loop_->cue(cue); }),
         stream_(io_, config.stream.listen, stream_settings(config)),
-        hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0),
+        hub_(config, clock_, gusts_, listener(), animation_ ? animation_->reach_m() : 0.0,
+             options.lead_s > 0.0 ? sensing::SensorThread::kOfCaller : sensing::SensorThread::kOwn),
         shaper_(config, gusts_),
         look_(config.look),
         cameras_(cameras_of(config)),
@@ -135,6 +141,7 @@ class Service::Io {
   }
 
   void run() {
+    if (options_.lead_s > 0.0) lead_in();
     // Not before: during the set-up, which may wait for a disk or a network, these signals end the program at once.
     for (const int signal : {SIGINT, SIGTERM}) signals_.add(signal);
     ignore_what_need_not_end_it();
@@ -425,10 +432,37 @@ class Service::Io {
   }
 
   /// Takes readings and advances the wind.
-  void advance_wind() {
+  wind::ground::DrivingWind next_wind() {
     wind::ground::DrivingWind wind{hub_.advance(), hub_.ground(), hub_.stroke()};
     shaper_.shape(wind, time_for_the_hours(), hub_.is_any_live());
-    wind_.publish(wind);
+    return wind;
+  }
+
+  /// Holds the clock in the past, and moves it tick by tick to the present. The recordings are then at the place at
+  /// which they were to begin, or a little further where the ticks have taken longer than the first ones promised.
+  void lead_in() {
+    spdlog::info("first the scenes go through the {:g} s before the beginning", options_.lead_s);
+    for (const sensing::NamedPlayer& named : hub_.players()) named.player->begin_early(options_.lead_s);
+    const double period_s = 1.0 / rate_hz_;
+    const auto ticks = std::llround(options_.lead_s * rate_hz_);
+    const Instant now = clock_.now();
+    for (int tick = 0; tick < kMeasuredTicks; ++tick) animation_->step({}, period_s);
+    const Nanoseconds planned = kPlannedTime * (clock_.now().mono - now.mono) * ticks / kMeasuredTicks / kTakenTime;
+    const Instant begin{.mono = now.mono + planned, .utc = now.utc + planned};
+    for (std::int64_t tick = -ticks; tick < ticks; ++tick) {
+      const Nanoseconds from_begin = from_seconds(static_cast<double>(tick) * period_s);
+      const Instant moment{.mono = begin.mono + from_begin, .utc = begin.utc + from_begin};
+      if (tick >= 0 && moment.mono >= clock_.of_machine().mono) break;
+      clock_.hold(moment);
+      animation_->step(next_wind(), period_s);
+    }
+    clock_.let_go();
+    std::this_thread::sleep_for(begin.mono - clock_.now().mono);
+    hub_.begin_threads();
+  }
+
+  void advance_wind() {
+    wind_.publish(next_wind());
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });
     hub_.drain_traces([this](const wire::RawTrace& trace) { stream_.publish_trace(trace); });
     manager_.went_round(clock_.now().mono, loop_ ? loop_->counters().ticks.load(std::memory_order_relaxed) : 0);
@@ -581,7 +615,7 @@ class Service::Io {
 
   ServiceOptions options_;
   double rate_hz_;
-  sensing::SystemClock clock_;
+  sensing::HeldClock clock_;
   const Instant started_ = clock_.now();
   asio::io_context io_{1};
   asio::signal_set signals_{io_};

@@ -19,6 +19,9 @@ struct ServiceOptions {
   bool with_scenes = true;                      ///< false: sensors, recording and their stream only
   /// Opening hours by the clock of the recordings that play, from this moment on; nothing: by this machine's clock.
   std::optional<UtcTime> recorded_from{};
+  /// Only where every sensor plays a recording: before the first frame wind and scenes go through so many seconds
+  /// before the place at which the recordings begin, as fast as they can.
+  double lead_s = 0.0;
 
   /// The file of the configuration, and how it is read again on SIGHUP or for a client: on another thread, which may
   /// outlive the service and everything else; throws ConfigError. Empty: there is no file.

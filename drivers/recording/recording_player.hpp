@@ -35,6 +35,10 @@ class RecordingPlayer {
  public:
   virtual ~RecordingPlayer() = default;
 
+  /// Before the first poll(): begins so many seconds of the clock early, so that what it moves has lived in its wind by
+  /// the time at which it would have begun (PlayerOptions::lead_s). Not if it begins paused.
+  virtual void begin_early(double lead_s) = 0;
+
   /// Queues an order and returns its number, counted from 1; nothing where the queue is full.
   virtual std::optional<std::uint64_t> order(const PlayerOrder& order) = 0;
 

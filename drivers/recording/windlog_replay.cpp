@@ -90,6 +90,11 @@ class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
 
   void interrupt() noexcept override { stop_.request_stop(); }
 
+  /// The place that belongs to a time of day is early as it is.
+  void begin_early(double lead_s) override {
+    if (!options_.at_time_of_day) options_.lead_s = lead_s * options_.rate;
+  }
+
   std::optional<std::uint64_t> order(const PlayerOrder& order) override {
     const std::lock_guard lock(mutex_);
     if (waiting_.size() == kMaxWaitingOrders) return std::nullopt;

@@ -595,6 +595,31 @@ port = {port}
         self.assertEqual(done.returncode, 0, done.stderr)
         return log
 
+    def test_the_first_frame_of_a_replay_is_of_scenes_that_have_lived_in_its_wind(self):
+        gale = self.file("gale.windlog")
+        simulated = subprocess.run([SIMULATOR, "recording", "-o", gale, "--speed", "16", "--direction", "270", "--duration", "60", "--seed", "5"],
+                                   capture_output=True, text=True, timeout=HANG_S, check=False)
+        self.assertEqual(simulated.returncode, 0, simulated.stderr)
+        config = self.file("mast.toml", '[[scene]]\nkind = "flag"\n')
+        for options in ((), ("--start", "20"), ("--start", "20", "--rate", "4"), ("--same-time-of-day",)):
+            daemon, address = self.start_replay(gale, "--config", config, *options)
+            with Stream(address) as stream:
+                frame = stream.next("Frame")
+                (_, _, flag), = stream.scenes
+                joints_m = flag.points_m(pose_client.read_pose(frame.Scenes(0))).reshape(flag.rows, -1, 3)
+                way_m = joints_m[-1] - joints_m[0]  # from the hoist to the fly
+                self.assertGreater(float(way_m[:, 0].mean()), 2 * abs(float(way_m[:, 1].mean())), f"{options}: it hangs")
+                self.assertGreater(stream.next("Frame").Wind().UMS(), 8.0, f"{options}: not the recording's wind")
+                if "4" not in options and "--same-time-of-day" not in options:
+                    begun_s = 20 * len(options[1:])
+                    place_s = self.place_s(address)
+                    self.assertTrue(begun_s <= place_s < begun_s + HANG_S, f"{options}: at {place_s} s")
+            daemon.end()
+
+    def place_s(self, address):
+        hours, minutes, seconds = re.search(r"at (\d+):(\d\d):([\d.]+) of", self.player(address, "status")).groups()
+        return 3600 * int(hours) + 60 * int(minutes) + float(seconds)
+
     def start_replay(self, log, *arguments):
         daemon = self.start(YURAGI, "replay", log, "--listen", "127.0.0.1:0", *arguments)
         return daemon, daemon.address()

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "daemon/animation/animation.hpp"
+#include "daemon/sensing/held_clock.hpp"
 #include "daemon/sensing/player_director.hpp"
 #include "daemon/sensing/recorded_silence.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
@@ -107,16 +108,6 @@ class RecordedClock {
   Nanoseconds read_at_{0};
 };
 
-/// The clock of sensors and wind, moved from tick to tick.
-class LogClock final : public drivers::sensor::Clock {
- public:
-  Instant now() const noexcept override { return now_; }
-  void set(MonoTime log_time, UtcTime utc) { now_ = {log_time, utc}; }
-
- private:
-  Instant now_;
-};
-
 }  // namespace
 
 Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& config,
@@ -158,18 +149,20 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
   return ticks.result();
 }
 
-Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstallation& installation, double duration_s,
-                                                   const std::function<void(double)>& progress, const UseTick& use) {
+Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstallation& installation, double lead_s,
+                                                   double duration_s, const std::function<void(double)>& progress,
+                                                   const UseTick& use) {
   const settings::Config& config = installation.config;
   const std::shared_ptr<const wind::turbulence::GustNoise> gusts = sensing::make_gust_noise(config);
   animation::Animation animation(config, gusts);
-  Ticks ticks(animation, config.animation.rate_hz, installation.lead_s, progress, use);
-  const Nanoseconds lead = from_seconds(installation.lead_s);
-  LogClock clock;
+  Ticks ticks(animation, config.animation.rate_hz, lead_s, progress, use);
+  const Nanoseconds lead = from_seconds(lead_s);
+  sensing::HeldClock clock;
   sensing::SensorHub hub(
       config, clock, gusts, [&ticks](std::size_t, const wind::WindReading& reading) { ticks.add(reading); },
       animation.reach_m(), sensing::SensorThread::kOfCaller);
   const std::vector<sensing::NamedPlayer> players = hub.players();
+  for (const sensing::NamedPlayer& named : players) named.player->begin_early(lead_s);
   const sensing::PlayerDirector director(config.stream.control, players);
   shaping::WindShaper shaper(config, gusts);
   shaper.keep_site_file(hub.site());
@@ -177,7 +170,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstal
 
   while (ticks.is_leading_in() || (!hub.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s))) {
     const Nanoseconds now = ticks.clock();
-    clock.set(MonoTime(now), installation.begin - lead + now);
+    clock.hold({.mono = MonoTime(now), .utc = installation.begin - lead + now});
     wind::ground::DrivingWind wind{hub.advance(), hub.ground(), hub.stroke()};
     double left_s = 0.0;
     for (const sensing::NamedPlayer& named : players) {

@@ -51,10 +51,11 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
                                                    const std::function<void(double log_time_s)>& progress,
                                                    const UseTick& use = {});
 
-/// The same of an installation as it was recorded: through the daemon's own SensorHub (calibration, judging, vote,
-/// blend) and WindShaper (opening hours by the recorded clock). `result.readings` are those of all sensors before
-/// judging.
-Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstallation& installation, double duration_s,
+/// The same of an installation as it was recorded, with a lead-in of `lead_s`: through the daemon's own SensorHub
+/// (calibration, judging, vote, blend) and WindShaper (opening hours by the recorded clock). `result.readings` are
+/// those of all sensors before judging.
+Result<LockstepResult, Failure> replay_in_lockstep(const sensing::RecordedInstallation& installation, double lead_s,
+                                                   double duration_s,
                                                    const std::function<void(double log_time_s)>& progress,
                                                    const UseTick& use = {});
 

@@ -4,9 +4,11 @@
 #include <semaphore>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "daemon/sensing/system_clock.hpp"
 #include "tests/support/manual_clock.hpp"
 
 namespace yuragi::daemon::sensing {
@@ -75,6 +77,38 @@ TEST(SensorRunner, PassesOnPlausibleQuantitiesAndCountsWhatHasNoRoom) {
   EXPECT_GT(runner.lost_quantities_count(), 0U);
   EXPECT_EQ(passed + runner.lost_quantities_count(), 1000U);
   EXPECT_EQ(runner.refused_count(drivers::decode::Refusal::kImplausible), 0U);
+}
+
+/// Has a reading at each poll: of 1 m/s on the thread that made it, of 2 m/s on another.
+class TellsItsThread final : public drivers::sensor::Sensor {
+ public:
+  explicit TellsItsThread(std::thread::id caller) : caller_(caller) {}
+  MonoTime poll(const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) override {
+    wind::WindReading reading;
+    reading.time = clock.now();
+    reading.speed_m_s = std::this_thread::get_id() == caller_ ? 1.0 : 2.0;
+    sink.reading(reading);
+    return clock.now().mono;
+  }
+
+ private:
+  std::thread::id caller_;
+};
+
+TEST(SensorRunner, ThatTheCallerHasPolledGoesOnOnAThreadOfItsOwn) {
+  const SystemClock clock;
+  SensorRunner runner(std::make_unique<TellsItsThread>(std::this_thread::get_id()), clock, SensorThread::kOfCaller);
+  std::vector<double> speeds_m_s;
+  const auto drain = [&] {
+    runner.drain([&](const wind::WindReading& reading) { speeds_m_s.push_back(reading.speed_m_s); });
+  };
+  drain();
+  EXPECT_EQ(speeds_m_s, std::vector{1.0});
+  runner.begin_thread();
+  runner.begin_thread();
+  while (speeds_m_s.size() < 3) drain();
+  EXPECT_EQ(speeds_m_s[1], 2.0);
+  EXPECT_EQ(speeds_m_s[2], 2.0);
 }
 
 }  // namespace

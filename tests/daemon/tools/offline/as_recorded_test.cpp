@@ -26,7 +26,7 @@ sensing::RecordedInstallation installation_in(const std::filesystem::path& file,
 }
 
 LockstepResult replay(const std::filesystem::path& file, const std::string& start = "", double duration_s = 0.0) {
-  const auto result = replay_in_lockstep(installation_in(file, start), duration_s, {});
+  const auto result = replay_in_lockstep(installation_in(file, start), 0.0, duration_s, {});
   EXPECT_TRUE(result) << (result ? "" : result.error().message);
   return result ? *result : LockstepResult{};
 }

@@ -60,13 +60,15 @@ class ReplayStreamTest : public ::testing::Test {
                    recorded_text(installation_text() + kTwoCameras), three_winds());
   }
 
-  wire::Bytes stream(double duration_s, const drivers::windlog::PlayerOptions& options = {}) const {
-    const auto installation = sensing::recorded_installation(file_, options).value();
+  wire::Bytes stream(double duration_s, double lead_s = 0.0, const std::string& start = "") const {
+    const auto installation = sensing::recorded_installation(file_, {.playback = {.start = start}}).value();
     wire::Bytes bytes;
     ReplayStream stream(installation.config, [&bytes](std::span<const std::uint8_t> more) {
       bytes.insert(bytes.end(), more.begin(), more.end());
     });
-    replay_in_lockstep(installation, duration_s, {}, [&stream](const ReplayTick& tick) { stream.write(tick); }).value();
+    replay_in_lockstep(installation, lead_s, duration_s, {}, [&stream](const ReplayTick& tick) {
+      stream.write(tick);
+    }).value();
     return bytes;
   }
 
@@ -158,7 +160,7 @@ TEST_F(ReplayStreamTest, SaysWhichCameraIsOnByTheRecordedClock) {
 
 TEST_F(ReplayStreamTest, IsTheSameEveryTime) {
   EXPECT_EQ(stream(1.0), stream(1.0));
-  EXPECT_EQ(stream(1.0, {.lead_s = kLead_s}), stream(1.0, {.lead_s = kLead_s}));
+  EXPECT_EQ(stream(1.0, kLead_s), stream(1.0, kLead_s));
 }
 
 TEST_F(ReplayStreamTest, ScenesHaveLivedInTheWindBeforeTheFirstFrame) {
@@ -182,7 +184,7 @@ TEST_F(ReplayStreamTest, AGapBeforeTheFirstFrameHoldsTheReadingAfterIt) {
 
 TEST_F(ReplayStreamTest, TheLeadInIsNeitherStreamedNorCounted) {
   for (const char* const start : {"", "20"}) {
-    const auto messages = messages_of(stream(1.0, {.playback = {.start = start}, .lead_s = kLead_s}));
+    const auto messages = messages_of(stream(1.0, kLead_s, start));
     const double place_s = *start == '\0' ? 0.0 : 20.0;
     EXPECT_NEAR(std::get<wire::ControlReply>(messages.at(2)).players.at(0).length_s, 59.0 - place_s, 0.1);
     std::uint64_t tick = 0;
@@ -195,9 +197,8 @@ TEST_F(ReplayStreamTest, TheLeadInIsNeitherStreamedNorCounted) {
                   seconds(kFridayNoon.time_since_epoch()) - 30.0 + place_s + frame->info.time_s, 1e-3);
     }
     EXPECT_EQ(tick, 60U);
-    const auto installation =
-        sensing::recorded_installation(file_, {.playback = {.start = start}, .lead_s = kLead_s}).value();
-    EXPECT_EQ(replay_in_lockstep(installation, 10.0, {}).value().readings, 30U);
+    const auto installation = sensing::recorded_installation(file_, {.playback = {.start = start}}).value();
+    EXPECT_EQ(replay_in_lockstep(installation, kLead_s, 10.0, {}).value().readings, 30U);
   }
 }
 
