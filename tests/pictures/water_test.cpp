@@ -1,4 +1,5 @@
-// What the wind does to the drawn pond over time: its contrast does not pulse, and foam suits the wind.
+// The drawn pond: over time its contrast does not pulse; foam suits the wind, and is where waves are steep; a tree
+// behind it is mirrored below itself.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,10 +7,12 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "daemon/settings/config_file.hpp"
 #include "tests/pictures/scenes_in_wind.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/gl/render_target.hpp"
@@ -38,11 +41,22 @@ double luminance(const std::vector<std::uint8_t>& rgb, int column, int row) {
   return 0.2126 * rgb[at] + 0.7152 * rgb[at + 1] + 0.0722 * rgb[at + 2];
 }
 
+light::Light low_sun() {
+  return light::light_of(
+      look::edited({}, std::vector<std::string>{"sun=fixed", "sun_height=25", "sun_azimuth=20"}).value(), 0.0);
+}
+
+/// North is up in the picture, which shows water alone.
+meshes::OrbitCamera from_above() {
+  meshes::OrbitCamera camera;
+  camera.frame({.target_m = {0.0, -0.1, 0.0}, .heading_deg = 0.0, .pitch_deg = 89.0, .distance_m = 3.0});
+  return camera;
+}
+
 PondFilm film_of(double speed_m_s) {
   const gl::HeadlessContext context({.is_software = true, .has_messages = true});
   looks::Stage stage;
-  stage.set_light(light::light_of(
-      look::edited({}, std::vector<std::string>{"sun=fixed", "sun_height=25", "sun_azimuth=20"}).value(), 0.0));
+  stage.set_light(low_sun());
   stage.set_quality(look::Quality::kLow);
   gl::RenderTarget target(kWidth_px, kHeight_px, 1);
   ScenesInWind scenes("ripple", speed_m_s);
@@ -50,8 +64,7 @@ PondFilm film_of(double speed_m_s) {
   stage.set_scenes(scenes.models());
   meshes::OrbitCamera side;
   side.frame({.target_m = {0.0, -0.1, 0.0}, .heading_deg = 200.0, .pitch_deg = 25.0, .distance_m = 4.5});
-  meshes::OrbitCamera above;
-  above.frame({.target_m = {0.0, -0.1, 0.0}, .heading_deg = 0.0, .pitch_deg = 89.0, .distance_m = 3.0});
+  const meshes::OrbitCamera above = from_above();
   PondFilm film;
   for (int picture = 0; picture < kPictures; ++picture) {
     scenes.advance(kStep_s);
@@ -119,6 +132,115 @@ TEST(PondFoam, IsLessThanAtSeaAndTellsAStormFromAFreshBreeze) {
   EXPECT_LE(fresh, whitecaps_at_sea(9.0));
   EXPECT_LE(storm, whitecaps_at_sea(16.0));
   EXPECT_GE(storm, 2.0 * fresh);
+}
+
+/// The wind is from 250 degrees, so that foam drifts away from the western half.
+TEST(PondFoam, IsWhereWavesAreSteep) {
+  constexpr float kLeftOfTheWaves = 0.25F;
+  const gl::HeadlessContext context({.is_software = true, .has_messages = true});
+  looks::Stage stage;
+  stage.set_light(low_sun());
+  stage.set_quality(look::Quality::kLow);
+  gl::RenderTarget target(kWidth_px, kHeight_px, 1);
+  ScenesInWind scenes("ripple", 16.0);
+  scenes.advance(6.0);
+  const std::vector<wire::SceneModel> models = scenes.models();
+  stage.set_scenes(models);
+  const auto& water = std::get<pose::SurfaceSkeleton>(models.at(0).skeleton);
+  std::array<double, 2> white{};  // in the west, in the east
+  for (int picture = 0; picture < kPictures; ++picture) {
+    scenes.advance(kStep_s);
+    stream::PoseMoment moment = scenes.moment();
+    auto& moved = std::get<pose::SurfacePose>(moment.poses.at(0));
+    for (std::size_t i = 0; i < moved.displacement_m.size(); ++i) {
+      if (water.rest_x_m[i] < 0.0F) moved.displacement_m[i] *= kLeftOfTheWaves;
+    }
+    stage.draw(moment, from_above(), target);
+    const std::vector<std::uint8_t> rgb = target.read_rgb();
+    for (int row = 0; row < kHeight_px; ++row) {
+      for (int column = 0; column < kWidth_px; ++column) {
+        const bool is_at_the_step = std::abs(column - kWidth_px / 2) < kWidth_px / 10;
+        if (!is_at_the_step && luminance(rgb, column, row) > kFoamGrey) white.at(column < kWidth_px / 2 ? 0 : 1) += 1.0;
+      }
+    }
+  }
+  std::printf("foam: %.0f pixels where waves are a quarter as high, %.0f beside them\n", white[0], white[1]);
+  EXPECT_GE(white[1], 1.0 * kPictures);
+  EXPECT_LE(white[0], 0.02 * white[1]);
+}
+
+/// The columns of the pixels of some rows that are darker than in another picture: how many, and their mean.
+struct Darkened {
+  double count = 0.0;
+  double column = 0.0;
+};
+
+Darkened darkened(const std::vector<std::uint8_t>& rgb, const std::vector<std::uint8_t>& than, int from_row,
+                  int to_row) {
+  constexpr double kDarker = 20.0;  // grey levels
+  Darkened found;
+  for (int row = from_row; row < to_row; ++row) {
+    for (int column = 0; column < kWidth_px; ++column) {
+      if (luminance(than, column, row) - luminance(rgb, column, row) < kDarker) continue;
+      found.count += 1.0;
+      found.column += column;
+    }
+  }
+  found.column /= std::max(found.count, 1.0);
+  return found;
+}
+
+/// Two trees on the far shore of calm water, one shown at a time, with quality medium under clouds, which cast no
+/// shadow.
+TEST(PondMirror, ShowsATreeBelowItselfAndNoSunBehindClouds) {
+  constexpr int kSkyEnds = 38;  // rows
+  constexpr int kWaterBegins = 52;
+  constexpr int kWaterEnds = 86;
+  constexpr double kAside_px = 0.1 * kWidth_px;
+  constexpr double kOvercastGrey = 190.0;
+  const daemon::settings::Config config = daemon::settings::parse_config(
+      "[wind]\ndefault_speed = 0.0\n"
+      "[[scene]]\nkind = \"ripple\"\n"
+      "[[scene]]\nkind = \"tree\"\nname = \"left\"\nx = -2.5\nz = -7.0\n"
+      "[[scene]]\nkind = \"tree\"\nname = \"right\"\nx = 2.5\nz = -7.0\n",
+      "a pond");
+  const gl::HeadlessContext context({.is_software = true, .has_messages = true});
+  looks::Stage stage;
+  stage.set_light(light::light_of(
+      look::edited({}, std::vector<std::string>{"sun=fixed", "sun_height=25", "sun_azimuth=20", "clouds=1"}).value(),
+      0.0));
+  stage.set_quality(look::Quality::kMedium);
+  gl::RenderTarget target(kWidth_px, kHeight_px, 1);
+  ScenesInWind scenes(config);
+  scenes.advance(0.1);
+  stage.set_scenes(scenes.models());
+  meshes::OrbitCamera camera;
+  camera.frame({.target_m = {0.0, 0.5, 0.0}, .heading_deg = 0.0, .pitch_deg = 16.0, .distance_m = 7.0});
+  stream::PoseMoment moment = scenes.moment();
+  const auto picture_with = [&](float left, float right) {
+    moment.opacities.at(1) = left;
+    moment.opacities.at(2) = right;
+    stage.draw(moment, camera, target);
+    return target.read_rgb();
+  };
+  const std::vector<std::uint8_t> empty = picture_with(0.0F, 0.0F);
+  double brightest = 0.0;
+  for (int row = kWaterBegins; row < kWaterEnds; ++row) {
+    for (int column = 0; column < kWidth_px; ++column) brightest = std::max(brightest, luminance(empty, column, row));
+  }
+  EXPECT_LE(brightest, kOvercastGrey) << "the sun's glitter from behind the clouds";
+  std::array<double, 2> mirrored_at{};
+  for (const int side : {0, 1}) {
+    const std::vector<std::uint8_t> rgb = picture_with(side == 0 ? 1.0F : 0.0F, side == 0 ? 0.0F : 1.0F);
+    const Darkened crown = darkened(rgb, empty, 0, kSkyEnds);
+    const Darkened mirrored = darkened(rgb, empty, kWaterBegins, kWaterEnds);
+    std::printf("crown: %.0f pixels about column %.0f; in the water %.0f about %.0f\n", crown.count, crown.column,
+                mirrored.count, mirrored.column);
+    EXPECT_GE(mirrored.count, 100.0);
+    EXPECT_NEAR(mirrored.column, crown.column, kAside_px);
+    mirrored_at.at(static_cast<std::size_t>(side)) = mirrored.column;
+  }
+  EXPECT_GE(mirrored_at[1] - mirrored_at[0], kAside_px);
 }
 
 }  // namespace

@@ -206,7 +206,7 @@ Light daylight(const Sky& sky) {
   const glm::vec3 seen_grey = grey * glm::mix(1.0F, kNightCloudsSeen, dark);
 
   Light light;
-  light.to_sun = glm::vec4(glm::vec3(to_sun), 0.0F);
+  light.to_sun = glm::vec4(glm::vec3(to_sun), 1.0F - covered);
   light.sun_disc = glm::vec4(glm::vec3(direction_of(sky.sun)), 1.0F - covered);
   light.moon_disc =
       glm::vec4(glm::vec3(direction_of(sky.moon)),

@@ -9,7 +9,7 @@ namespace yuragi::viewer::light {
 /// The light of a picture: the uniform block Light of viewer/gl/shaders/common.glsl, in its layout (std140). Linear, in
 /// one unit for all: white paper in a light of (1, 1, 1) has the light (1, 1, 1).
 struct Light {
-  glm::vec4 to_sun{0.0F, 1.0F, 0.0F, 0.0F};     ///< unit vector toward the brighter of sun and moon
+  glm::vec4 to_sun{0.0F, 1.0F, 0.0F, 1.0F};     ///< unit vector to sun or moon, the brighter; w: how much of it is seen
   glm::vec4 sun_light{0.0F};                    ///< its light on a surface that faces it
   glm::vec4 sky_light{0.0F};                    ///< the sky's on a level surface
   glm::vec4 turf_light{0.0F};                   ///< of both, from the ground below

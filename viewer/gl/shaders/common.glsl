@@ -13,7 +13,7 @@ layout(std140) uniform View {
 
 // The light of the picture (viewer/light/light.hpp says more of each).
 layout(std140) uniform Light {
-  vec4 to_sun;        // toward the sun or, by night, the moon
+  vec4 to_sun;        // toward the sun or, by night, the moon; how much of it is seen
   vec4 sun_light;     // its light
   vec4 sky_light;
   vec4 turf_light;

@@ -87,7 +87,8 @@ void main() {
   if (beside > 0.0 || at.w <= 0.01) sky = mix(sky, clear_sky, at.w > 0.01 ? beside : 1.0);
 
   // What is seen through it: the bed, and the light that the water itself scatters.
-  float lit = water_state.w * mix(0.15, 1.0, sun_on_water(place_m));
+  float sun_there = sun_on_water(place_m);
+  float lit = water_state.w * mix(0.15, 1.0, sun_there);
   const vec3 kAbsorbed = vec3(1.9, 0.85, 1.25);  // per metre
   vec3 down = refract(from_eye, normal, 0.752);
   float path_m = depth_m / max(-down.y, 0.35);
@@ -112,7 +113,7 @@ void main() {
   float bubbles = textureLod(noise_tile, in_wind_m * vec2(1.1, 1.9) + 0.25 * slope, level(pixel_lod + 8.9)).r;
   float foam = smoothstep(0.0, 0.36, 0.45 * bubbles + water_state.y);
 
-  // The sun's glitter: the share of slopes that mirror it.
+  // The sun's glitter, where the disc is seen from: the share of slopes that mirror it.
   vec3 half_way = normalize(to_sun.xyz - from_eye);
   vec2 from_mean = -half_way.xz / max(half_way.y, 0.05) - slope;
   float variance = 0.5 * unseen + 0.0006;
@@ -120,7 +121,7 @@ void main() {
   float missing = 1.0 - max(dot(half_way, to_sun.xyz), 0.0);
   float missing_2 = missing * missing;
   float glitter = (0.02 + 0.98 * missing_2 * missing_2 * missing) * steepness / (4.0 * half_way.y * half_way.y * half_way.y * half_way.y * max(cosine, 0.05));
-  vec3 own = within * (1.0 - mirrored) + sun_light.rgb * (lit * min(glitter * max(to_sun.y, 0.0) * kPi, 6.0));
+  vec3 own = within * (1.0 - mirrored) + sun_light.rgb * (water_state.w * sun_there * to_sun.w * min(glitter * max(to_sun.y, 0.0) * kPi, 6.0));
 
   vec3 white = vec3(0.72) * (soft_light(normal) + sun_light.rgb * (lit * max(dot(normal, to_sun.xyz), 0.0)) + fires);
   own = mix(own, white, foam);
