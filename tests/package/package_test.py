@@ -176,7 +176,7 @@ class PackageTest(unittest.TestCase):
         control.write_text(re.sub(r"^Version: .*$", f"Version: {version}", control.read_text(encoding="utf-8"), flags=re.M),
                            encoding="utf-8")
         change(tree)
-        run("dpkg-deb", "--root-owner-group", "-b", tree, self.folder / f"{name}.deb")
+        run("dpkg-deb", "--root-owner-group", "-Zgzip", "-z1", "-b", tree, self.folder / f"{name}.deb")
         return self.folder / f"{name}.deb"
 
     def next_version(self):
@@ -205,7 +205,7 @@ class PackageTest(unittest.TestCase):
             (tree / folder).mkdir(parents=True)
         (tree / "var/lib/dpkg/status").touch()
         (tree / "var/lib/dpkg/available").touch()
-        return tree, lambda *words: run("dpkg", f"--root={tree}", "--force-script-chrootless", "--force-depends",
+        return tree, lambda *words: run("dpkg", f"--root={tree}", "--force-script-chrootless", "--force-depends", "--force-unsafe-io",
                                         "--log=/dev/null", *words, stdin=subprocess.DEVNULL)
 
     @unittest.skipUnless(os.geteuid() == 0, "dpkg gives files to root: this needs to be root")
