@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::size_t kLayerCells = FlameGas::kAcross * FlameGas::kAcross;
 
-/// Gas above a small fire rises by so much of sqrt(g h) (B. McCaffrey 1979, "Purely buoyant diffusion flames", has 0.73
-/// on its axis; the edge of the flame, which is seen, is slower), from a part of that at the foot on.
-constexpr double kRise = 0.52;
+/// Gas above a small fire rises by so much of sqrt(g h) (B. McCaffrey 1979, "Purely buoyant diffusion flames", of the
+/// intermittent flame), from a part of that at the foot on.
+constexpr double kRise = 0.77;
 constexpr double kRiseAtFoot = 0.45;
 constexpr double kFreeAt = 0.6;  ///< of the height, where it is as fast as it gets
 constexpr double kGravity_m_s2 = 9.81;
@@ -21,7 +21,7 @@ constexpr double kGravity_m_s2 = 9.81;
 /// A fire puffs (B. Cetegen, T. Ahmed 1993, "Experiments on the periodic instability of buoyant plumes and pool
 /// fires").
 constexpr double kPuff_hz_sqrt_m = 1.5;
-constexpr double kPinch_per_s = 3.1;  ///< how fast a puff narrows the gas above it, at most
+constexpr double kPinch_per_s = 3.9;  ///< how fast a puff narrows the gas above it, at most
 constexpr double kPuffless_m_s = 8.0;
 
 /// Eddies of the gas, and what wind adds to them.
@@ -30,13 +30,13 @@ constexpr double kEddyPerWind = 0.006;
 constexpr std::size_t kEddyCells = 6;
 
 /// The heat that the gas loses in a second, and the time in which soot gets thin.
-constexpr double kBurn_per_s = 0.50;
+constexpr double kBurn_per_s = 0.66;
 constexpr double kSootLasts_s = 1.1;
 /// Streamed heat is 0.42 on average; gas that leaves the foot is all aflame.
 constexpr float kHeatPerStreamed = 1.5F;
-/// What is shown follows the gas with a time constant of 0.1 s, as a picture with a long exposure: so flashes are
-/// weaker (flame_flash_test.cpp; in 20 s of calm 0.21 of a field flashes, with 0.07 s it was 0.31).
-constexpr float kShownPerStep = 0.16F;
+/// What is shown follows the gas with a time constant of 0.11 s, like a picture with a long exposure: flashes are
+/// weaker (flame_flash_test.cpp: in 20 s of calm 0.22 of a field flashes).
+constexpr float kShownPerStep = 0.145F;
 constexpr float kLeastHeat = 0.06F;
 constexpr float kLeastSoot = 0.02F;
 /// Soot is gone before it comes to the grid's sides and its end, which are never seen: from these parts of the way on.
@@ -68,7 +68,7 @@ float smooth(float t) {
 /// Three smooth random fields on the grid, each repeating upward: a vector potential.
 std::vector<std::array<float, 3>> potential() {
   constexpr std::size_t n = FlameGas::kAcross;
-  constexpr std::size_t lattice_up = 6;  // cells of 11 layers: what passes a place has to flash slowly
+  constexpr std::size_t lattice_up = 4;  // cells of 16 layers: what passes a place has to flash slowly
   const math::RandomStream random(0, math::stream_id("flame eddies"));
   std::vector<std::array<float, 3>> values(kLayerCells * FlameGas::kLayers);
   constexpr std::size_t across = n / kEddyCells + 2;

@@ -1,11 +1,14 @@
 #include "viewer/meshes/flame_gas.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <complex>
 #include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "engine/base/units.hpp"
 #include "engine/pose/pose_arrays.hpp"
 #include "tests/viewer/test_models.hpp"
 
@@ -56,6 +59,42 @@ TEST(FlameGas, HasTwoBytesACellAndAnExtentALayer) {
     EXPECT_GE(extent, 0.0F);
     EXPECT_LE(extent, 1.1F);
   }
+}
+
+/// The frequency of the strongest wave from 1 to 5 Hz in the heat of the layers above a part of the way up.
+double puffs_hz(double above_up) {
+  constexpr double kRate_hz = 15.0;
+  constexpr std::size_t kPictures = 300;
+  constexpr std::size_t cells = FlameGas::kAcross * FlameGas::kAcross;
+  FlameGas gas(burning());
+  std::vector<double> heat;
+  double mean = 0.0;
+  for (std::size_t i = 0; i < kPictures; ++i) {
+    gas.advance_to(10.0 + static_cast<double>(i) / kRate_hz, 0.0, burning());
+    double sum = 0.0;
+    const auto lowest = static_cast<std::size_t>(above_up * (FlameGas::kLayers - 1)) * cells;
+    for (std::size_t cell = lowest; cell < FlameGas::kLayers * cells; ++cell) sum += gas.texels()[2 * cell];
+    heat.push_back(sum);
+    mean += sum / kPictures;
+  }
+  double best_hz = 0.0;
+  double most = 0.0;
+  for (double hz = 1.0; hz <= 5.0; hz += 0.05) {
+    std::complex<double> wave;
+    for (std::size_t i = 0; i < kPictures; ++i) {
+      wave += (heat[i] - mean) * std::polar(1.0, -2.0 * kPi * hz * static_cast<double>(i) / kRate_hz);
+    }
+    if (std::norm(wave) <= most) continue;
+    most = std::norm(wave);
+    best_hz = hz;
+  }
+  return best_hz;
+}
+
+TEST(FlameGas, PuffsAsOftenAsAFireOfItsWidth) {
+  // B. Cetegen and T. Ahmed 1993: 1.5 / sqrt(width in metres) Hz.
+  const double wanted_hz = 1.5 / std::sqrt(2.0 * static_cast<double>(burning().thickest_m()));
+  EXPECT_NEAR(puffs_hz(0.4), wanted_hz, 0.1 * wanted_hz);
 }
 
 TEST(FlameGas, BeginsSettled) {

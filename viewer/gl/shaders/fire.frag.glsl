@@ -53,8 +53,8 @@ void main() {
     if (gas.r > 0.05) {
       // Two noises at right angles to each other, drawn out along the flame.
       vec2 across = mat2(0.8, 0.6, -0.6, 0.8) * at_m / size_m.x;
-      float one = textureLod(noise_tile, vec2(0.075 * across.x + 0.012 * across.y, 0.011 * (v - risen)), 0.5).r;
-      float two = textureLod(noise_tile, vec2(0.085 * across.y - 0.012 * across.x, 0.014 * (v - risen) + 0.01 * one), 0.5).r;
+      float one = textureLod(noise_tile, vec2(0.075 * across.x + 0.012 * across.y, 0.0077 * (v - risen)), 0.5).r;
+      float two = textureLod(noise_tile, vec2(0.085 * across.y - 0.012 * across.x, 0.0098 * (v - risen) + 0.01 * one), 0.5).r;
       float torn = one + two - 1.0;
       float high = min(v * 1.6, 1.0);
       float level = 1.5 * (gas.r - 0.22) + torn * (0.22 + 0.95 * high);
@@ -63,7 +63,7 @@ void main() {
       float thick = smoothstep(0.0, 0.45, level) * (1.0 - 0.2 * smoothstep(0.40, 1.0, level));
       vec4 hot = textureLod(ramp, vec2((clamp(0.29 + 0.42 * level - 0.10 * min(v, 1.0), 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5), 0.0);
       // What flies off is thinner and darker: it passes a place more often than three times in a second.
-      thick *= mix(1.0, 0.28, smoothstep(0.12, 0.60, v));
+      thick *= mix(1.0, 0.22, smoothstep(0.12, 0.60, v));
       sum += hot.rgb * hot.rgb * (thick * step_m);
       // The blue of the root, where air still reaches the gas.
       sum += vec3(0.004, 0.012, 0.06) * (step_m * thick * smoothstep(0.25, 0.08, v) * smoothstep(0.5, 0.0, level));
