@@ -1,11 +1,11 @@
 // yuragi-frame-bench: what a picture of the viewer costs, for meadows of 10,000, 100,000 and 1,000,000 blades, a grove
-// of 200 trees, a flag, a curtain, fur, water, a flame and the garden, drawn without a display on what graphics this
-// machine has. It prints a table: the time to the last pixel, the processor time of this thread (with its part of the
-// former) and of all threads, which draw where there is no graphics hardware, what is uploaded, and the same of each
-// pass, whose time is that of the graphics hardware, or of all threads where there is none, with the triangles that it
-// is given: their corners are this thread's work where the processor draws. Poses are made before, and so is the moment
-// between two frames of the stream: what that costs this thread is the first of the passes, but in no sum. All are
-// medians. Of other programs at work, the processor times feel least.
+// of 200 trees, each kind of cloth, each species of tree, fur, water, a flame and the garden, drawn without a display
+// on what graphics this machine has. It prints a table: the time to the last pixel, the processor time of this thread
+// (with its part of the former) and of all threads, which draw where there is no graphics hardware, what is uploaded,
+// and the same of each pass, whose time is that of the graphics hardware, or of all threads where there is none, with
+// the triangles that it is given: their corners are this thread's work where the processor draws. Poses are made
+// before, and so is the moment between two frames of the stream: what that costs this thread is the first of the
+// passes, but in no sum. All are medians. Of other programs at work, the processor times feel least.
 //
 //   yuragi-frame-bench [--size 1280x720] [--pictures 30] [--samples 1] [--quality low] [--step 0] [--software]
 //                      [--only 100,000] [--hour 12]
@@ -62,9 +62,9 @@ daemon::settings::Config meadow(int across, int deep) {
 }
 
 /// A scene and the grass around it.
-daemon::settings::Config alone(const char* kind) {
-  return daemon::settings::parse_config(fmt::format("[[scene]]\nkind = \"{}\"\n[[scene]]\nkind = \"ground\"\n", kind),
-                                        kind);
+daemon::settings::Config alone(const char* kind, const char* keys = "") {
+  return daemon::settings::parse_config(
+      fmt::format("[[scene]]\nkind = \"{}\"\n{}[[scene]]\nkind = \"ground\"\n", kind, keys), kind);
 }
 
 std::vector<Row> rows() {
@@ -75,7 +75,11 @@ std::vector<Row> rows() {
            daemon::settings::parse_config(
                "[[scene]]\nkind = \"tree\"\nspecies = \"zelkova\"\ngrove = 200\ngrove_radius = 150.0\n", "a grove")},
           {"flag", alone("flag")},
+          {"banner", alone("banner")},
           {"curtain", alone("curtain")},
+          {"cherry", alone("tree", "species = \"cherry\"\n")},
+          {"zelkova", alone("tree", "species = \"zelkova\"\n")},
+          {"poplar", alone("tree", "species = \"poplar\"\n")},
           {"fur", alone("fur")},
           {"ripple", alone("ripple")},
           {"flame", alone("flame")},
@@ -193,8 +197,10 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(std::size_t{0}, PaceKeeper::kSteps.size() - 1))
         ->capture_default_str();
     app.add_flag("--software", options.is_software, "by the processor, even where there is graphics hardware");
-    app.add_option("--only", options.only,
-                   "one row: 10,000, 100,000, 1,000,000, grove, flag, curtain, fur, ripple, flame or garden");
+    app.add_option(
+        "--only", options.only,
+        "one row: 10,000, 100,000, 1,000,000, grove, flag, banner, curtain, cherry, zelkova, poplar, fur, ripple, "
+        "flame or garden");
     app.add_option("--hour", options.hour, "whose camera the garden is seen by")
         ->check(CLI::Range(0.0, 24.0))
         ->capture_default_str();
