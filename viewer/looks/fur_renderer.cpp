@@ -1,5 +1,7 @@
 #include "viewer/looks/fur_renderer.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include <glm/geometric.hpp>
@@ -10,7 +12,10 @@
 namespace yuragi::viewer::looks {
 namespace {
 
-constexpr float kSmallestHair_px = 2.0F;  // of a limb: shorter ones are not seen
+// Of the hairs of a limb: shorter ones are not seen; of those that are shorter than kAllHairs_px, a part is drawn, and
+// wider.
+constexpr float kSmallestHair_px = 2.0F;
+constexpr float kAllHairs_px = 12.0F;
 
 /// Hairs a strand.
 GLint hairs_of(look::Quality quality) {
@@ -40,6 +45,7 @@ FurRenderer::FurRenderer(const pose::StrandSkeleton& strands, look::Quality qual
   gl::set_sampler(skin_, "noise_tile", 0);
   gl::set_sampler(limb_, "noise_tile", 0);
   is_hair_ = glGetUniformLocation(limb_.name(), "is_hair");
+  wider_ = glGetUniformLocation(limb_.name(), "wider");
   const meshes::Limbs limbs = meshes::limbs_of(strands, body_);
   if (!limbs.indices.empty()) make_limbs(limbs);
   set_body(hair_, body_);
@@ -76,7 +82,8 @@ void FurRenderer::make_limbs(const meshes::Limbs& limbs) {
   glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(meshes::LimbVertex, normal)));
   glVertexAttribPointer(2, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(meshes::LimbVertex, tint)));
   glVertexAttribPointer(3, 2, GL_FLOAT, GL_FALSE, kStride, at(offsetof(meshes::LimbVertex, hair_m)));
-  for (const GLuint attribute : {0U, 1U, 2U, 3U}) glEnableVertexAttribArray(attribute);
+  glVertexAttribPointer(4, 3, GL_FLOAT, GL_FALSE, kStride, at(offsetof(meshes::LimbVertex, aside_m)));
+  for (const GLuint attribute : {0U, 1U, 2U, 3U, 4U}) glEnableVertexAttribArray(attribute);
 
   limb_count_ = static_cast<GLsizei>(limbs.skin_count);
   limb_hair_count_ = static_cast<GLsizei>(limbs.indices.size() - limbs.skin_count);
@@ -99,16 +106,18 @@ void FurRenderer::move_to(const pose::Pose& pose) {
 void FurRenderer::draw(const meshes::View& view) {
   ribbons_.draw(hair_, view);
   const float distance_m = glm::distance(glm::vec3(view.eye_m), body_.middle_m);
-  draw_skin(limb_hair_m_ > kSmallestHair_px * view.eye_m.w * distance_m);
+  const float hair_px = limb_hair_m_ / (view.eye_m.w * std::max(distance_m, 1e-3F));
+  const float part = std::min(hair_px / kAllHairs_px, 1.0F);
+  draw_skin(hair_px > kSmallestHair_px ? part * part : 0.0F);
 }
 
 void FurRenderer::draw_shadow(const meshes::View& view) {
   // The ground needs no hairs of it; but hairs shade each other, where they look it up.
   if (do_hairs_shade_) ribbons_.draw(hair_, view);
-  draw_skin(false);
+  draw_skin(0.0F);
 }
 
-void FurRenderer::draw_skin(bool has_hairs) const {
+void FurRenderer::draw_skin(float hair_share) const {
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, noise_.name());
   glUseProgram(skin_.name());
@@ -118,13 +127,16 @@ void FurRenderer::draw_skin(bool has_hairs) const {
   glUseProgram(limb_.name());
   glBindVertexArray(limb_array_.name());
   glUniform1i(is_hair_, 0);
+  glUniform1f(wider_, 1.0F);
   glDrawElements(GL_TRIANGLES, limb_count_, GL_UNSIGNED_INT, nullptr);
-  if (!has_hairs) return;
+  const GLsizei hairs = static_cast<GLsizei>(hair_share * static_cast<float>(limb_hair_count_ / 3));
+  if (hairs == 0) return;
   glUniform1i(is_hair_, 1);
+  glUniform1f(wider_, 1.0F / std::sqrt(hair_share));
   // OpenGL takes an offset in a buffer as a pointer.
   // NOLINTNEXTLINE(performance-no-int-to-ptr)
   const auto* const at = reinterpret_cast<const void*>(static_cast<std::size_t>(limb_count_) * sizeof(std::uint32_t));
-  glDrawElements(GL_TRIANGLES, limb_hair_count_, GL_UNSIGNED_INT, at);
+  glDrawElements(GL_TRIANGLES, 3 * hairs, GL_UNSIGNED_INT, at);
 }
 
 }  // namespace yuragi::viewer::looks

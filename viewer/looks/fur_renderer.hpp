@@ -30,7 +30,8 @@ class FurRenderer : public SceneRenderer {
   bool casts_shadow() const override { return true; }
 
  private:
-  void draw_skin(bool has_hairs) const;
+  /// With so many of the hairs on limbs (0 to 1).
+  void draw_skin(float hair_share) const;
   void make_limbs(const meshes::Limbs& limbs);
 
   bool do_hairs_shade_;  ///< with quality low hairs look no shadow up
@@ -48,7 +49,7 @@ class FurRenderer : public SceneRenderer {
   GLsizei limb_count_ = 0, limb_hair_count_ = 0;
   float limb_hair_m_ = 0.0F;
   gl::GlProgram limb_;
-  GLint is_hair_ = -1;
+  GLint is_hair_ = -1, wider_ = -1;
   gl::GlVertexArray limb_array_;
   gl::GlBuffer limb_buffer_, limb_indices_;
 };

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <span>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -115,11 +118,25 @@ glm::vec3 ahead_of(const pose::StrandSkeleton& coat) {
   return length > 0.0F ? -lie / length : glm::vec3(0.0F);
 }
 
+/// 0 to count - 1 in an order of which any first part is spread evenly over all.
+std::vector<std::size_t> spread_order(std::size_t count) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  // The golden ratio's multiples.
+  const auto place = [](std::size_t i) {
+    const double turns = static_cast<double>(i) * 0.6180339887498949;
+    return turns - std::floor(turns);
+  };
+  std::ranges::sort(order, {}, place);
+  return order;
+}
+
 /// Adds hairs all over the skin, that lie along its limbs; `unit_m`: half the body's width.
 void add_hairs(Limbs& limbs, float unit_m) {
   limbs.skin_count = limbs.indices.size();
   const math::RandomStream chance(0, math::stream_id("viewer limb hairs"));
   std::uint64_t drawn = 0;
+  std::vector<std::uint32_t> feet;  // the first vertex of each hair
   for (std::size_t first = 0; first < limbs.skin_count; first += 3) {
     const auto corner = [&](std::size_t i) { return limbs.vertices[limbs.indices[first + i]]; };
     const LimbVertex a = corner(0);
@@ -155,12 +172,15 @@ void add_hairs(Limbs& limbs, float unit_m) {
       const float radius_m = mixed(&LimbVertex::radius_m);
       // Rooted a little below the skin, and paler at the tip.
       const glm::vec3 foot_m = place_m - 0.1F * length_m * normal;
-      limbs.vertices.push_back({foot_m - half_m, normal, 0.8F * tint, hair_m, lie, radius_m});
-      limbs.vertices.push_back({foot_m + half_m, normal, 0.8F * tint, hair_m, lie, radius_m});
+      limbs.vertices.push_back({foot_m - half_m, normal, 0.8F * tint, hair_m, lie, radius_m, -half_m});
+      limbs.vertices.push_back({foot_m + half_m, normal, 0.8F * tint, hair_m, lie, radius_m, half_m});
       limbs.vertices.push_back({foot_m + length_m * way, normal, 1.35F * tint, hair_m, lie, radius_m});
-      limbs.indices.insert(limbs.indices.end(), {at, at + 1, at + 2});
+      feet.push_back(at);
       limbs.hair_m = std::max(limbs.hair_m, length_m);
     }
+  }
+  for (const std::size_t i : spread_order(feet.size())) {
+    limbs.indices.insert(limbs.indices.end(), {feet[i], feet[i] + 1, feet[i] + 2});
   }
 }
 

@@ -16,13 +16,15 @@ namespace yuragi::viewer::meshes {
 struct LimbVertex {
   glm::vec3 place_m{0.0F};
   glm::vec3 normal{0.0F};
-  glm::vec3 tint{0.0F};    ///< linear light
-  glm::vec2 hair_m{0.0F};  ///< place on the limb: along its hairs, and across them
-  glm::vec3 lie{0.0F};     ///< the way that its hairs lie, before they are laid onto the skin
-  float radius_m = 0.0F;   ///< of the limb there
+  glm::vec3 tint{0.0F};     ///< linear light
+  glm::vec2 hair_m{0.0F};   ///< place on the limb: along its hairs, and across them
+  glm::vec3 lie{0.0F};      ///< the way that its hairs lie, before they are laid onto the skin
+  float radius_m = 0.0F;    ///< of the limb there
+  glm::vec3 aside_m{0.0F};  ///< of a hair: from its middle line to here
 };
 
-/// Triangles: of the skin first, `skin_count` indices, and then of the hairs on it, one each.
+/// Triangles: of the skin first, `skin_count` indices, and then of the hairs on it, one each; any first part of them is
+/// spread over the whole skin.
 struct Limbs {
   std::vector<LimbVertex> vertices;
   std::vector<std::uint32_t> indices;

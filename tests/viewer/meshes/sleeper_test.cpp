@@ -86,6 +86,23 @@ TEST(Sleeper, HasAShortCoatOnItsLimbs) {
   EXPECT_LT(limbs.hair_m, 0.09F);  // no longer than the coat's
 }
 
+/// From afar only the first of them are drawn.
+TEST(Sleeper, HasTheFirstOfItsHairsAllOverItsLimbs) {
+  const Limbs limbs = limbs_on({0.55F, 0.5F, 0.25F}, 0.4F);
+  const auto middle_m = [&](std::size_t hairs) {
+    glm::vec3 sum_m(0.0F);
+    for (std::size_t i = 0; i < hairs; ++i) sum_m += limbs.vertices[limbs.indices[limbs.skin_count + 3 * i]].place_m;
+    return sum_m / static_cast<float>(hairs);
+  };
+  const std::size_t all = (limbs.indices.size() - limbs.skin_count) / 3;
+  for (const std::size_t part : {64U, 16U, 2U}) {
+    EXPECT_LT(glm::distance(middle_m(all / part), middle_m(all)), 0.02F) << "1/" << part;
+  }
+  const LimbVertex& left = limbs.vertices[limbs.indices[limbs.skin_count]];
+  const LimbVertex& right = limbs.vertices[limbs.indices[limbs.skin_count + 1]];
+  EXPECT_LT(glm::distance(left.place_m - left.aside_m, right.place_m - right.aside_m), 1e-5F) << "both about one line";
+}
+
 TEST(Sleeper, IsNoBackThatFillsThePicture) {
   EXPECT_TRUE(limbs_on({1.5F, 0.75F, 1.0F}, 0.0F).indices.empty());
   EXPECT_TRUE(limbs_of({}, body_of({})).indices.empty());
