@@ -86,7 +86,7 @@ void FurRenderer::make_limbs(const meshes::Limbs& limbs) {
   for (const GLuint attribute : {0U, 1U, 2U, 3U, 4U}) glEnableVertexAttribArray(attribute);
 
   limb_count_ = static_cast<GLsizei>(limbs.skin_count);
-  limb_hair_count_ = static_cast<GLsizei>(limbs.indices.size() - limbs.skin_count);
+  limb_hair_count_ = static_cast<GLsizei>((limbs.indices.size() - limbs.skin_count) / 3);
   limb_hair_m_ = limbs.hair_m;
   const glm::vec3 first_m = limbs.vertices.front().place_m;
   limb_bounds_ = meshes::Bounds{first_m, first_m};
@@ -129,7 +129,7 @@ void FurRenderer::draw_skin(float hair_share) const {
   glUniform1i(is_hair_, 0);
   glUniform1f(wider_, 1.0F);
   glDrawElements(GL_TRIANGLES, limb_count_, GL_UNSIGNED_INT, nullptr);
-  const GLsizei hairs = static_cast<GLsizei>(hair_share * static_cast<float>(limb_hair_count_ / 3));
+  const GLsizei hairs = static_cast<GLsizei>(hair_share * static_cast<float>(limb_hair_count_));
   if (hairs == 0) return;
   glUniform1i(is_hair_, 1);
   glUniform1f(wider_, 1.0F / std::sqrt(hair_share));
