@@ -79,7 +79,8 @@ double puffs_hz(double above_up) {
   }
   double best_hz = 0.0;
   double most = 0.0;
-  for (double hz = 1.0; hz <= 5.0; hz += 0.05) {
+  for (int step = 0; step <= 80; ++step) {
+    const double hz = 1.0 + 0.05 * step;
     std::complex<double> wave;
     for (std::size_t i = 0; i < kPictures; ++i) {
       wave += (heat[i] - mean) * std::polar(1.0, -2.0 * kPi * hz * static_cast<double>(i) / kRate_hz);
