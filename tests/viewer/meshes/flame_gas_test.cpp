@@ -64,7 +64,7 @@ TEST(FlameGas, HasTwoBytesACellAndAnExtentALayer) {
 /// The frequency of the strongest wave from 1 to 5 Hz in the heat of the layers above a part of the way up.
 double puffs_hz(double above_up) {
   constexpr double kRate_hz = 15.0;
-  constexpr std::size_t kPictures = 300;
+  constexpr std::size_t kPictures = 150;
   constexpr std::size_t cells = FlameGas::kAcross * FlameGas::kAcross;
   FlameGas gas(burning());
   std::vector<double> heat;
