@@ -224,7 +224,7 @@ class Film(unittest.TestCase):
                            (lambda film: film.send_signal(signal.SIGTERM), 128 + signal.SIGINT),
                            (lambda film: film.send_signal(signal.SIGHUP), 128 + signal.SIGINT),
                            (lambda film: os.kill(children_of(film.pid)[0], signal.SIGKILL), 70)):
-            film = self.begin("--out", folder)
+            film = self.begin("--out", folder, "--fps", 1000)
             until = time.monotonic() + HANG_S
             while not (folder / "000002.png").exists():
                 self.assertLess(time.monotonic(), until)
