@@ -597,7 +597,7 @@ port = {port}
 
     def test_the_first_frame_of_a_replay_is_of_scenes_that_have_lived_in_its_wind(self):
         gale = self.file("gale.windlog")
-        simulated = subprocess.run([SIMULATOR, "recording", "-o", gale, "--speed", "16", "--direction", "270", "--duration", "60", "--seed", "5"],
+        simulated = subprocess.run([SIMULATOR, "recording", "-o", gale, "--speed", "16", "--direction", "270", "--duration", "600", "--seed", "5"],
                                    capture_output=True, text=True, timeout=HANG_S, check=False)
         self.assertEqual(simulated.returncode, 0, simulated.stderr)
         config = self.file("mast.toml", '[[scene]]\nkind = "flag"\n')
