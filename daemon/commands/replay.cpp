@@ -46,7 +46,7 @@ double lead_of(const ReplayOptions& options) {
   return options.is_to_stdout ? kLead_s : 0.0;
 }
 
-/// Where it begins paused, its first reading is held, and scenes move into that wind before eyes.
+/// A recording that begins paused plays nothing before its first reading.
 double live_lead_of(const ReplayOptions& options) {
   return options.is_paused ? 0.0 : kLead_s;
 }

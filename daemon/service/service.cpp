@@ -1,10 +1,8 @@
 #include "daemon/service/service.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <optional>
-#include <thread>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/host_name.hpp>
@@ -34,6 +32,7 @@
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/service/config_check.hpp"
 #include "daemon/service/hangup.hpp"
+#include "daemon/service/lead_in.hpp"
 #include "daemon/service/parameter_director.hpp"
 #include "daemon/service/reload.hpp"
 #include "daemon/service/reload_report.hpp"
@@ -55,9 +54,6 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
-/// A lead-in measures so many ticks, and plans 5/4 of the time that all of them would take.
-constexpr int kMeasuredTicks = 30;
-constexpr int kPlannedTime = 5, kTakenTime = 4;
 /// What could not be opened at the start is tried again so often.
 constexpr auto kTryAgainAfter = std::chrono::seconds(2);
 
@@ -141,7 +137,11 @@ class Service::Io {
   }
 
   void run() {
-    if (options_.lead_s > 0.0) lead_in();
+    if (options_.lead_s > 0.0) {
+      spdlog::info("first the scenes go through the {:g} s before the beginning", options_.lead_s);
+      lead_in(
+          options_.lead_s, rate_hz_, clock_, hub_, [this] { return next_wind(); }, *animation_);
+    }
     // Not before: during the set-up, which may wait for a disk or a network, these signals end the program at once.
     for (const int signal : {SIGINT, SIGTERM}) signals_.add(signal);
     ignore_what_need_not_end_it();
@@ -438,29 +438,7 @@ class Service::Io {
     return wind;
   }
 
-  /// Holds the clock in the past, and moves it tick by tick to the present. The recordings are then at the place at
-  /// which they were to begin, or a little further where the ticks have taken longer than the first ones promised.
-  void lead_in() {
-    spdlog::info("first the scenes go through the {:g} s before the beginning", options_.lead_s);
-    for (const sensing::NamedPlayer& named : hub_.players()) named.player->begin_early(options_.lead_s);
-    const double period_s = 1.0 / rate_hz_;
-    const auto ticks = std::llround(options_.lead_s * rate_hz_);
-    const Instant now = clock_.now();
-    for (int tick = 0; tick < kMeasuredTicks; ++tick) animation_->step({}, period_s);
-    const Nanoseconds planned = kPlannedTime * (clock_.now().mono - now.mono) * ticks / kMeasuredTicks / kTakenTime;
-    const Instant begin{.mono = now.mono + planned, .utc = now.utc + planned};
-    for (std::int64_t tick = -ticks; tick < ticks; ++tick) {
-      const Nanoseconds from_begin = from_seconds(static_cast<double>(tick) * period_s);
-      const Instant moment{.mono = begin.mono + from_begin, .utc = begin.utc + from_begin};
-      if (tick >= 0 && moment.mono >= clock_.of_machine().mono) break;
-      clock_.hold(moment);
-      animation_->step(next_wind(), period_s);
-    }
-    clock_.let_go();
-    std::this_thread::sleep_for(begin.mono - clock_.now().mono);
-    hub_.begin_threads();
-  }
-
+  /// Gives the animation the next wind.
   void advance_wind() {
     wind_.publish(next_wind());
     hub_.trace([this](std::string_view sensor) { return stream_.wants_trace(sensor); });

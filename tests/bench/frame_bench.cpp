@@ -197,10 +197,11 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(std::size_t{0}, PaceKeeper::kSteps.size() - 1))
         ->capture_default_str();
     app.add_flag("--software", options.is_software, "by the processor, even where there is graphics hardware");
-    app.add_option(
-        "--only", options.only,
-        "one row: 10,000, 100,000, 1,000,000, grove, flag, banner, curtain, cherry, zelkova, poplar, fur, ripple, "
-        "flame or garden");
+    const std::vector<Row> all = rows();
+    std::vector<std::string> names;
+    names.reserve(all.size());
+    for (const Row& row : all) names.push_back(row.name);
+    app.add_option("--only", options.only, "one row")->check(CLI::IsMember(names));
     app.add_option("--hour", options.hour, "whose camera the garden is seen by")
         ->check(CLI::Range(0.0, 24.0))
         ->capture_default_str();
@@ -223,7 +224,7 @@ int main(int argc, char** argv) {
                options.pictures);
     fmt::print("{:>10} {:>10} {:>9} {:>11} {:>10} {:>8} {:>11} {:>10}\n", "blades", "size", "frame ms", "pictures/s",
                "thread ms", "share", "process ms", "upload MB");
-    for (const Row& row : rows()) {
+    for (const Row& row : all) {
       if (options.only.empty() || options.only == row.name) measure(row, options, stage, target);
     }
     return glGetError() == GL_NO_ERROR ? 0 : 1;

@@ -41,10 +41,29 @@ double luminance(const std::vector<std::uint8_t>& rgb, int column, int row) {
   return 0.2126 * rgb[at] + 0.7152 * rgb[at + 1] + 0.0722 * rgb[at + 2];
 }
 
-light::Light low_sun() {
-  return light::light_of(
-      look::edited({}, std::vector<std::string>{"sun=fixed", "sun_height=25", "sun_azimuth=20"}).value(), 0.0);
-}
+/// Draws scenes with a pond among them, under a low sun, without a display.
+class PondView {
+ public:
+  /// `more`: values of [look] besides the sun's.
+  PondView(const std::vector<wire::SceneModel>& models, look::Quality quality,
+           const std::vector<std::string>& more = {}) {
+    std::vector<std::string> look{"sun=fixed", "sun_height=25", "sun_azimuth=20"};
+    look.insert(look.end(), more.begin(), more.end());
+    stage_.set_light(light::light_of(look::edited({}, look).value(), 0.0));
+    stage_.set_quality(quality);
+    stage_.set_scenes(models);
+  }
+
+  std::vector<std::uint8_t> draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& camera) {
+    stage_.draw(moment, camera, target_);
+    return target_.read_rgb();
+  }
+
+ private:
+  gl::HeadlessContext context_{{.is_software = true, .has_messages = true}};
+  looks::Stage stage_;
+  gl::RenderTarget target_{kWidth_px, kHeight_px, 1};
+};
 
 /// North is up in the picture, which shows water alone.
 meshes::OrbitCamera from_above() {
@@ -54,14 +73,9 @@ meshes::OrbitCamera from_above() {
 }
 
 PondFilm film_of(double speed_m_s) {
-  const gl::HeadlessContext context({.is_software = true, .has_messages = true});
-  looks::Stage stage;
-  stage.set_light(low_sun());
-  stage.set_quality(look::Quality::kLow);
-  gl::RenderTarget target(kWidth_px, kHeight_px, 1);
   ScenesInWind scenes("ripple", speed_m_s);
   scenes.advance(6.0);
-  stage.set_scenes(scenes.models());
+  PondView view(scenes.models(), look::Quality::kLow);
   meshes::OrbitCamera side;
   side.frame({.target_m = {0.0, -0.1, 0.0}, .heading_deg = 200.0, .pitch_deg = 25.0, .distance_m = 4.5});
   const meshes::OrbitCamera above = from_above();
@@ -69,8 +83,7 @@ PondFilm film_of(double speed_m_s) {
   for (int picture = 0; picture < kPictures; ++picture) {
     scenes.advance(kStep_s);
     const stream::PoseMoment moment = scenes.moment();
-    stage.draw(moment, side, target);
-    const std::vector<std::uint8_t> rgb = target.read_rgb();
+    const std::vector<std::uint8_t> rgb = view.draw(moment, side);
     double sum = 0.0, squares = 0.0, count = 0.0;
     for (int row = kHeight_px / 3; row < kHeight_px * 2 / 3; ++row) {
       for (int column = kWidth_px / 4; column < kWidth_px * 3 / 4; ++column) {
@@ -82,8 +95,7 @@ PondFilm film_of(double speed_m_s) {
     }
     film.contrasts.push_back(std::sqrt(squares / count - sum * sum / count / count));
     if (picture % kFromAbove != 0) continue;
-    stage.draw(moment, above, target);
-    const std::vector<std::uint8_t> down = target.read_rgb();
+    const std::vector<std::uint8_t> down = view.draw(moment, above);
     double white = 0.0;
     for (int row = 0; row < kHeight_px; ++row) {
       for (int column = 0; column < kWidth_px; ++column) white += luminance(down, column, row) > kFoamGrey ? 1.0 : 0.0;
@@ -137,15 +149,10 @@ TEST(PondFoam, IsLessThanAtSeaAndTellsAStormFromAFreshBreeze) {
 /// The wind is from 250 degrees, so that foam drifts away from the western half.
 TEST(PondFoam, IsWhereWavesAreSteep) {
   constexpr float kLeftOfTheWaves = 0.25F;
-  const gl::HeadlessContext context({.is_software = true, .has_messages = true});
-  looks::Stage stage;
-  stage.set_light(low_sun());
-  stage.set_quality(look::Quality::kLow);
-  gl::RenderTarget target(kWidth_px, kHeight_px, 1);
   ScenesInWind scenes("ripple", 16.0);
   scenes.advance(6.0);
   const std::vector<wire::SceneModel> models = scenes.models();
-  stage.set_scenes(models);
+  PondView view(models, look::Quality::kLow);
   const auto& water = std::get<pose::SurfaceSkeleton>(models.at(0).skeleton);
   std::array<double, 2> white{};  // in the west, in the east
   for (int picture = 0; picture < kPictures; ++picture) {
@@ -155,8 +162,7 @@ TEST(PondFoam, IsWhereWavesAreSteep) {
     for (std::size_t i = 0; i < moved.displacement_m.size(); ++i) {
       if (water.rest_x_m[i] < 0.0F) moved.displacement_m[i] *= kLeftOfTheWaves;
     }
-    stage.draw(moment, from_above(), target);
-    const std::vector<std::uint8_t> rgb = target.read_rgb();
+    const std::vector<std::uint8_t> rgb = view.draw(moment, from_above());
     for (int row = 0; row < kHeight_px; ++row) {
       for (int column = 0; column < kWidth_px; ++column) {
         const bool is_at_the_step = std::abs(column - kWidth_px / 2) < kWidth_px / 10;
@@ -204,24 +210,16 @@ TEST(PondMirror, ShowsATreeBelowItselfAndNoSunBehindClouds) {
       "[[scene]]\nkind = \"tree\"\nname = \"left\"\nx = -2.5\nz = -7.0\n"
       "[[scene]]\nkind = \"tree\"\nname = \"right\"\nx = 2.5\nz = -7.0\n",
       "a pond");
-  const gl::HeadlessContext context({.is_software = true, .has_messages = true});
-  looks::Stage stage;
-  stage.set_light(light::light_of(
-      look::edited({}, std::vector<std::string>{"sun=fixed", "sun_height=25", "sun_azimuth=20", "clouds=1"}).value(),
-      0.0));
-  stage.set_quality(look::Quality::kMedium);
-  gl::RenderTarget target(kWidth_px, kHeight_px, 1);
   ScenesInWind scenes(config);
   scenes.advance(0.1);
-  stage.set_scenes(scenes.models());
+  PondView view(scenes.models(), look::Quality::kMedium, {"clouds=1"});
   meshes::OrbitCamera camera;
   camera.frame({.target_m = {0.0, 0.5, 0.0}, .heading_deg = 0.0, .pitch_deg = 16.0, .distance_m = 7.0});
   stream::PoseMoment moment = scenes.moment();
   const auto picture_with = [&](float left, float right) {
     moment.opacities.at(1) = left;
     moment.opacities.at(2) = right;
-    stage.draw(moment, camera, target);
-    return target.read_rgb();
+    return view.draw(moment, camera);
   };
   const std::vector<std::uint8_t> empty = picture_with(0.0F, 0.0F);
   double brightest = 0.0;

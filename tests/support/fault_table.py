@@ -4,8 +4,8 @@
 usage: fault_table.py RESULTS.xml [RESULTS.xml ...]
 
 Reads JUnit files of CTest and of GoogleTest and takes the tests that are named `<Driver>Fault.<Kind>` (with whatever
-GoogleTest adds to either name), or `<Driver>/Fault.<Kind>` where drivers share a suite. A cell says how many tests it stands for; "-" is a
-fault that the driver cannot suffer. Ends with 1 if a test of the table failed or did not run, or if there is none.
+GoogleTest adds to either name), or `<Driver>/Fault.<Kind>` where drivers share a suite. A cell has the number of its
+tests; "-" is a fault that the driver cannot suffer. Ends with 1 if a test of the table failed or did not run, or if there is none.
 """
 import collections
 import re

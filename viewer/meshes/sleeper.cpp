@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -118,17 +119,12 @@ glm::vec3 ahead_of(const pose::StrandSkeleton& coat) {
   return length > 0.0F ? -lie / length : glm::vec3(0.0F);
 }
 
-/// 0 to count - 1 in an order of which any first part is spread evenly over all.
-std::vector<std::size_t> spread_order(std::size_t count) {
-  std::vector<std::size_t> order(count);
-  std::iota(order.begin(), order.end(), 0U);
-  // The golden ratio's multiples.
-  const auto place = [](std::size_t i) {
-    const double turns = static_cast<double>(i) * 0.6180339887498949;
-    return turns - std::floor(turns);
-  };
-  std::ranges::sort(order, {}, place);
-  return order;
+/// With steps of so many, and back to the beginning at the end, one comes to each of `count` things once, and to those
+/// of any first part evenly spread over all: a number without a common divisor, near the golden ratio's part of them.
+std::size_t spreading_step(std::size_t count) {
+  auto step = static_cast<std::size_t>(static_cast<double>(count) / std::numbers::phi);
+  while (std::gcd(step, count) != 1) ++step;
+  return step;
 }
 
 /// Adds hairs all over the skin, that lie along its limbs; `unit_m`: half the body's width.
@@ -179,8 +175,11 @@ void add_hairs(Limbs& limbs, float unit_m) {
       limbs.hair_m = std::max(limbs.hair_m, length_m);
     }
   }
-  for (const std::size_t i : spread_order(feet.size())) {
-    limbs.indices.insert(limbs.indices.end(), {feet[i], feet[i] + 1, feet[i] + 2});
+  if (feet.empty()) return;
+  const std::size_t step = spreading_step(feet.size());
+  for (std::size_t i = 0; i < feet.size(); ++i) {
+    const std::uint32_t foot = feet[i * step % feet.size()];
+    limbs.indices.insert(limbs.indices.end(), {foot, foot + 1, foot + 2});
   }
 }
 
