@@ -14,13 +14,14 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kTexel_m = GrowthMap::kSide_m / static_cast<float>(GrowthMap::kTexels);
-constexpr float kLawn = 0.25F;           // the growth of a lawn
-constexpr float kMargin_m = 0.8F;        // of lawn around a thing
-constexpr float kSlope_m = 4.0F;         // from a lawn's border on to tall grass
-constexpr float kShore_m = 0.5F;         // around water, without blades
-constexpr float kFloorEdge_m = 0.05F;    // beyond which blades stand again
-constexpr float kTrampled_m = 0.45F;     // around a fire
-constexpr float kTrampledWander = 0.4F;  // of how far the lawn's border wanders
+constexpr float kLawn = 0.25F;         // the growth of a lawn
+constexpr float kMargin_m = 0.8F;      // of lawn around a thing
+constexpr float kSlope_m = 4.0F;       // from a lawn's border on to tall grass
+constexpr float kShore_m = 0.5F;       // around water, without blades
+constexpr float kFloorEdge_m = 0.05F;  // beyond which blades stand again
+constexpr float kTrampled_m = 1.6F;   // around a fire, until grass is whole: some texels, so that it begins in a circle
+constexpr float kUnderFire_m = 0.2F;  // of it inside the fire's border
+constexpr float kTrampledWander = 0.25F;  // of how far the lawn's border wanders
 /// A texel with so many blades, of those that its area has on average, is taken as full.
 constexpr float kFullTexel = 0.5F;
 
@@ -167,7 +168,7 @@ void GrowthMap::make(std::span<const Standing> things, float most) {
         if (thing.kind == Standing::Kind::kFire) {
           // A fire is round, too: the box has corners.
           const float round_m = glm::length(off_m) - std::min(half_m.x, half_m.y);
-          growth *= smooth((round_m - kTrampledWander * border_m) / kTrampled_m);
+          growth *= smooth((round_m + kUnderFire_m - kTrampledWander * border_m) / kTrampled_m);
         }
         if (thing.kind == Standing::Kind::kFur) {
           // An animal lies in the tall grass: its body is round.

@@ -270,6 +270,45 @@ TEST(GrowthMapTest, HasLawnsWhoseBordersWanderButNeverIntoThings) {
   EXPECT_TRUE(std::ranges::equal(map.texels(), again.texels()));
 }
 
+/// How far from the middle of a fire bare earth ends in a direction, as the shader interpolates the map.
+float bare_earth_m(const GrowthMap& map, const glm::vec2& middle_m, float bearing_rad) {
+  const auto growth_at = [&](const glm::vec2& at_m) {
+    const float texels_per_m = static_cast<float>(GrowthMap::kTexels) / GrowthMap::kSide_m;
+    const glm::vec2 at = (at_m + 0.5F * GrowthMap::kSide_m) * texels_per_m - 0.5F;
+    const glm::vec2 low = glm::floor(at);
+    const auto texel = [&](float column, float row) {
+      return static_cast<float>(map.texels()[3 * (static_cast<std::size_t>(row) * GrowthMap::kTexels +
+                                                  static_cast<std::size_t>(column))]) /
+             255.0F;
+    };
+    const glm::vec2 part = at - low;
+    return glm::mix(glm::mix(texel(low.x, low.y), texel(low.x + 1.0F, low.y), part.x),
+                    glm::mix(texel(low.x, low.y + 1.0F), texel(low.x + 1.0F, low.y + 1.0F), part.x), part.y);
+  };
+  float out_m = 0.0F;
+  while (growth_at(middle_m + out_m * glm::vec2(std::cos(bearing_rad), std::sin(bearing_rad))) < 0.05F) out_m += 0.01F;
+  return out_m;
+}
+
+TEST(GrowthMapTest, BareEarthAroundAFireHasNoCorners) {
+  for (const float off_m : {0.0F, 0.1F, 0.25F, 0.4F}) {
+    const glm::vec2 middle_m(3.0F + off_m, -2.0F + 0.7F * off_m);
+    GrowthMap map;
+    map.make(std::array{
+        Standing{Standing::Kind::kFire,
+                 {{middle_m.x - 0.6F, 0.0F, middle_m.y - 0.6F}, {middle_m.x + 0.6F, 1.0F, middle_m.y + 0.6F}}}});
+    // From one of 24 directions to the next: the lawn's border wanders, but a corner of the map's texels is a step.
+    constexpr float kTurn_rad = 6.2831853F / 24.0F;
+    for (int i = 0; i < 24; ++i) {
+      const float here_m = bare_earth_m(map, middle_m, static_cast<float>(i) * kTurn_rad);
+      EXPECT_GT(here_m, 0.6F);
+      EXPECT_LT(here_m, 1.7F);
+      EXPECT_NEAR(bare_earth_m(map, middle_m, static_cast<float>(i + 1) * kTurn_rad), here_m, 0.12F)
+          << i << ", " << off_m;
+    }
+  }
+}
+
 TEST(GrowthMapTest, IsTallUpToFur) {
   GrowthMap map;
   const Bounds box{{-1.5F, 0.0F, -1.0F}, {1.5F, 0.7F, 1.0F}};

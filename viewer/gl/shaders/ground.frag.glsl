@@ -9,9 +9,8 @@ out vec4 color;
 // Where no blades are drawn any more, tufts stand in rows across one axis of the world, as on upright cards (R. Habel 2007,
 // "Instant animated grass"). Returns how the tuft that one sees differs from its neighbours, about from -0.5 to 0.5. `at_m`: across
 // the rows, and along them; `to_eye`: a direction in the same axes and upright; rows are so far apart, tufts so many a metre.
-float tufts_in_rows(vec2 at_m, vec3 to_eye, float height_m, float row_m, float tufts_per_m) {
-  float wander = 0.10 * sin(0.11 * tufts_per_m * at_m.y) + 0.14 * sin(0.043 * tufts_per_m * at_m.y + 2.0);
-  float row = at_m.x / row_m + wander;
+float tufts_in_rows(vec2 at_m, vec3 to_eye, float height_m, float row_m, float tufts_per_m, float wander) {
+  float row = at_m.x / row_m + wander + 0.10 * sin(0.11 * tufts_per_m * at_m.y) + 0.14 * sin(0.043 * tufts_per_m * at_m.y + 2.0);
   float toward = to_eye.x < 0.0 ? -1.0 : 1.0;
   float rows = toward > 0.0 ? 1.0 - fract(row) : fract(row);  // to the next row toward the eye
   float per_row_m = row_m / max(abs(to_eye.x), 1e-3);         // of the way to the eye
@@ -25,7 +24,7 @@ float tufts_in_rows(vec2 at_m, vec3 to_eye, float height_m, float row_m, float t
 
 // The same for all directions: more of the rows that one looks across. 0 if the share of it that is to be seen is 0: its loop is
 // not run then, while both sides of a branch would be.
-float upright_tufts(vec2 at_m, vec3 to_eye, float distance_m, float seen_share) {
+float upright_tufts(vec2 at_m, vec3 to_eye, float distance_m, float wander, float seen_share) {
   const float kPixels = 2.0;  // a tuft is about so wide
   float height_m = 0.45 * stand.x;
   float level = log2(max(distance_m, 1.0));
@@ -42,8 +41,8 @@ float upright_tufts(vec2 at_m, vec3 to_eye, float distance_m, float seen_share) 
     float size = exp2(floor(level) + float(i));
     float share = i == 0 ? 1.0 - fract(level) : fract(level);
     float here = 0.0;
-    if (across_x > 0.0) here += across_x * tufts_in_rows(at_m, vec3(level_way, rise), height_m, row_at_1m * size, tufts_at_1m / size);
-    if (across_x < 1.0) here += (1.0 - across_x) * tufts_in_rows(at_m.yx, vec3(level_way.yx, rise), height_m, row_at_1m * size, tufts_at_1m / size);
+    if (across_x > 0.0) here += across_x * tufts_in_rows(at_m, vec3(level_way, rise), height_m, row_at_1m * size, tufts_at_1m / size, wander);
+    if (across_x < 1.0) here += (1.0 - across_x) * tufts_in_rows(at_m.yx, vec3(level_way.yx, rise), height_m, row_at_1m * size, tufts_at_1m / size, wander);
     sum += share * here;
   }
   return sum;
@@ -73,7 +72,7 @@ void main() {
 
   // Beyond the blades, at a flat angle, as long as they are higher than a pixel.
   float upright = tall * smoothstep(14.0, 34.0, distance_m) * (1.0 - smoothstep(0.10, 0.30, to_eye.y)) * smoothstep(0.5, 2.0, 0.45 * stand.x / (distance_m * eye_m.w));
-  tufts = clamp(tufts * (1.0 - 0.8 * upright) + upright * upright_tufts(at_m, to_eye, distance_m, upright), -0.7, 0.7);
+  tufts = clamp(tufts * (1.0 - 0.8 * upright) + upright * upright_tufts(at_m, to_eye, distance_m, 4.0 * (patch_at.x + patch_at.y), upright), -0.7, 0.7);
 
   float lit = mix(kSunInShadow, 1.0, sunlight_at(place_m, pixel_chance(gl_FragCoord.xy)));
   lit *= under_clouds(at_m, distance_m * eye_m.w * inversesqrt(max(to_eye.y, 0.02)));
