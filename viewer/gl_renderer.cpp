@@ -33,6 +33,7 @@ void GlRenderer::resize(int width_px, int height_px) {
 }
 
 void GlRenderer::set_quality(look::Quality quality, float density) {
+  wanted_quality_ = quality;
   quality_ = quality == look::Quality::kAuto ? own_quality_ : quality;
   density_ = density;
   stage_.set_quality(quality_);

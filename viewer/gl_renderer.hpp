@@ -8,7 +8,7 @@
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/gl/render_target.hpp"
 #include "viewer/looks/stage.hpp"
-#include "viewer/pace_keeper.hpp"
+#include "viewer/pace/pace_ladder.hpp"
 #include "viewer/renderer.hpp"
 
 namespace yuragi::viewer {
@@ -25,9 +25,11 @@ class GlRenderer final : public Renderer {
   /// The size of the pictures from the next one on.
   void resize(int width_px, int height_px);
   /// How much of the next pictures is drawn; all at first.
-  void set_drawn(const DrawnPart& drawn) { drawn_ = drawn; }
+  void set_drawn(const pace::DrawnPart& drawn) { drawn_ = drawn; }
   /// The quality where the look leaves it to the viewer; high at first.
   void set_own_quality(look::Quality quality) { own_quality_ = quality; }
+  /// The one that was last set: kAuto where it is left to the viewer.
+  look::Quality wanted_quality() const { return wanted_quality_; }
   look::Quality quality() const { return quality_; }
   /// Every camera sees this, whatever its field of view.
   void see_through(const meshes::Frustum& frustum) { camera_.see_through(frustum); }
@@ -56,8 +58,9 @@ class GlRenderer final : public Renderer {
   gl::EdgeSmoother edge_smoother_;  // with quality low
   gl::RenderTarget target_;
   meshes::OrbitCamera camera_;
-  DrawnPart drawn_;
+  pace::DrawnPart drawn_;
   look::Quality own_quality_ = look::Quality::kHigh;
+  look::Quality wanted_quality_ = look::Quality::kAuto;
   look::Quality quality_ = look::Quality::kAuto;
   float density_ = 1.0F;
 };

@@ -13,8 +13,8 @@
 #include "engine/base/units.hpp"
 #include "engine/wire/sensor_trouble.hpp"
 #include "viewer/keys.hpp"
+#include "viewer/pace/quality.hpp"
 #include "viewer/panel_view.hpp"
-#include "viewer/quality.hpp"
 #include "viewer/wind_place_text.hpp"
 
 namespace yuragi::viewer {
@@ -186,7 +186,7 @@ void write_look(const OverlayFacts& facts) {
                                        nearest_compass_point(sun.azimuth_deg));
   text += fmt::format(", clouds {:.0f} %, haze {:.0f} %", 100.0 * facts.sky->clouds, 100.0 * facts.sky->haze);
   write(kQuiet, text);
-  write(kQuiet, quality_text(facts.quality, facts.drawn));
+  write(kQuiet, pace::quality_text(facts.quality, facts.drawn, facts.refreshes));
 }
 
 void write_stream(const OverlayFacts& facts) {

@@ -9,7 +9,7 @@
 #include "viewer/gl/pass_clock.hpp"
 #include "viewer/light/daylight.hpp"
 #include "viewer/overlay_layout.hpp"
-#include "viewer/pace_keeper.hpp"
+#include "viewer/pace/pace_ladder.hpp"
 #include "viewer/stream/pose_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
 #include "viewer/wind_trace.hpp"
@@ -32,7 +32,8 @@ struct OverlayFacts {
   std::span<const float> opacities;              ///< one a scene
   const light::Sky* sky = nullptr;               ///< null: not known
   look::Quality quality = look::Quality::kHigh;  ///< in which it is drawn
-  DrawnPart drawn;                               ///< how much of it
+  pace::DrawnPart drawn;                         ///< how much of it
+  int refreshes = 1;                             ///< of the display, for each picture
   double heading_deg = 0.0;                      ///< of the camera: up on the compass
   std::string age;                               ///< of the reading, age_text(); empty: none
   std::string camera;                            ///< which it is, for a person; empty: there is but one

@@ -52,6 +52,8 @@ class PictureDirector {
   /// What the last picture showed.
   const look::Look& look() const { return sky_.look(); }
   double heading_deg() const { return place_for(cameras_.now()).heading_deg; }
+  /// Does a camera's picture pass into another's? Then both are drawn.
+  bool is_fading() const { return cameras_.is_fading(); }
   /// "camera evening, cross-fading"; empty where the sender has none.
   std::string camera_text() const;
 

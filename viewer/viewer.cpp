@@ -12,12 +12,13 @@
 #include "viewer/light/sky_keeper.hpp"
 #include "viewer/overlay.hpp"
 #include "viewer/own_token.hpp"
-#include "viewer/pace_keeper.hpp"
+#include "viewer/pace/pace_keeper.hpp"
+#include "viewer/pace/pace_ladder.hpp"
+#include "viewer/pace/quality.hpp"
 #include "viewer/panel.hpp"
 #include "viewer/paused_moment.hpp"
 #include "viewer/picture_director.hpp"
 #include "viewer/picture_file.hpp"
-#include "viewer/quality.hpp"
 #include "viewer/stream/picture_age.hpp"
 #include "viewer/stream/scene_timeline.hpp"
 #include "viewer/stream/stream_connection.hpp"
@@ -42,6 +43,7 @@ constexpr int kSamples = 4;             // a pixel
 constexpr double kRateSmoothing = 0.05;
 constexpr double kHandFade_s = 0.3;  // of the light, while a person moves a handle of the panel
 constexpr double kAgeSaid_s = stream::PictureAge::kSpan_s;
+constexpr int kMeasuredEvery = 3;   // pictures of a graphics card: to wait for one costs a little
 constexpr double kDimming_s = 0.5;  // between two of the daemon's statuses the brightness goes on
 
 double now_s() {
@@ -98,7 +100,12 @@ class Viewer::Show {
     const bool is_slow = is_software_ && window_;
     renderer_.emplace(std::move(context), options.width_px, options.height_px,
                       options.samples.value_or(is_slow ? 1 : kSamples));
-    renderer_->set_own_quality(quality_for(look::Quality::kAuto, is_software_));
+    const look::Quality first_quality = pace::quality_for(look::Quality::kAuto, is_software_);
+    renderer_->set_own_quality(first_quality);
+    if (window_) {
+      const pace::PaceLadder ladder(look::Quality::kAuto, display_interval_s());
+      pace_.emplace(ladder, is_software_ ? ladder.slowest_of(first_quality) : 0);
+    }
     if (output_ && output_->screen) see_through(*output_->screen);
     director_.emplace(options_, *renderer_, options_.connect);
     dimmer_.emplace();
@@ -132,12 +139,16 @@ class Viewer::Show {
       }
       black_until_s_ = is_black ? last_s_ + kBlackAgain_s : 0.0;
       black_size_ = size;
+      const std::size_t compiled = gl::compiled_shaders();
       is_black ? draw_black(size) : draw(size);
+      const bool is_usual = !is_black && !test_card_ && compiled == gl::compiled_shaders() && !is_in_transition();
+      std::optional<double> work_s = is_usual && !is_software_ ? work_of_graphics_card_s() : std::nullopt;
       show(size);
       note_age(display_interval_s());
       if (gl::is_context_lost()) throw ViewerExit(EX_TEMPFAIL, "the graphics card was reset; start the viewer again");
       // Where the processor draws the picture is done now.
-      if (!is_black && is_drawn_for_pace()) pace_.advance(picture_passed_s_, now_s() - last_s_);
+      if (is_usual && is_software_) work_s = now_s() - last_s_;
+      choose_pace(size, work_s);
       keep_pace();
     }
   }
@@ -222,9 +233,39 @@ class Viewer::Show {
 
   /// Says a change in the log.
   void tell_quality() {
-    if (renderer_->quality() == quality_) return;
-    quality_ = renderer_->quality();
-    std::fprintf(stderr, "yuragi-viewer: %s\n", quality_text(quality_).c_str());
+    pace::PaceStep step = pace_ ? pace_->step() : pace::PaceStep{};
+    step.quality = renderer_->quality();
+    if (step == told_) return;
+    const std::string text = pace::quality_text(step.quality, step.part, step.refreshes);
+    if (pace_ && pace_->median_s() > 0.0) {
+      std::fprintf(stderr, "yuragi-viewer: %s (a picture took %.0f ms, and there are now %.0f for it)\n", text.c_str(),
+                   1e3 * pace_->median_s(), 1e3 * pace_->picture_s());
+    } else {
+      std::fprintf(stderr, "yuragi-viewer: %s\n", text.c_str());
+    }
+    told_ = step;
+  }
+
+  /// Are there, for some seconds, two pictures in one: of two cameras, or of scenes that come and go?
+  bool is_in_transition() const {
+    return director_->is_fading() ||
+           std::ranges::any_of(moment_->opacities, [](float opacity) { return opacity > 0.0F && opacity < 1.0F; });
+  }
+
+  /// How long it has worked at the picture that was begun at last_s_; null for most, for the card is waited for.
+  std::optional<double> work_of_graphics_card_s() {
+    if (++measured_pictures_ % kMeasuredEvery != 0) return std::nullopt;
+    glFinish();
+    return now_s() - last_s_;
+  }
+
+  /// How much is drawn of the next picture, after one of this size.
+  void choose_pace(const PixelSize& size, std::optional<double> work_s) {
+    pace_->set_ladder(pace::PaceLadder(renderer_->wanted_quality(), display_interval_s()));
+    if (size != paced_size_) pace_->settle();
+    paced_size_ = size;
+    pace_->advance(picture_passed_s_, work_s);
+    renderer_->set_own_quality(pace_->step().quality);
   }
 
   void use_input() {
@@ -283,10 +324,11 @@ class Viewer::Show {
       }
       case Action::kNextScene:
         renderer_->stage().show_next();
+        pace_->settle();
         director_->frame_scenes(renderer_->stage().shows_all());
         break;
       case Action::kNextQuality:
-        director_->show_next_quality(quality_);
+        director_->show_next_quality(renderer_->quality());
         break;
       case Action::kPanel:
         has_panel_ = !has_panel_;
@@ -327,7 +369,10 @@ class Viewer::Show {
     follow_brightness(is_first_status ? kDimming_s : passed_s);
     // Scenes that are new while a picture stands still come when it goes on.
     if (!paused_.is_paused()) {
-      if (auto scenes = timeline_.take_new_scenes()) director_->set_scenes(std::move(*scenes));
+      if (auto scenes = timeline_.take_new_scenes()) {
+        director_->set_scenes(std::move(*scenes));
+        if (pace_) pace_->settle();
+      }
     }
     director_->advance(passed_s, utc_s_, moment_->wind.wind);
     tell_quality();
@@ -384,7 +429,7 @@ class Viewer::Show {
       renderer_->target().bind_resolved();
       return test_card_->draw({.width_px = size.width_px, .height_px = size.height_px});
     }
-    const DrawnPart part = is_drawn_for_pace() ? pace_.drawn() : DrawnPart{};
+    const pace::DrawnPart part = pace_ ? pace_->drawn() : pace::DrawnPart{};
     renderer_->set_drawn(part);
     director_->draw(*moment_);
     dimmer_->draw(static_cast<float>(brightness_));
@@ -403,8 +448,9 @@ class Viewer::Show {
                     .scenes = renderer_->scenes(),
                     .opacities = moment_->opacities,
                     .sky = &sky,
-                    .quality = quality_,
+                    .quality = renderer_->quality(),
                     .drawn = part,
+                    .refreshes = pace_ ? pace_->step().refreshes : 1,
                     .heading_deg = director_->heading_deg(),
                     .age = age ? age_text(*age) : std::string(),
                     .camera = director_->camera_text(),
@@ -416,11 +462,6 @@ class Viewer::Show {
                     .picture_times_ms = picture_times_ms_,
                     .has_texts = has_overlay_,
                     .panel = has_panel_ ? &panel_ : nullptr});
-  }
-
-  /// Is less drawn where that keeps the pace? Where the processor draws into a window, in quality low.
-  bool is_drawn_for_pace() const {
-    return is_software_ && window_ && quality_ == look::Quality::kLow;
   }
 
   /// The picture has been handed to the display, which takes so long to show it.
@@ -439,9 +480,10 @@ class Viewer::Show {
     return wall_ ? wall_->picture_interval_s() : 1.0 / window_->refresh_rate_hz();
   }
 
-  /// Waits where the driver does not wait for the screen: no more pictures than the screen can show.
+  /// Waits where the driver does not wait for the screen, or only for its next refresh: no more pictures than are
+  /// wanted.
   void keep_pace() {
-    const double rest_s = 0.95 * display_interval_s() - (now_s() - last_s_);
+    const double rest_s = 0.95 * pace_->picture_s() - (now_s() - last_s_);
     if (rest_s > 0.0) window_->wait(rest_s);
   }
 
@@ -460,8 +502,10 @@ class Viewer::Show {
 
   Watchdog watchdog_;
   bool is_software_ = false;
-  PaceKeeper pace_;
-  look::Quality quality_ = look::Quality::kAuto;
+  std::optional<pace::PaceKeeper> pace_;                  // of a window: a picture in a file has all
+  pace::PaceStep told_{.quality = look::Quality::kAuto};  // in the log
+  PixelSize paced_size_;
+  int measured_pictures_ = 0;
   double utc_s_ = 0.0;  // the daemon's clock: of the newest frame
   stream::SceneTimeline timeline_;
   stream::PictureAge age_;

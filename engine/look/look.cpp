@@ -80,7 +80,7 @@ const std::array<Parameter, 15> kParameters{{
     {.name = "quality",
      .unit = "",
      .default_value = std::string("auto"),
-     .help = "How much work a picture is; \"auto\": low where there is no graphics hardware, otherwise high",
+     .help = "How much work a picture is; \"auto\": as much as the machine can draw in time",
      .choices = kQualities},
     {.name = "palette",
      .unit = "",

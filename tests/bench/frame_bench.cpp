@@ -27,8 +27,8 @@
 #include "viewer/gl/edge_smoother.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
-#include "viewer/pace_keeper.hpp"
-#include "viewer/quality.hpp"
+#include "viewer/pace/pace_ladder.hpp"
+#include "viewer/pace/quality.hpp"
 
 namespace {
 
@@ -193,8 +193,8 @@ int main(int argc, char** argv) {
     app.add_option("--quality", options.quality, "of the look")
         ->check(CLI::IsMember(std::vector<std::string>{"auto", "low", "medium", "high"}))
         ->capture_default_str();
-    app.add_option("--step", options.step, "how much is drawn, of PaceKeeper::kSteps")
-        ->check(CLI::Range(std::size_t{0}, PaceKeeper::kSteps.size() - 1))
+    app.add_option("--step", options.step, "how much is drawn: 0 all, or one of PaceLadder::kParts (viewer/pace)")
+        ->check(CLI::Range(std::size_t{0}, pace::PaceLadder::kParts.size()))
         ->capture_default_str();
     app.add_flag("--software", options.is_software, "by the processor, even where there is graphics hardware");
     const std::vector<Row> all = rows();
@@ -210,18 +210,18 @@ int main(int argc, char** argv) {
 
     const gl::HeadlessContext context({.is_software = options.is_software});
     const look::Look look = look::edited({}, std::vector<std::string>{"quality=" + options.quality}).value();
-    const look::Quality quality = quality_for(look.quality, gl::is_software_renderer());
+    const look::Quality quality = pace::quality_for(look.quality, gl::is_software_renderer());
     looks::Stage stage;
     stage.set_quality(quality);
     options.quality = name_of(quality);
     gl::RenderTarget target(options.width_px, options.height_px, options.samples);
-    const DrawnPart part = PaceKeeper::kSteps[options.step];
+    const pace::DrawnPart part = options.step == 0 ? pace::DrawnPart{} : pace::PaceLadder::kParts[options.step - 1];
     stage.set_blade_share(part.blades);
     stage.set_coarseness(part.coarseness);
     target.set_drawn_side(part.side);
     fmt::print("{}, {} samples a pixel, {}, medians of {} pictures\n",
-               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(), quality_text(quality, part),
-               options.pictures);
+               reinterpret_cast<const char*>(glGetString(GL_RENDERER)), target.samples(),
+               pace::quality_text(quality, part), options.pictures);
     fmt::print("{:>10} {:>10} {:>9} {:>11} {:>10} {:>8} {:>11} {:>10}\n", "blades", "size", "frame ms", "pictures/s",
                "thread ms", "share", "process ms", "upload MB");
     for (const Row& row : all) {

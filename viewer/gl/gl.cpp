@@ -26,12 +26,15 @@ std::string file_of(std::string_view source, const std::string& otherwise) {
   return found == all.end() ? otherwise : std::string(found->file);
 }
 
+std::atomic<std::size_t> compile_count{0};
+
 void compile(const GlShader& shader, const std::string& name, std::string_view source) {
   // Lines from 10001 on are those of common.glsl.
   std::string text = "#version 330 core\n#line 10001\n";
   text.append(shaders::kCommon).append("\n#line 1\n").append(source);
   const GLchar* const begin = text.data();
   const auto length = static_cast<GLint>(text.size());
+  ++compile_count;
   glShaderSource(shader.name, 1, &begin, &length);
   glCompileShader(shader.name);
 
@@ -163,6 +166,10 @@ GlTexture make_tile(GLint kept_as, GLenum format, GLsizei side, std::span<const 
 void set_sampler(const GlProgram& program, const char* name, GLint unit) {
   glUseProgram(program.name());
   glUniform1i(glGetUniformLocation(program.name(), name), unit);
+}
+
+std::size_t compiled_shaders() {
+  return compile_count;
 }
 
 std::size_t uploaded_bytes() {

@@ -123,6 +123,9 @@ GlTexture make_tile(GLint kept_as, GLenum format, GLsizei side, std::span<const 
 
 /// All that uploads count since the program began, in bytes. For measurements.
 std::size_t uploaded_bytes();
+/// How many shaders have been compiled since the program began. For measurements: a picture that compiles takes longer
+/// than others.
+std::size_t compiled_shaders();
 /// To be called with every upload of a picture that stream_to() does not make.
 void count_upload(std::size_t bytes);
 

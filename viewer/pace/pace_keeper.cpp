@@ -1,0 +1,122 @@
+#include "viewer/pace/pace_keeper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace yuragi::viewer::pace {
+namespace {
+
+constexpr double kJudgeWhileSettling_s = 1.0;
+constexpr std::size_t kFewPictures = 5;    // are judged only when they are all that there is for kJudge_s
+constexpr double kLongest_s = 2.0;         // a picture that took longer was held up by something else
+constexpr double kTooLong = 1.05;          // of the time that there is
+constexpr double kExpected = 0.7;          // of the work before, with the next step: until it is measured
+constexpr double kMostSaved = 0.3;         // what a measurement is believed
+constexpr double kBladesPerSecond = 0.08;  // of all; of the coarseness, as much
+
+}  // namespace
+
+PaceKeeper::PaceKeeper(const PaceLadder& ladder, std::size_t first)
+    : ladder_(ladder), step_(std::min(first, ladder.size() - 1)), drawn_(ladder[step_].part) {
+  saves_.fill(kExpected);
+}
+
+void PaceKeeper::set_ladder(const PaceLadder& ladder) {
+  if (ladder == ladder_) return;
+  const PaceStep before = step();
+  ladder_ = ladder;
+  // The same picture, or the first one that has no more; in the same time, where that can be.
+  step_ = ladder_.slowest_of(before.quality);
+  while (step_ + 1 < ladder_.size() && step().quality == before.quality && step().part.side > before.part.side) ++step_;
+  while (step_ > 0 && before.refreshes == 1 && !is_picture_step(step_)) --step_;
+  settle();
+}
+
+void PaceKeeper::settle() {
+  settling_s_ = kSettling_s;
+  saves_.fill(kExpected);
+  change_.reset();
+  count_ = 0;
+  judged_over_s_ = 0.0;
+  spare_s_ = 0.0;
+}
+
+void PaceKeeper::advance(double passed_s, std::optional<double> work_s) {
+  passed_s = std::clamp(passed_s, 0.0, kLongest_s);
+  settling_s_ = std::max(settling_s_ - passed_s, 0.0);
+  for (double& since_s : since_changes_s_) since_s = std::min(since_s + passed_s, kHour_s);
+  if (drawn_ == step().part) {  // on the way there a picture is more work
+    judged_over_s_ += passed_s;
+    if (work_s && count_ < works_s_.size()) works_s_[count_++] = std::clamp(*work_s, 0.0, kLongest_s);
+  }
+  const bool is_soon = settling_s_ > 0.0 && judged_over_s_ >= kJudgeWhileSettling_s && count_ >= kFewPictures;
+  if (is_soon || (judged_over_s_ >= kJudge_s && count_ > 0)) judge();
+
+  drawn_.side = step().part.side;
+  const auto most = static_cast<float>(kBladesPerSecond * passed_s);
+  drawn_.blades += std::clamp(step().part.blades - drawn_.blades, -most, most);
+  drawn_.coarseness += std::clamp(step().part.coarseness - drawn_.coarseness, -most, most);
+}
+
+void PaceKeeper::judge() {
+  const auto middle = works_s_.begin() + static_cast<std::ptrdiff_t>(count_ / 2);
+  std::nth_element(works_s_.begin(), middle, works_s_.begin() + static_cast<std::ptrdiff_t>(count_));
+  median_s_ = *middle;
+  learn();
+  const double over_s = judged_over_s_;
+  judged_over_s_ = 0.0;
+  count_ = 0;
+
+  if (median_s_ > kTooLong * picture_s()) {
+    spare_s_ = 0.0;
+    std::size_t to = step_;
+    while (to + 1 < ladder_.size() && (to == step_ || expected_s(to) > ladder_.picture_s(to))) ++to;
+    if (to != step_ && may_change()) go_to(to);
+    return;
+  }
+  const bool has_room = step_ > 0 && expected_s(step_ - 1) <= ladder_.picture_s(step_ - 1);
+  spare_s_ = has_room ? spare_s_ + over_s : 0.0;
+  if (spare_s_ >= kSpare_s && may_change()) go_to(step_ - 1);
+}
+
+/// What the step to here has saved, or cost. Of several steps at once each has done as much.
+void PaceKeeper::learn() {
+  if (!change_) return;
+  const auto [low, high] = std::minmax(change_->from, step_);
+  const double ratio = step_ > change_->from ? median_s_ / change_->median_s : change_->median_s / median_s_;
+  double pictures = 0.0;
+  for (std::size_t i = low + 1; i <= high; ++i) pictures += is_picture_step(i) ? 1.0 : 0.0;
+  for (std::size_t i = low + 1; i <= high; ++i) {
+    if (is_picture_step(i)) saves_[i] = std::clamp(std::pow(ratio, 1.0 / pictures), kMostSaved, 1.0);
+  }
+  change_.reset();
+}
+
+bool PaceKeeper::may_change() const {
+  return settling_s_ > 0.0 || since_changes_s_[1] >= kHour_s;
+}
+
+void PaceKeeper::go_to(std::size_t step) {
+  change_ = Change{step_, std::max(median_s_, 1e-6)};
+  step_ = step;
+  spare_s_ = 0.0;
+  if (settling_s_ == 0.0) since_changes_s_ = {0.0, since_changes_s_[0]};
+}
+
+/// How long a picture would take in another step. Where only the time for it differs it takes as long, but should leave
+/// room.
+double PaceKeeper::expected_s(std::size_t step) const {
+  double expected_s = median_s_;
+  for (std::size_t i = step_ + 1; i <= step; ++i) {
+    if (is_picture_step(i)) expected_s *= saves_[i];
+  }
+  for (std::size_t i = step_; i > step; --i) expected_s /= is_picture_step(i) ? saves_[i] : kExpected;
+  return expected_s;
+}
+
+/// Does this step differ in the picture from the one before it?
+bool PaceKeeper::is_picture_step(std::size_t step) const {
+  return step > 0 && ladder_[step].refreshes == ladder_[step - 1].refreshes;
+}
+
+}  // namespace yuragi::viewer::pace

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "viewer/pace/pace_ladder.hpp"
+
+namespace yuragi::viewer::pace {
+
+/// Chooses how much is drawn (PaceLadder) by how long pictures take, so that they come at an even pace on a machine of
+/// any speed.
+///
+/// It judges the median of the pictures of kJudge_s, so that one slow picture changes nothing. Where they take too
+/// long, it goes down at once to the first step in which they are expected to fit; where they would leave room in the
+/// step above for kSpare_s, one up. A step of the picture is expected to save 30 %, until it has been measured; so a
+/// step that was too much is tried again only when the machine has become quicker. There are at most two changes in an
+/// hour, but as many as it needs in the first kSettling_s, when the machine's speed is not known, and after settle().
+/// The grass and the meshes change slowly, so that no blade comes or goes at once.
+///
+/// Pure: times are parameters. Allocates nothing. Thread-safe: no.
+class PaceKeeper {
+ public:
+  static constexpr double kJudge_s = 3.0;
+  static constexpr double kSpare_s = 60.0;
+  static constexpr double kSettling_s = 60.0;
+  static constexpr double kHour_s = 3600.0;
+
+  /// It begins at this step.
+  PaceKeeper(const PaceLadder& ladder, std::size_t first);
+
+  /// Another ladder: it goes on at the step of it that is most like the present one. Nothing where it is the same.
+  void set_ladder(const PaceLadder& ladder);
+  /// What is drawn has changed, in size or kind: what was measured is forgotten.
+  void settle();
+
+  /// A picture was made, and the one before it began `passed_s` before it. `work_s`: how long it took, without waiting
+  /// for the display; null where that was not measured, or says nothing of the next ones, since shaders were compiled.
+  void advance(double passed_s, std::optional<double> work_s);
+
+  const PaceStep& step() const { return ladder_[step_]; }
+  /// The step's, on the way there.
+  DrawnPart drawn() const { return drawn_; }
+  /// The time that there is for a picture.
+  double picture_s() const { return ladder_.picture_s(step_); }
+  /// The median that it has judged last; 0 before.
+  double median_s() const { return median_s_; }
+
+ private:
+  void judge();
+  void learn();
+  bool may_change() const;
+  void go_to(std::size_t step);
+  double expected_s(std::size_t step) const;
+  bool is_picture_step(std::size_t step) const;
+
+  PaceLadder ladder_;
+  std::size_t step_;
+  DrawnPart drawn_;
+  std::array<double, 12> saves_{};  ///< of the work of the step before, what is left in each
+
+  std::array<double, 128> works_s_{};  ///< since the last judgement
+  std::size_t count_ = 0;
+  double median_s_ = 0.0;
+  double judged_over_s_ = 0.0;
+  double spare_s_ = 0.0;  ///< so long has there been room in the step above
+  double settling_s_ = kSettling_s;
+  std::array<double, 2> since_changes_s_{kHour_s, kHour_s};  ///< the last one first
+
+  struct Change {
+    std::size_t from;
+    double median_s;
+  };
+  std::optional<Change> change_;  ///< that nothing has been learned from yet
+};
+
+}  // namespace yuragi::viewer::pace

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "engine/look/look.hpp"
+
+namespace yuragi::viewer {
+
+/// How much of a picture is drawn.
+struct DrawnPart {
+  float side = 1.0F;        ///< of the pixels of its width and of its height; the rest is filled in between them
+  float blades = 1.0F;      ///< of the grass that the quality draws
+  float coarseness = 1.0F;  ///< so many times as wide are the pixels that meshes of things and shadows are made for
+
+  friend bool operator==(const DrawnPart&, const DrawnPart&) = default;
+};
+
+/// One way to draw: what a picture has, and how often there is one.
+struct PaceStep {
+  look::Quality quality = look::Quality::kHigh;
+  DrawnPart part;
+  int refreshes = 1;  ///< of the display, from one picture to the next
+
+  friend bool operator==(const PaceStep&, const PaceStep&) = default;
+};
+
+/// All ways to draw, each less work than the one before. First fewer pictures, at the display's rate or a half, a
+/// quarter ... of it, but at least kFewestPerSecond; then less in each: the qualities below `wanted` where that is left
+/// to the viewer (kAuto), and below quality low fewer pixels and blades. A quality that somebody has chosen stays as it
+/// is, but that low has fewer pixels, too.
+///
+/// Allocates nothing. Thread-safe: no.
+class PaceLadder {
+ public:
+  static constexpr double kFewestPerSecond = 24.0;
+  /// Below quality low. Each is at least 1 / 1.5 of the work of the one before. With fewer pixels than the last a
+  /// meadow looks coarse: a machine that is slower still makes fewer pictures.
+  static constexpr std::array<DrawnPart, 4> kParts{{{.side = 0.85F, .blades = 0.85F, .coarseness = 1.1F},
+                                                    {.side = 0.72F, .blades = 0.70F, .coarseness = 1.2F},
+                                                    {.side = 0.60F, .blades = 0.55F, .coarseness = 1.3F},
+                                                    {.side = 0.50F, .blades = 0.45F, .coarseness = 1.4F}}};
+
+  /// `refresh_s`: from one refresh of the display to the next.
+  PaceLadder(look::Quality wanted, double refresh_s);
+
+  std::size_t size() const { return count_; }
+  const PaceStep& operator[](std::size_t i) const { return steps_[i]; }
+  /// The time that there is for a picture.
+  double picture_s(std::size_t i) const { return refresh_s_ * static_cast<double>(steps_[i].refreshes); }
+  /// The first step with this quality or a lower one and as few pictures as there may be.
+  std::size_t slowest_of(look::Quality quality) const;
+
+  friend bool operator==(const PaceLadder&, const PaceLadder&) = default;
+
+ private:
+  std::array<PaceStep, 12> steps_{};
+  std::size_t count_ = 0;
+  double refresh_s_;
+};
+
+}  // namespace yuragi::viewer
