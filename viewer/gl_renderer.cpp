@@ -1,7 +1,6 @@
 #include "viewer/gl_renderer.hpp"
 
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "viewer/viewer_exit.hpp"
@@ -18,9 +17,7 @@ std::unique_ptr<gl::HeadlessContext> make_headless_context() {
     return std::make_unique<gl::HeadlessContext>();
 #endif
   } catch (const std::runtime_error& error) {
-    throw ViewerExit(EX_UNAVAILABLE, std::string(error.what()) +
-                                         ".\nMesa's drivers, which can draw by the processor, are in the packages "
-                                         "libegl-mesa0 and libgl1-mesa-dri.");
+    throw ViewerExit(EX_UNAVAILABLE, error.what());
   }
 }
 

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
+
+#include "viewer/gl/driver.hpp"
 
 namespace yuragi::viewer {
 
@@ -20,7 +23,7 @@ Overlay::Overlay(GLFWwindow* window) : has_window_(window != nullptr) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;  // nothing is kept on disk
   if (has_window_) ImGui_ImplGlfw_InitForOpenGL(window, true);
-  ImGui_ImplOpenGL3_Init("#version 330 core");
+  ImGui_ImplOpenGL3_Init(std::string(gl::glsl_version_line()).c_str());
 }
 
 void Overlay::set_scale(double scale) {

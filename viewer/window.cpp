@@ -2,11 +2,13 @@
 
 #define GLFW_INCLUDE_NONE
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include <GLFW/glfw3.h>
 
+#include "viewer/gl/driver.hpp"
 #include "viewer/viewer_exit.hpp"
 #include "viewer/wall/monitors.hpp"
 
@@ -29,15 +31,46 @@ void begin_glfw() {
   if (glfwInit() != GLFW_TRUE) throw_unavailable("there is no display to open a window on");
 }
 
+/// For the windows that are created from now on: those of a wall share the first one's context.
+void ask_for(const gl::GlVersion& version) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, version.major);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, version.minor);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, version.is_core() ? GLFW_OPENGL_CORE_PROFILE : GLFW_OPENGL_ANY_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+}
+
+/// With a current context that is enough; null if there is none.
+GLFWwindow* create_with_newest_gl(const WindowOptions& options) {
+  for (const gl::GlVersion& version : gl::kVersionsToAskFor) {
+    ask_for(version);
+    GLFWwindow* const made = glfwCreateWindow(options.width_px, options.height_px, "Yuragi", nullptr, nullptr);
+    if (made == nullptr) continue;
+    glfwMakeContextCurrent(made);
+    if (gl::is_enough(gl::current_driver())) return made;
+    glfwDestroyWindow(made);
+  }
+  return nullptr;
+}
+
+/// Also ends GLFW.
+[[noreturn]] void throw_without_gl() {
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  std::optional<gl::Driver> driver;  // that of a context of any version
+  if (GLFWwindow* const made = glfwCreateWindow(64, 64, "Yuragi", nullptr, nullptr); made != nullptr) {
+    glfwMakeContextCurrent(made);
+    driver = gl::current_driver();
+  }
+  glfwTerminate();
+  if (driver) throw ViewerExit(EX_UNAVAILABLE, gl::too_old_text(*driver));
+  throw_unavailable("this display has no OpenGL");
+}
+
 }  // namespace
 
 struct Window::State {
   explicit State(const WindowOptions& options) {
     begin_glfw();
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
     glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, GLFW_LOSE_CONTEXT_ON_RESET);  // gl::is_context_lost()
 #ifdef YURAGI_GL_DEBUG
     glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
@@ -47,12 +80,8 @@ struct Window::State {
       for (const int hint : {GLFW_VISIBLE, GLFW_DECORATED, GLFW_AUTO_ICONIFY}) glfwWindowHint(hint, GLFW_FALSE);
     }
     is_placed_by_wall = options.is_hidden;
-    window = glfwCreateWindow(options.width_px, options.height_px, "Yuragi", nullptr, nullptr);
-    if (window == nullptr) {
-      glfwTerminate();
-      throw_unavailable("this display has no OpenGL 3.3");
-    }
-    glfwMakeContextCurrent(window);
+    window = create_with_newest_gl(options);
+    if (window == nullptr) throw_without_gl();
     glfwSwapInterval(1);
     monitor = options.monitor;
     if (options.is_fullscreen) toggle_fullscreen();

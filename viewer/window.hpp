@@ -40,8 +40,8 @@ struct PixelSize {
   friend bool operator==(const PixelSize&, const PixelSize&) = default;
 };
 
-/// A window with a current OpenGL 3.3 core context. One at a time, on the main thread. Throws ViewerExit
-/// (EX_UNAVAILABLE) where there is no display or no OpenGL 3.3.
+/// A window with a current OpenGL context, the newest that there is. One at a time, on the main thread. Throws
+/// ViewerExit (EX_UNAVAILABLE) if there is no display, or if the driver is not gl::is_enough().
 class Window {
  public:
   explicit Window(const WindowOptions& options);

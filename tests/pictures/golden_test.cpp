@@ -11,6 +11,9 @@
 #include "engine/math/philox.hpp"
 #include "tests/pictures/golden_pictures.hpp"
 #include "tests/support/places.hpp"
+#include "viewer/gl/driver.hpp"
+#include "viewer/gl/gl.hpp"
+#include "viewer/gl/pass_clock.hpp"
 #include "viewer/picture_file.hpp"
 
 namespace yuragi::viewer {
@@ -80,6 +83,34 @@ TEST_P(GoldenPictureTest, IsDrawnAsTheGoldenOneInEachWeather) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, GoldenPictureTest, testing::ValuesIn(picture_scenes()),
                          [](const auto& scene) { return std::string(scene.param); });
+
+// Where the driver is held down to OpenGL 3.1 (CMakeLists.txt): scenes that together use each family of shaders. In
+// calm air, the first weather: grass far away remembers what was before.
+TEST(OldContextTest, DrawsTheGoldenPictures) {
+  GoldenDrawing drawing;
+  const gl::Driver driver = gl::current_driver();
+  if (driver.gl_version > 31) GTEST_SKIP() << "the driver is not held down: " << driver.version;
+  EXPECT_EQ(gl::glsl_version_line(), "#version 140");
+  const Weather& calm = kWeathers.front();
+  for (const std::string_view scene : {"grass", "fur", "banner", "cherry", "ripple", "flame"}) {
+    EXPECT_TRUE(is_golden(drawing.draw(golden_moment(scene, calm)), golden_file(scene, calm)));
+  }
+  EXPECT_EQ(gl::gl_error_count(), 0);
+}
+
+TEST(OldContextTest, TimesPassesWithoutTimestamps) {
+  const gl::HeadlessContext context({.is_software = true, .has_messages = true});
+  if (epoxy_has_gl_extension("GL_ARB_timer_query")) GTEST_SKIP() << "the driver is not held down";
+  gl::report_gl_errors();
+  gl::PassClock clock(gl::PassClock::By::kGpu);
+  clock.begin();
+  clock.mark("first");
+  clock.mark("second");
+  const std::vector<gl::PassClock::Pass> passes = clock.end();
+  ASSERT_EQ(passes.size(), 2U);
+  for (const gl::PassClock::Pass& pass : passes) EXPECT_GE(pass.time_ms, 0.0) << pass.name;
+  EXPECT_EQ(gl::gl_error_count(), 0);
+}
 
 TEST(GoldenPicturesTest, AreThoseOfTheScenesAndSmall) {
   std::set<std::string> expected;

@@ -1,9 +1,13 @@
 // Every shader through the driver's compiler; what a program's stages say to each other is checked where the pictures
 // are drawn, and by glslangValidator (valid_shaders.py).
 
+#include <array>
+#include <stdexcept>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "viewer/gl/driver.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/gl/shaders.hpp"
@@ -32,6 +36,22 @@ TEST(ShaderTest, EachCompiles) {
         is_vertex ? complaint_of(shader.text, "void main() {}") : complaint_of(kPlainVertex, shader.text);
     // A fragment shader alone misses what the vertex shader gives it: linking is not the matter here.
     EXPECT_THAT(complaint, testing::Not(testing::HasSubstr("cannot compile")));
+  }
+}
+
+TEST(HeadlessContextTest, TakesTheFirstVersionThatTheDriverHas) {
+  constexpr std::array kVersions{GlVersion{9, 9}, GlVersion{3, 3}};
+  const HeadlessContext context({.is_software = true, .versions = kVersions});
+  EXPECT_TRUE(is_enough(current_driver())) << current_driver().version;
+}
+
+TEST(HeadlessContextTest, NamesTheDriverWhereThereIsNoneOfThem) {
+  constexpr std::array kVersions{GlVersion{9, 9}};
+  try {
+    const HeadlessContext context({.is_software = true, .versions = kVersions});
+    FAIL() << "a context of " << current_driver().version;
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::ContainsRegex("graphics driver \"llvmpipe.*refuses each version"));
   }
 }
 

@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include "tests/support/places.hpp"
+#include "tests/viewer/old_opengl.hpp"
 #include "tests/viewer/started_program.hpp"
 #include "tests/viewer/test_meadow.hpp"
 #include "tests/viewer/test_models.hpp"
@@ -133,7 +134,8 @@ class PictureTest : public testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// Runs the viewer where there is no display.
-  Ended take_picture(std::uint16_t port, const std::string& file, const std::vector<std::string>& more) const {
+  Ended take_picture(std::uint16_t port, const std::string& file, const std::vector<std::string>& more,
+                     const std::vector<std::string>& more_environment = {}) const {
     std::vector<std::string> words = {test::built_path("bin/yuragi-viewer"),
                                       "--connect",
                                       "127.0.0.1:" + std::to_string(port),
@@ -144,7 +146,9 @@ class PictureTest : public testing::Test {
                                       "--look",
                                       "clouds=0"};  // their shadows go as far as the program happens to have run
     words.insert(words.end(), more.begin(), more.end());
-    return run(words, folder_, environment_without_screen());
+    std::vector<std::string> environment = environment_without_screen();
+    environment.insert(environment.end(), more_environment.begin(), more_environment.end());
+    return run(words, folder_, environment);
   }
 
   Ended run_without_screen(const std::vector<std::string>& arguments) const {
@@ -154,7 +158,8 @@ class PictureTest : public testing::Test {
   }
 
   std::unique_ptr<Picture> take(const std::string& file, double lean_rad, const std::vector<std::string>& more,
-                                const wire::Sensors& status = {}) const {
+                                const wire::Sensors& status = {},
+                                const std::vector<std::string>& more_environment = {}) const {
     // From the greeting on the meadow stands still: the picture is of this pose, whenever it is taken.
     const pose::Skeleton meadow = test_meadow(60, 6.0);
     wire::FrameEncoder encoder;
@@ -164,7 +169,7 @@ class PictureTest : public testing::Test {
                                      0.1 * static_cast<double>(i), 140.0, encoder);
     }
     const StreamServer server(greeting);
-    const Ended ended = take_picture(server.port(), file, more);
+    const Ended ended = take_picture(server.port(), file, more, more_environment);
     EXPECT_EQ(ended.code, 0) << ended.said;
     EXPECT_THAT(ended.said, testing::Not(testing::HasSubstr("OpenGL")));
     return std::make_unique<Picture>(folder_ / file);
@@ -205,6 +210,21 @@ TEST_F(PictureTest, DrawsTheOverlayWhenAsked) {
   const auto with = take("with.png", 0.3, {"--frames", "2", "--overlay", "--samples", "1", "--camera", "225,7,4"});
   ASSERT_TRUE(without->is_there() && with->is_there());
   EXPECT_GT(without->difference(*with), 1.0);
+}
+
+TEST_F(PictureTest, IsTheSameByOpenGl31AndHasTheOverlay) {
+  const auto newest = take("newest.png", 0.3, {"--frames", "2", "--samples", "1"});
+  const auto older = take("older.png", 0.3, {"--frames", "2", "--samples", "1"}, {}, opengl_31());
+  const auto with = take("with.png", 0.3, {"--frames", "2", "--samples", "1", "--overlay"}, {}, opengl_31());
+  ASSERT_TRUE(newest->is_there() && older->is_there() && with->is_there());
+  EXPECT_LT(newest->difference(*older), 0.1);
+  EXPECT_GT(older->difference(*with), 1.0);
+}
+
+TEST_F(PictureTest, EndsWith69AndNamesTheDriverThatIsTooOld) {
+  const Ended ended = take_picture(1, "none.png", {}, opengl_21());
+  EXPECT_EQ(ended.code, 69);
+  EXPECT_THAT(ended.said, testing::ContainsRegex("graphics driver \"llvmpipe.*\\(2\\.1.*\\) lacks OpenGL 3\\.1"));
 }
 
 TEST_F(PictureTest, ShowsHelpProfilerAndWindAndTheirScale) {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/temporary_folder.hpp"
+#include "tests/viewer/old_opengl.hpp"
 #include "tests/viewer/running_viewer.hpp"
 #include "tests/viewer/stream_server.hpp"
 #include "tests/viewer/test_meadow.hpp"
@@ -84,12 +85,15 @@ class WindowTest : public testing::Test {
   }
 
   /// Starts a viewer without texts. Its picture may not be there yet.
-  std::unique_ptr<RunningViewer> begin(const StreamServer& server, const std::string& quality) const {
+  std::unique_ptr<RunningViewer> begin(const StreamServer& server, const std::string& quality,
+                                       const std::vector<std::string>& more_environment = {}) const {
+    std::vector<std::string> environment = screen_.environment();
+    environment.insert(environment.end(), more_environment.begin(), more_environment.end());
     return std::make_unique<RunningViewer>(
         std::vector<std::string>{"--connect", "127.0.0.1:" + std::to_string(server.port()), "--size",
                                  std::to_string(kWidth_px) + "x" + std::to_string(kHeight_px), "--no-overlay", "--look",
                                  "quality=" + quality, "--look", "clouds=0", "--scale", "0.5"},
-        screen_.environment(), folder_.path() / "said.txt");
+        environment, folder_.path() / "said.txt");
   }
 
   /// A viewer without texts, once the stream's meadow is seen. In quality low it draws less of it while the machine is
@@ -137,6 +141,23 @@ TEST_F(WindowTest, ShowsThePictureAndEndsWhenAsked) {
   const StreamServer server(greeting_for(meadow_) + frame(0.3, 0.1));
   const auto viewer = start(server);
   EXPECT_EQ(viewer->end(), 0) << viewer->said();
+}
+
+TEST_F(WindowTest, ShowsThePictureByOpenGl31) {
+  const StreamServer server(greeting_for(meadow_) + frame(0.3, 0.1));
+  const auto viewer = begin(server, "low", opengl_31());
+  EXPECT_TRUE(comes_true([this] { return shows_grass(); })) << viewer->said();
+  for (const char* panel : {"F1", "F2", "F3", "F4"}) ASSERT_TRUE(screen_.type(panel));  // letters are programs, too
+  const ScreenPixels plain = screen_.pixels();
+  EXPECT_TRUE(comes_true([&] { return difference(screen_.pixels(), plain, kWindow) > 1.0; })) << viewer->said();
+  EXPECT_EQ(viewer->end(), 0) << viewer->said();
+}
+
+TEST_F(WindowTest, EndsWith69AndNamesTheDriverThatIsTooOld) {
+  const StreamServer server{wire::Bytes()};
+  const auto viewer = begin(server, "low", opengl_21());
+  EXPECT_EQ(viewer->wait(), 69);
+  EXPECT_THAT(viewer->said(), testing::ContainsRegex("graphics driver \"llvmpipe.*\\(2\\.1.*\\) lacks OpenGL 3\\.1"));
 }
 
 TEST_F(WindowTest, WordsStandInItUntilAPictureComes) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "viewer/gl/driver.hpp"
 #include "viewer/gl/shaders.hpp"
 
 namespace yuragi::viewer::gl {
@@ -30,8 +31,8 @@ std::atomic<std::size_t> compile_count{0};
 
 void compile(const GlShader& shader, const std::string& name, std::string_view source) {
   // Lines from 10001 on are those of common.glsl.
-  std::string text = "#version 330 core\n#line 10001\n";
-  text.append(shaders::kCommon).append("\n#line 1\n").append(source);
+  std::string text(glsl_version_line());
+  text.append("\n#line 10001\n").append(shaders::kCommon).append("\n#line 1\n").append(source);
   const GLchar* const begin = text.data();
   const auto length = static_cast<GLint>(text.size());
   ++compile_count;

@@ -9,7 +9,8 @@
 
 namespace yuragi::viewer::gl {
 
-// OpenGL objects that delete themselves. All of this needs a current context of at least 3.3 core, on its thread.
+// OpenGL objects that delete themselves. All of this needs a current context that is_enough()
+// (driver.hpp), on its thread.
 
 /// Owns one OpenGL object of a kind; movable. Kind::make() and Kind::unmake(name) are the GL calls.
 template <class Kind>
@@ -110,8 +111,9 @@ enum TextureUnit : GLint {
   kEdgesUnit,        // the picture whose edges are smoothed
 };
 
-/// Compiles and links. Each stage begins with #version and shaders/common.glsl. On an error throws std::runtime_error
-/// with `name` and the compiler's message. The uniform blocks and the samplers of shadows are bound as above.
+/// Compiles and links. Each stage begins with glsl_version_line() and shaders/common.glsl. On an error throws
+/// std::runtime_error with `name` and the compiler's message. The uniform blocks and the samplers of shadows are bound
+/// as above.
 GlProgram link_program(const std::string& name, std::string_view vertex, std::string_view fragment);
 
 /// Sets a sampler of `program` to a texture unit. Unknown names are ignored, since the compiler drops uniforms that are

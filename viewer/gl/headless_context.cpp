@@ -1,6 +1,7 @@
 #include "viewer/gl/headless_context.hpp"
 
 #include <array>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
@@ -47,8 +48,9 @@ struct HeadlessContext::State {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
 
-  /// Makes a context on this display current. Returns whether that was possible.
-  bool begin(EGLDisplay on, const HeadlessOptions& options) {
+  /// Makes a context on this display current that is enough. Returns whether that was possible; if not, `too_old` is
+  /// the driver, if there is one.
+  bool begin(EGLDisplay on, const HeadlessOptions& options, std::optional<Driver>& too_old) {
     if (on == EGL_NO_DISPLAY || eglInitialize(on, nullptr, nullptr) != EGL_TRUE) return false;
     display = on;
     if (!epoxy_has_egl_extension(display, "EGL_KHR_surfaceless_context")) return false;
@@ -60,37 +62,66 @@ struct HeadlessContext::State {
         eglChooseConfig(display, kConfig.data(), &config, 1, &count) != EGL_TRUE || count == 0) {
       return false;
     }
-    const std::array<EGLint, 11> attributes{EGL_CONTEXT_MAJOR_VERSION,
-                                            3,
-                                            EGL_CONTEXT_MINOR_VERSION,
-                                            3,
-                                            EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                            EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE,
-                                            EGL_TRUE,
-                                            EGL_CONTEXT_OPENGL_DEBUG,
-                                            options.has_messages ? EGL_TRUE : EGL_FALSE,
-                                            EGL_NONE};
+    for (const GlVersion& version : options.versions) {
+      if (!make_current(config, attributes_of(version, options))) continue;
+      if (is_enough(current_driver())) return true;
+      drop_context();
+    }
+    // Of any version, to learn whose it is.
+    if (make_current(config, {EGL_NONE})) too_old = current_driver();
+    return false;
+  }
+
+  static std::vector<EGLint> attributes_of(const GlVersion& version, const HeadlessOptions& options) {
+    std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                   version.major,
+                                   EGL_CONTEXT_MINOR_VERSION,
+                                   version.minor,
+                                   EGL_CONTEXT_OPENGL_FORWARD_COMPATIBLE,
+                                   EGL_TRUE,
+                                   EGL_CONTEXT_OPENGL_DEBUG,
+                                   options.has_messages ? EGL_TRUE : EGL_FALSE};
+    if (version.is_core()) {
+      attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
+    }
+    attributes.push_back(EGL_NONE);
+    return attributes;
+  }
+
+  bool make_current(EGLConfig config, const std::vector<EGLint>& attributes) {
     context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
-    return context != EGL_NO_CONTEXT && eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
+    if (context == EGL_NO_CONTEXT) return false;
+    if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE) return true;
+    drop_context();
+    return false;
+  }
+
+  void drop_context() {
+    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
+    context = EGL_NO_CONTEXT;
   }
 
   void end() {
     if (display == EGL_NO_DISPLAY) return;
-    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
+    drop_context();
     eglTerminate(display);
-    context = EGL_NO_CONTEXT;
     display = EGL_NO_DISPLAY;
   }
 };
 
 HeadlessContext::HeadlessContext(HeadlessOptions options) : state_(std::make_unique<State>()) {
+  std::optional<Driver> too_old;  // of the first display that has any, which is the graphics hardware's
   for (const EGLDisplay display : displays(options)) {
-    if (state_->begin(display, options)) return;
+    std::optional<Driver> driver;
+    if (state_->begin(display, options, driver)) return;
     state_->end();
+    if (!too_old) too_old = driver;
   }
-  throw std::runtime_error("no graphics driver of this machine has OpenGL 3.3 without a display (EGL)");
+  if (too_old) throw std::runtime_error(too_old_text(*too_old));
+  throw std::runtime_error(
+      "this machine has no graphics driver that draws without a display (EGL).\nMesa's drivers, which can draw by the "
+      "processor, are in the packages libegl-mesa0 and libgl1-mesa-dri.");
 }
 
 HeadlessContext::~HeadlessContext() {

@@ -5,7 +5,7 @@
 
 #include "engine/look/look.hpp"
 
-namespace yuragi::viewer {
+namespace yuragi::viewer::pace {
 
 /// How much of a picture is drawn.
 struct DrawnPart {
@@ -59,4 +59,4 @@ class PaceLadder {
   double refresh_s_;
 };
 
-}  // namespace yuragi::viewer
+}  // namespace yuragi::viewer::pace

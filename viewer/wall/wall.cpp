@@ -32,6 +32,11 @@ struct WallWindow {
   GLuint vertex_array = 0;              // goes with its context
 };
 
+/// Can one context wait for another without the processor? From OpenGL 3.2 on.
+bool has_fences() {
+  return epoxy_gl_version() >= 32 || epoxy_has_gl_extension("GL_ARB_sync");
+}
+
 std::string missing_text(const std::string& wanted) {
   const std::string what = wanted.empty() ? "there is no monitor" : "there is no monitor \"" + wanted + "\"";
   return "output.window.monitor: " + what + "; there are:\n" + monitors_text();
@@ -150,13 +155,17 @@ double Wall::picture_interval_s() const {
 void Wall::show(const gl::RenderTarget& target, bool is_marked) {
   WallPass& pass = *state_->pass;
   pass.take(target);
-  const GLsync is_taken = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-  glFlush();
+  const GLsync is_taken = has_fences() ? glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0) : nullptr;
+  if (is_taken != nullptr) {
+    glFlush();
+  } else {
+    glFinish();
+  }
   // All are drawn before one is shown, so that they change together.
   for (const WallWindow& window : state_->windows) {
     if (!window.monitor) continue;
     glfwMakeContextCurrent(window.handle);
-    glWaitSync(is_taken, 0, GL_TIMEOUT_IGNORED);
+    if (is_taken != nullptr) glWaitSync(is_taken, 0, GL_TIMEOUT_IGNORED);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     output::Size size;
     glfwGetFramebufferSize(window.handle, &size.width_px, &size.height_px);
@@ -168,7 +177,7 @@ void Wall::show(const gl::RenderTarget& target, bool is_marked) {
     glfwSwapBuffers(window.handle);
   }
   glfwMakeContextCurrent(state_->windows.front().handle);
-  glDeleteSync(is_taken);
+  if (is_taken != nullptr) glDeleteSync(is_taken);
 }
 
 }  // namespace yuragi::viewer::wall

@@ -1,6 +1,34 @@
 // Put in front of every shader: what all renderers share. World: x east, y up, z south; metres. Light is linear until
 // finish().
 
+// GLSL 1.40 (OpenGL 3.1) has by extensions what the shaders need besides (viewer/gl/driver.hpp); GLSL ES 3.00 (a browser)
+// wants every precision named.
+#ifdef GL_ES
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp sampler2DShadow;
+precision highp sampler3D;
+precision highp usampler2D;
+#elif __VERSION__ < 330
+#extension GL_ARB_explicit_attrib_location : require
+#extension GL_ARB_shader_bit_encoding : require
+#endif
+
+// Arrays of numbers, and the element `at` of one. GLSL ES 3.00 has no buffer textures: there an array lies in a texture
+// that is 1024 texels wide, row by row.
+#ifdef GL_ES
+#define Numbers sampler2D
+#define WholeNumbers usampler2D
+vec4 fetch(Numbers numbers, int at) { return texelFetch(numbers, ivec2(at & 1023, at >> 10), 0); }
+uvec4 fetch(WholeNumbers numbers, int at) { return texelFetch(numbers, ivec2(at & 1023, at >> 10), 0); }
+#else
+#define Numbers samplerBuffer
+#define WholeNumbers usamplerBuffer
+vec4 fetch(Numbers numbers, int at) { return texelFetch(numbers, at); }
+uvec4 fetch(WholeNumbers numbers, int at) { return texelFetch(numbers, at); }
+#endif
+
 layout(std140) uniform View {
   mat4 to_clip;
   vec4 eye_m;    // w: size of a pixel at one metre's distance
@@ -187,10 +215,10 @@ float below_clouds(vec3 place_m) {
 }
 
 // Joints of strands as the forward kinematics writes them, in blocks of 16 strands.
-uniform samplerBuffer joints;  // first + ((strand / 16 * links + link) * 3 + axis) * 16 + strand % 16
+uniform Numbers joints;  // first + ((strand / 16 * links + link) * 3 + axis) * 16 + strand % 16
 uniform int links;
 
-vec3 joint_at(int at) { return vec3(texelFetch(joints, at).r, texelFetch(joints, at + 16).r, texelFetch(joints, at + 32).r); }
+vec3 joint_at(int at) { return vec3(fetch(joints, at).r, fetch(joints, at + 16).r, fetch(joints, at + 32).r); }
 vec3 joint(int first, uint strand, int link) {
   return joint_at(first + ((int(strand) >> 4) * links + link) * 48 + (int(strand) & 15));
 }

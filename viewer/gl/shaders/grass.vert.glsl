@@ -1,17 +1,17 @@
 #include "sward.part.glsl"
 #include "blade.part.glsl"
 // A streamed blade. Slots of drawn blades come in blocks of 16, as their bends do.
-uniform samplerBuffer blades;          // three texels a blade: TiledBlade
-uniform samplerBuffer streamed_bends;  // of the slots: east, south, radians
-uniform usamplerBuffer blocks;         // of the slots: the number of each block
+uniform Numbers blades;          // three texels a blade: TiledBlade
+uniform Numbers streamed_bends;  // of the slots: east, south, radians
+uniform WholeNumbers blocks;         // of the slots: the number of each block
 uniform float thinning;                // Thinning::factor()
 
 void main() {
   int corners = 2 * rings + 1;
   int slot = gl_VertexID / corners;
-  int blade = int(texelFetch(blocks, slot >> 4).r) * 16 + (slot & 15);
-  vec4 root_length = texelFetch(blades, 3 * blade);
-  vec4 traits = texelFetch(blades, 3 * blade + 2);  // width, bearing of the flat side, chance, rank
+  int blade = int(fetch(blocks, slot >> 4).r) * 16 + (slot & 15);
+  vec4 root_length = fetch(blades, 3 * blade);
+  vec4 traits = fetch(blades, 3 * blade + 2);  // width, bearing of the flat side, chance, rank
 
   // Farther away fewer blades stand, and wider ones; one that goes sinks into the ground.
   float distance_m = max(distance(eye_m.xyz, root_length.xyz), 0.01);
@@ -23,8 +23,8 @@ void main() {
     shade = vec3(0.0);
     return;
   }
-  vec4 rest = texelFetch(blades, 3 * blade + 1);  // how its foot leans, and how far it is turned up to its tip
-  vec2 turned = rest.zw + texelFetch(streamed_bends, slot).rg;
+  vec4 rest = fetch(blades, 3 * blade + 1);  // how its foot leans, and how far it is turned up to its tip
+  vec2 turned = rest.zw + fetch(streamed_bends, slot).rg;
   // The viewer's own waves do not move streamed blades.
   vec2 around = bends_place.z > 0.0 ? bend_mean.xy : bend_at(root_length.xz);
   put_corner(gl_VertexID - slot * corners, root_length.xyz, root_length.w * is_up, rest.xy, turned, traits.x * pow(share, -0.7) * is_up,

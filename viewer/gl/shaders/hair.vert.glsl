@@ -10,7 +10,7 @@ uniform vec3 body_middle_m;
 uniform mat3 body_shape;
 uniform float spacing_m;  // of the strands
 
-uniform samplerBuffer blades;  // three texels each: root and width, metres; the coat's colour here; number, length in metres, how much the coat parts
+uniform Numbers blades;  // three texels each: root and width, metres; the coat's colour here; number, length in metres, how much the coat parts
 
 out vec3 shade;
 
@@ -27,9 +27,9 @@ void main() {
   int ribbon = gl_VertexID >> 8;
   int blade = ribbon / copies;
   int copy = ribbon - blade * copies;
-  vec4 root_width = texelFetch(blades, 3 * blade);
-  vec3 tint = texelFetch(blades, 3 * blade + 1).rgb;
-  vec3 traits = texelFetch(blades, 3 * blade + 2).xyz;
+  vec4 root_width = fetch(blades, 3 * blade);
+  vec3 tint = fetch(blades, 3 * blade + 1).rgb;
+  vec3 traits = fetch(blades, 3 * blade + 2).xyz;
   uint strand = uint(traits.x);
   float whole_m = traits.y;
   int ring = (gl_VertexID & 255) >> 1;

@@ -1,5 +1,5 @@
 // A wall of the far country (viewer/meshes/far_country.hpp): its top, and its foot on the ground or behind the ground's end.
-uniform samplerBuffer corners;  // of the wall's top, metres; w: on the way around
+uniform Numbers corners;  // of the wall's top, metres; w: on the way around
 uniform int range;              // 0 is the nearest
 uniform int every;              // so manieth corner is drawn
 
@@ -12,7 +12,7 @@ out vec3 air_there;  // the air's light before it,
 out vec3 hazed;      // and the share of it
 
 void main() {
-  vec4 top_along = texelFetch(corners, every * (gl_VertexID >> 1));
+  vec4 top_along = fetch(corners, every * (gl_VertexID >> 1));
   bool is_on_ground = range < 2;
   float distance_m = length(top_along.xz);
   float foot_m = is_on_ground ? 0.0 : min(0.0, eye_m.y - eye_m.y / kGroundEnd_m * distance_m);

@@ -1,14 +1,14 @@
 #include "sward.part.glsl"
 // A reed: a ribbon that leans and droops, and bends with the grass around. Some bear a brown head.
 uniform int rings;
-uniform samplerBuffer reeds;  // two texels each: root, length, metres; heading, lean, radians, width, metres, chance
+uniform Numbers reeds;  // two texels each: root, length, metres; heading, lean, radians, width, metres, chance
 
 out vec3 shade;
 
 void main() {
   int reed = gl_VertexID >> 8;
-  vec4 root_length = texelFetch(reeds, 2 * reed);
-  vec4 traits = texelFetch(reeds, 2 * reed + 1);
+  vec4 root_length = fetch(reeds, 2 * reed);
+  vec4 traits = fetch(reeds, 2 * reed + 1);
   int ring = (gl_VertexID & 255) >> 1;
   float side = float(gl_VertexID & 1) * 2.0 - 1.0;
   float t = float(ring) / float(rings);

@@ -2,8 +2,8 @@
 #include "blade.part.glsl"
 // A blade of the sward around the streamed ones. Tiles repeat the same blades, each tile turned in its own way; how they
 // bend, how tall they are and what colour they have depends on where they stand.
-uniform samplerBuffer blades;   // two texels a blade of the tile: SwardBlade
-uniform samplerBuffer tiles;    // SwardTile
+uniform Numbers blades;   // two texels a blade of the tile: SwardBlade
+uniform Numbers tiles;    // SwardTile
 uniform int blades_per_tile;
 uniform float thinning;   // Thinning::factor()
 uniform float tile_m;
@@ -16,9 +16,9 @@ void main() {
   int corner = gl_VertexID - number * corners;
   int slot = number / blades_per_tile;
   int blade = number - slot * blades_per_tile;
-  vec4 tile = texelFetch(tiles, slot);
-  vec4 form = texelFetch(blades, 2 * blade);        // x, z, facing, height
-  vec4 traits = texelFetch(blades, 2 * blade + 1);  // heading, chance, droop, sway
+  vec4 tile = fetch(tiles, slot);
+  vec4 form = fetch(blades, 2 * blade);        // x, z, facing, height
+  vec4 traits = fetch(blades, 2 * blade + 1);  // heading, chance, droop, sway
 
   int turn = int(tile.z);
   vec2 on_tile = (turn & 1) == 1 ? form.yx : form.xy;
