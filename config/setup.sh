@@ -74,12 +74,11 @@ installed() { [ -n "${is_installed[$1]-}" ]; } # PACKAGE
 # Sets `missing` to the packages to install, and `unknown` to those that apt does not have. Takes the first of alternatives that is
 # installed or that apt has. Asks apt only if the first is not installed.
 find_missing() {
-  local group package
+  local group package available=
   local -A is_installed=()
   while read -r package; do
     is_installed[$package]=1
   done < <(dpkg-query -W -f='${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p')
-  available=
   missing=()
   unknown=()
   for group in "${packages[@]}"; do
@@ -136,7 +135,7 @@ install_missing() {
 }
 
 find_missing
-if [ ${#missing[@]} -gt 0 ] || [ ${#unknown[@]} -gt 0 ] && [ -z "$available" ]; then
+if [ ${#missing[@]} -gt 0 ] || { [ ${#unknown[@]} -gt 0 ] && ! compgen -G '/var/lib/apt/lists/*Packages*' >/dev/null; }; then
   install_missing
   echo "setup: done."
 else
