@@ -71,6 +71,8 @@ esac
 
 installed() { [ -n "${is_installed[$1]-}" ]; } # PACKAGE
 
+has_lists() { compgen -G '/var/lib/apt/lists/*Packages*' >/dev/null; } # does apt know what the distribution has?
+
 # Sets `missing` to the packages to install, and `unknown` to those that apt does not have. Takes the first of alternatives that is
 # installed or that apt has. Asks apt only if the first is not installed.
 find_missing() {
@@ -115,8 +117,12 @@ install_missing() {
   elif command -v sudo >/dev/null; then
     as_root=(sudo)
   else
-    echo "setup: ${#missing[@]} packages are missing, and only root can install them. An administrator has to run:" >&2
-    echo "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
+    echo "setup: packages are missing, and only root can install them. An administrator has to run:" >&2
+    if has_lists; then
+      echo "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
+    else # which of the alternatives there are is not known yet
+      echo "  apt-get update    and then, again, config/setup.sh prints what to install" >&2
+    fi
     exit 77
   fi
   "${as_root[@]}" apt-get update -q >/dev/null
@@ -135,7 +141,7 @@ install_missing() {
 }
 
 find_missing
-if [ ${#missing[@]} -gt 0 ] || { [ ${#unknown[@]} -gt 0 ] && ! compgen -G '/var/lib/apt/lists/*Packages*' >/dev/null; }; then
+if [ ${#missing[@]} -gt 0 ] || { [ ${#unknown[@]} -gt 0 ] && ! has_lists; }; then
   install_missing
   echo "setup: done."
 else

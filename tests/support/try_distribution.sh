@@ -35,7 +35,9 @@ if [ ! -e "$tree/etc/os-release" ]; then
   mkdir -p "$(dirname "$tree")"
   [ "$name" != noble ] || get_ubuntu_keyring
   echo "making $tree"
-  mmdebstrap --quiet --variant=minbase --include=ca-certificates "$name" "$tree" "${sources[@]}"
+  mmdebstrap --quiet --variant=minbase --include=apt,ca-certificates "$name" "$tree" "${sources[@]}"
+  # The same archive without the path of this machine's keys: the tree has its own.
+  sed -i 's/^deb \[signed-by="[^"]*"\]/deb/' "$tree/etc/apt/sources.list"
 fi
 cp --remove-destination /etc/resolv.conf "$tree/etc/resolv.conf"
 mkdir -p "$tree/work"
@@ -74,6 +76,7 @@ step() {
 }
 
 step setup 'config/setup.sh'
+[ "$failed" -eq 0 ] || exit 1
 row="| $name | $result"
 step demo 'rm -f demo.png && config/demo.sh 8 && test -s demo.png'
 built=$(sed -n 's/^demo: built in //p' "$tree.demo.log")
