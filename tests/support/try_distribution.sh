@@ -35,7 +35,8 @@ if [ ! -e "$tree/etc/os-release" ]; then
   mkdir -p "$(dirname "$tree")"
   [ "$name" != noble ] || get_ubuntu_keyring
   echo "making $tree"
-  mmdebstrap --quiet --variant=minbase --include=apt,ca-certificates "$name" "$tree" "${sources[@]}"
+  mmdebstrap --quiet --variant=minbase --include=apt,ca-certificates \
+    --dpkgopt=force-unsafe-io "$name" "$tree" "${sources[@]}"
   # The same archive without the path of this machine's keys: the tree has its own.
   sed -i 's/^deb \[signed-by="[^"]*"\]/deb/' "$tree/etc/apt/sources.list"
 fi
