@@ -121,7 +121,8 @@ install_missing() {
     if has_lists; then
       echo "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
     else # which of the alternatives there are is not known yet
-      echo "  apt-get update    and then, again, config/setup.sh prints what to install" >&2
+      echo "  apt-get update" >&2
+      echo "setup: then run this again: it prints what to install." >&2
     fi
     exit 77
   fi
