@@ -89,7 +89,8 @@ programs='engine_tests engine_tests_threadless drivers_tests drivers_tests_threa
 step build-tests "cmake --preset test --log-level=WARNING && cmake --build --preset test --target $programs"
 row+=" | $result"
 step tests "for program in $programs; do \$(find build/test -name \$program -type f) --gtest_brief=1 || failed=1; done; [ -z \"\$failed\" ]"
-count() { awk -v mark="[  $1  ]" 'index($0, mark) == 1 && $4 ~ /^test/ { sum += $(NF - NF + 4 - 1) } END { print sum + 0 }' "$tree.tests.log"; }
+# count PASSED|FAILED: the sum of GoogleTest's lines "[  PASSED  ] 12 tests."
+count() { awk -v mark="[  $1  ]" 'index($0, mark) == 1 && $5 ~ /^test/ { sum += $4 } END { print sum + 0 }' "$tree.tests.log"; }
 row+=" | $(count PASSED) passed, $(count FAILED) failed, $result |"
 
 echo "| distribution | set-up | build | demo's picture | set-up for tests | build of tests (warnings are errors) | tests |"
