@@ -1,15 +1,17 @@
 #!/usr/bin/env bash
-# Installs what Yuragi needs to build, run and be tested on Debian 12. Safe to run again: what is there stays.
+# Installs the packages that Yuragi needs to build, run and be tested, on Debian 12 and 13, Ubuntu 24.04 and Raspberry Pi OS. Safe to
+# run again: installed packages stay.
 #
 #   config/setup.sh          build and run
 #   config/setup.sh --test   and what the tests and the sanitizer builds need besides
 #
-# Says what it installs, and stops before apt would remove anything.
+# Prints what it installs, and stops before apt would remove anything. Without root and sudo it prints the command for an administrator.
 set -euo pipefail
 
+# "a|b": the first of them that the distribution has. A distribution may lack a test's package, but no other.
 build_packages=(
   build-essential cmake ninja-build ccache pkg-config python3
-  libboost1.81-dev          # Asio; Debian's default 1.74 does not fit C++20, and the two exclude each other
+  "libboost1.81-dev|libboost-dev" # Asio; Debian 12's default 1.74 does not fit C++20, and the two exclude each other
   libfftw3-dev libsqlite3-dev libhowardhinnant-date-dev
   libmodbus-dev libhidapi-dev libusb-1.0-0-dev portaudio19-dev libmosquitto-dev liblo-dev # the sensors
   libtomlplusplus-dev nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
@@ -25,7 +27,7 @@ build_packages=(
 )
 test_packages=(
   libgtest-dev libbenchmark-dev
-  clang-14 lld-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev
+  clang lld clang-tidy clang-format libclang-rt-dev # the distribution's default version: 14 on Debian 12
   python3-numpy python3-flatbuffers
   mbpoll python3-pymodbus python3-serial python3-serial-asyncio # independent Modbus peers
   mosquitto liblo-tools socat                             # independent MQTT and OSC peers; serial lines
@@ -67,27 +69,84 @@ case "${1:-}" in
   *) echo "usage: config/setup.sh [--test]" >&2; exit 64 ;;
 esac
 
-# What is missing? Nothing is asked of apt when everything is there.
-missing=()
-for package in "${packages[@]}"; do
-  dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
-done
-if [ ${#missing[@]} -eq 0 ]; then
-  echo "setup: all ${#packages[@]} packages are installed."
-  finish
-  exit 0
-fi
+installed() { [ -n "${is_installed[$1]-}" ]; } # PACKAGE
 
-if [ "$(id -u)" -eq 0 ]; then as_root=(env); else as_root=(sudo); fi
-echo "setup: installing ${#missing[@]} of ${#packages[@]} packages: ${missing[*]}"
-"${as_root[@]}" apt-get update -q >/dev/null
-plan=$(LC_ALL=C apt-get install -s -y --no-install-recommends "${missing[@]}")
-if removed=$(grep '^Remv' <<<"$plan"); then
-  echo "setup: apt would remove packages of yours, so nothing was done:" >&2
-  echo "$removed" >&2
-  echo "setup: install by hand what is listed above, or remove these first (libboost1.74-dev gives way to libboost1.81-dev)." >&2
-  exit 1
+has_lists() { compgen -G '/var/lib/apt/lists/*Packages*' >/dev/null; } # does apt know what the distribution has?
+
+# Sets `missing` to the packages to install, and `unknown` to those that apt does not have. Takes the first of alternatives that is
+# installed or that apt has. Asks apt only if the first is not installed.
+find_missing() {
+  local group package available=
+  local -A is_installed=()
+  while read -r package; do
+    is_installed[$package]=1
+  done < <(dpkg-query -W -f='${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p')
+  missing=()
+  unknown=()
+  for group in "${packages[@]}"; do
+    if installed "${group%%|*}"; then continue; fi
+    [ -n "$available" ] || available=$(LC_ALL=C apt-cache policy $(tr '|' ' ' <<<"${packages[*]}") |
+      awk '/^[^ ]/ { name = $1; sub(":$", "", name) } $1 == "Candidate:" && $2 != "(none)" { print name }')
+    for package in ${group//|/ }; do
+      if installed "$package"; then continue 2; fi
+      if grep -qxF "$package" <<<"$available"; then
+        missing+=("$package")
+        continue 2
+      fi
+    done
+    unknown+=("$group")
+  done
+}
+
+# Prints the packages that the distribution lacks. Fails if Yuragi cannot be built without one of them.
+report_unknown() {
+  local group
+  for group in "${unknown[@]}"; do
+    if printf '%s\n' "${build_packages[@]}" | grep -qxF "$group"; then
+      echo "setup: this distribution has no package $group, and Yuragi cannot be built without it." >&2
+      exit 69
+    fi
+  done
+  [ ${#unknown[@]} -eq 0 ] || echo "setup: not in this distribution, so the tests that need them skip or fail: ${unknown[*]}"
+}
+
+install_missing() {
+  local as_root plan removed
+  if [ "$(id -u)" -eq 0 ]; then
+    as_root=(env)
+  elif command -v sudo >/dev/null; then
+    as_root=(sudo)
+  else
+    echo "setup: packages are missing, and only root can install them. An administrator has to run:" >&2
+    if has_lists; then
+      echo "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
+    else # which of the alternatives there are is not known yet
+      echo "  apt-get update" >&2
+      echo "setup: then run this again: it prints what to install." >&2
+    fi
+    exit 77
+  fi
+  "${as_root[@]}" apt-get update -q >/dev/null
+  find_missing
+  report_unknown
+  [ ${#missing[@]} -gt 0 ] || return 0
+  echo "setup: installing ${#missing[@]} of ${#packages[@]} packages: ${missing[*]}"
+  plan=$(LC_ALL=C apt-get install -s -y --no-install-recommends "${missing[@]}")
+  if removed=$(grep '^Remv' <<<"$plan"); then
+    echo "setup: apt would remove packages of yours, so nothing was done:" >&2
+    echo "$removed" >&2
+    echo "setup: install by hand what is listed above, or remove these first (libboost1.74-dev gives way to libboost1.81-dev)." >&2
+    exit 1
+  fi
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+find_missing
+if [ ${#missing[@]} -gt 0 ] || { [ ${#unknown[@]} -gt 0 ] && ! has_lists; }; then
+  install_missing
+  echo "setup: done."
+else
+  report_unknown
+  echo "setup: $((${#packages[@]} - ${#unknown[@]})) of ${#packages[@]} packages are installed."
 fi
-DEBIAN_FRONTEND=noninteractive "${as_root[@]}" apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
 finish
-echo "setup: done."

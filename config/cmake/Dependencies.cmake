@@ -1,4 +1,4 @@
-# Every library from outside, each as one imported target. All are Debian 12 packages (config/setup.sh installs them).
+# Every library from outside, each as one imported target. All are Debian packages (config/setup.sh installs them).
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
 find_package(Boost 1.81 REQUIRED)      # header-only use: System, Asio, Lockfree

@@ -23,6 +23,20 @@ endif()
 install(CODE "execute_process(COMMAND ${PYTHON3_PROGRAM} -B ${package_folder}/documents.py ${PROJECT_SOURCE_DIR}
   \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\" ${PROJECT_VERSION} \"${maintainer}\" ${programs} COMMAND_ERROR_IS_FATAL ANY)")
 
+# The libraries that the package needs are those of the distribution it is built on, or of the sysroot it is built against. Its version
+# has the distribution: 0.2.0+deb12, 0.2.0+ubuntu24.04. "+", so that it is newer than 0.2.0, which was for Debian 12.
+set(os_release ${CMAKE_SYSROOT}/usr/lib/os-release)
+if(NOT EXISTS ${os_release})
+  set(os_release /etc/os-release)
+endif()
+file(STRINGS ${os_release} os_release_lines REGEX "^(ID|VERSION_ID)=")
+foreach(line IN LISTS os_release_lines)
+  string(REGEX MATCH "^([A-Z_]+)=\"?([^\"]*)" matched "${line}")
+  set(os_${CMAKE_MATCH_1} "${CMAKE_MATCH_2}")
+endforeach()
+string(REGEX REPLACE "^debian$" "deb" os_ID "${os_ID}")
+set(CPACK_DEBIAN_PACKAGE_VERSION ${PROJECT_VERSION}+${os_ID}${os_VERSION_ID})
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_SET_DESTDIR ON)
 set(CPACK_INSTALL_PREFIX /usr)

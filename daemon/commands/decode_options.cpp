@@ -57,7 +57,10 @@ constexpr std::array<TextOption, 4> kTextOptions = {{{"missing_checksum", "--che
 }  // namespace
 
 void DecodeCommandOptions::add_to(CLI::App& command) {
-  command.add_option("format", format, "the format of the messages; see below")->required()->option_text("FORMAT");
+  // Not "format": CLI11 2.4 refuses a positional with the name of an option, here that of --format.
+  command.add_option("message_format", format, "the format of the messages; see below")
+      ->required()
+      ->option_text("FORMAT");
   command.add_option("file", file, "the file; - or nothing: standard input")->option_text("[FILE|-]");
   command.add_flag("--hex", is_hex,
                    "one message per line, as hexadecimal digits (blanks, commas and 0x are allowed between bytes; a "

@@ -9,6 +9,7 @@ run. tests/package/by_hand.sh does that in a whole system.
 import hashlib
 import os
 import pathlib
+import platform
 import re
 import shutil
 import subprocess
@@ -102,11 +103,13 @@ class PackageTest(unittest.TestCase):
         digests = {hashlib.sha256(path.read_bytes()).hexdigest() for path in (self.package, second)}
         self.assertEqual(len(digests), 1)
 
-    def test_it_has_the_name_that_debian_gives_it(self):
+    def test_its_name_has_the_version_the_distribution_and_the_architecture(self):
         architecture = run("dpkg", "--print-architecture").strip()
         self.assertEqual(self.package.name, f"yuragi_{self.version}_{architecture}.deb")
         project = re.search(r"project\(yuragi VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8"))
-        self.assertEqual(self.version, project.group(1))
+        system = platform.freedesktop_os_release()
+        distribution = {"debian": "deb"}.get(system["ID"], system["ID"]) + system["VERSION_ID"]
+        self.assertEqual(self.version, f"{project.group(1)}+{distribution}")
 
     def test_everything_is_in_it_and_belongs_to_root(self):
         present = files_below(self.contents)

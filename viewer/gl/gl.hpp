@@ -17,7 +17,8 @@ template <class Kind>
 class GlObject {
  public:
   GlObject() : name_(Kind::make()) {}
-  ~GlObject() {
+  // Not inlined: in std::optional::emplace() of what holds one, gcc 14 takes name_ for uninitialized there.
+  [[gnu::noinline]] ~GlObject() {
     if (name_ != 0) Kind::unmake(name_);
   }
   GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}

@@ -25,7 +25,7 @@ std::string shown(std::string_view text) {
   constexpr std::size_t kShown = 40;
   std::string start(text.substr(0, kShown));
   std::replace_if(
-      start.begin(), start.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
+      start.begin(), start.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, '?');
   return "\"" + start + (text.size() > kShown ? "...\"" : "\"");
 }
 
