@@ -4,6 +4,8 @@
 #
 #   config/setup.sh          build and run
 #   config/setup.sh --test   and what the tests and the sanitizer builds need besides
+#   config/setup.sh --arm64  and what a package for arm64 is built with here
+#   config/setup.sh --list   prints the names of the packages of --test, as Debian 12 has them
 #
 # Prints what it installs, and stops before apt would remove anything. Without root and sudo it prints the command for an administrator.
 set -euo pipefail
@@ -25,8 +27,11 @@ build_packages=(
   tzdata                     # opening hours in local time
   libgl1-mesa-dri libegl-mesa0 libegl1 # the viewer's drivers, with a display and without
 )
+arm64_packages=(
+  g++-aarch64-linux-gnu qemu-user-static # its compiler; runs its programs
+)
 test_packages=(
-  libgtest-dev libbenchmark-dev
+  libgtest-dev libgmock-dev libbenchmark-dev
   clang lld clang-tidy clang-format libclang-rt-dev # the distribution's default version: 14 on Debian 12
   python3-numpy python3-flatbuffers
   mbpoll python3-pymodbus python3-serial python3-serial-asyncio # independent Modbus peers
@@ -63,10 +68,12 @@ finish() { :; }
 case "${1:-}" in
   "") ;;
   --test)
-    packages+=("${test_packages[@]}")
+    packages+=("${test_packages[@]}" "${arm64_packages[@]}")
     command -v npm >/dev/null || packages+=(npm) # Node.js of others brings its own
     finish() { install_browser_tools; } ;;
-  *) echo "usage: config/setup.sh [--test]" >&2; exit 64 ;;
+  --arm64) packages+=("${arm64_packages[@]}") ;;
+  --list) printf '%s\n' "${build_packages[@]%%|*}" "${test_packages[@]}" "${arm64_packages[@]}"; exit 0 ;;
+  *) echo "usage: config/setup.sh [--test | --arm64 | --list]" >&2; exit 64 ;;
 esac
 
 installed() { [ -n "${is_installed[$1]-}" ]; } # PACKAGE

@@ -20,8 +20,12 @@ set(programs ${PROJECT_BINARY_DIR}/bin/yuragi ${PROJECT_BINARY_DIR}/bin/yuragi-s
 if(YURAGI_VIEWER)
   list(APPEND programs ${PROJECT_BINARY_DIR}/bin/yuragi-viewer)
 endif()
+if(CMAKE_CROSSCOMPILING)
+  set(emulator -- ${CMAKE_CROSSCOMPILING_EMULATOR})
+endif()
 install(CODE "execute_process(COMMAND ${PYTHON3_PROGRAM} -B ${package_folder}/documents.py ${PROJECT_SOURCE_DIR}
-  \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\" ${PROJECT_VERSION} \"${maintainer}\" ${programs} COMMAND_ERROR_IS_FATAL ANY)")
+  \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\" ${PROJECT_VERSION} \"${maintainer}\" ${programs} ${emulator}
+  COMMAND_ERROR_IS_FATAL ANY)")
 
 # The libraries that the package needs are those of the distribution it is built on, or of the sysroot it is built against. Its version
 # has the distribution: 0.2.0+deb12, 0.2.0+ubuntu24.04. "+", so that it is newer than 0.2.0, which was for Debian 12.
@@ -48,6 +52,10 @@ set(CPACK_PACKAGE_CONTACT ${maintainer})
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION misc)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+if(CMAKE_CROSSCOMPILING) # config/package.sh gives dpkg-shlibdeps DEB_HOST_ARCH
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${YURAGI_DEBIAN_ARCHITECTURE})
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE})
+endif()
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "systemd, tzdata, libegl1, gnuplot-nox | gnuplot-qt | gnuplot-x11")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "xinit, xserver-xorg-core, xserver-xorg-input-libinput, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "bash-completion, ffmpeg")

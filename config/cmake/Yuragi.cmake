@@ -108,18 +108,10 @@ function(yuragi_program name)
 endfunction()
 
 # yuragi_kernel(yuragi_engine_pose strand_kernels.cpp)
-# Compiles a kernel file once for each SIMD row, together with the other kernels of the target in a unity build, with
-# YURAGI_SIMD_ROW set to the row's name; engine/base/simd_row.hpp chooses among them at start. Sanitizer builds have the base row alone.
+# Compiles a kernel file once for each SIMD row (SimdRows.cmake), together with the other kernels of the target in a unity build,
+# with YURAGI_SIMD_ROW set to the row's name; engine/base/simd_row.hpp chooses among them at start.
 function(yuragi_kernel target source)
-  set(rows x86_64)
-  if(NOT YURAGI_SANITIZE)
-    list(APPEND rows x86_64_v3 x86_64_v4)
-    target_compile_definitions(${target} PRIVATE YURAGI_ALL_SIMD_ROWS=1)
-  endif()
-  set(flags_x86_64 -march=x86-64)
-  set(flags_x86_64_v3 -march=x86-64-v3)
-  set(flags_x86_64_v4 -march=x86-64-v4 -mprefer-vector-width=512)
-  foreach(row IN LISTS rows)
+  foreach(row IN LISTS YURAGI_SIMD_ROWS)
     set(object ${target}_kernels_${row})
     if(TARGET ${object})
       target_sources(${object} PRIVATE ${source})
@@ -129,7 +121,7 @@ function(yuragi_kernel target source)
     target_link_libraries(${object} PRIVATE yuragi_flags)
     target_compile_definitions(${object} PRIVATE YURAGI_SIMD_ROW=${row})
     # gcc gives a loop over many arrays up if it must check more than 10 pairs of them for overlap.
-    target_compile_options(${object} PRIVATE -O3 ${flags_${row}}
+    target_compile_options(${object} PRIVATE -O3 ${YURAGI_SIMD_FLAGS_${row}}
       $<$<CXX_COMPILER_ID:GNU>:--param=vect-max-version-for-alias-checks=64>)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${object}>)
   endforeach()

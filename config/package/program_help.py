@@ -12,13 +12,23 @@ COMMANDS = "Subcommands"
 OWN_GROUPS = {"Options", "Positionals", COMMANDS}  # CLI11's; others are groups where options follow, and else a footer
 
 
+class Program:
+    """A program that was built. `emulator`: the words of the command that runs it on this machine, if it is for another processor."""
+
+    def __init__(self, path, emulator=()):
+        self.name = os.path.basename(path)
+        self.command = [*emulator, path]
+
+    def output(self, *words):
+        return subprocess.run([*self.command, *words], check=True, stdout=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True).stdout
+
+
 class Help:
     """One command: what it is, how it is called, groups of (term, text), what is said below them, its subcommands."""
 
     def __init__(self, program, words=()):
-        self.name = " ".join([os.path.basename(program), *words])
-        text = subprocess.run([program, *words, "--help"], check=True, stdout=subprocess.PIPE, stdin=subprocess.DEVNULL,
-                              text=True).stdout
+        self.name = " ".join([program.name, *words])
+        text = program.output(*words, "--help")
         description, _, rest = text.partition("Usage:")
         usage, _, rest = rest.partition("\n")
         self.description = " ".join(description.split())
@@ -59,7 +69,3 @@ class Help:
         yield self
         for command in self.commands:
             yield from command.walk()
-
-
-def version_of(program):
-    return subprocess.run([program, "--version"], check=True, stdout=subprocess.PIPE, text=True).stdout.strip()

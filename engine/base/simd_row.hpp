@@ -1,19 +1,36 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string_view>
+
+#include "engine/base/simd_rows.hpp"
 
 namespace yuragi {
 
-/// The instruction sets that each kernel file is compiled for (config/cmake/Yuragi.cmake, yuragi_kernel). All rows
-/// compute the same bits; only the time differs.
-enum class SimdRow { kX86_64, kX86_64_v3, kX86_64_v4 };
+/// One of the instruction sets that each kernel file is compiled for: its place in the list of the processor for which
+/// this is built (config/cmake/SimdRows.cmake). All rows compute the same bits; only the time differs.
+enum class SimdRow : std::uint8_t {};
 
-inline constexpr std::array kSimdRows = {SimdRow::kX86_64, SimdRow::kX86_64_v3, SimdRow::kX86_64_v4};
+/// The row that every machine of the kind runs.
+inline constexpr SimdRow kBaseSimdRow{0};
 
+#define YURAGI_COUNT_SIMD_ROW(name, printed, runnable) +1
+inline constexpr std::size_t kSimdRowCount = 0 YURAGI_SIMD_ROWS(YURAGI_COUNT_SIMD_ROW);
+#undef YURAGI_COUNT_SIMD_ROW
+
+/// From the base row to the widest.
+inline constexpr std::array kSimdRows = [] {
+  std::array<SimdRow, kSimdRowCount> rows{};
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = SimdRow{static_cast<std::uint8_t>(i)};
+  return rows;
+}();
+
+/// As the compilers name it: "x86-64-v3", "aarch64".
 std::string_view name_of(SimdRow row);
 
-/// Was the row compiled in, and can this machine run it?
+/// Can this machine run the row?
 bool is_runnable(SimdRow row);
 
 /// The widest row that is_runnable; chosen once, at the first call. Thread-safe.

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between EvolvingNoise and its kernels.
 
 namespace yuragi::noise {
@@ -29,8 +31,6 @@ struct NoiseKernels {
   void (*turn_modes)(const TurnModesArguments&) noexcept;
   void (*standardise)(const StandardiseArguments&) noexcept;
 };
-extern const NoiseKernels noise_kernels_x86_64;
-extern const NoiseKernels noise_kernels_x86_64_v3;
-extern const NoiseKernels noise_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(NoiseKernels, noise_kernels);
 
 }  // namespace yuragi::noise

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between the cloth's dynamics and their kernel.
 
 namespace yuragi::operators {
@@ -55,8 +57,6 @@ struct ClothDynamicsKernels {
   void (*spread)(const ClothSpreadKernelArguments&) noexcept;
   void (*add)(const ClothAddKernelArguments&) noexcept;
 };
-extern const ClothDynamicsKernels cloth_dynamics_kernels_x86_64;
-extern const ClothDynamicsKernels cloth_dynamics_kernels_x86_64_v3;
-extern const ClothDynamicsKernels cloth_dynamics_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(ClothDynamicsKernels, cloth_dynamics_kernels);
 
 }  // namespace yuragi::operators

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between the cloth's jobs and their kernels.
 
 namespace yuragi::operators {
@@ -33,8 +35,6 @@ struct ClothKernels {
   void (*propagate)(const PropagationKernelArguments&) noexcept;
   void (*hang)(const ClothKernelArguments&) noexcept;
 };
-extern const ClothKernels cloth_kernels_x86_64;
-extern const ClothKernels cloth_kernels_x86_64_v3;
-extern const ClothKernels cloth_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(ClothKernels, cloth_kernels);
 
 }  // namespace yuragi::operators

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between the jobs that move a tree's crown (SplitJob, BranchForceJob, TiltJob, LeafResponseJob, FlutterJob)
 // and their kernels.
 
@@ -82,8 +84,6 @@ struct CrownKernels {
   void (*respond)(const LeafKernelArguments&) noexcept;
   void (*flutter)(const FlutterKernelArguments&) noexcept;
 };
-extern const CrownKernels crown_kernels_x86_64;
-extern const CrownKernels crown_kernels_x86_64_v3;
-extern const CrownKernels crown_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(CrownKernels, crown_kernels);
 
 }  // namespace yuragi::operators

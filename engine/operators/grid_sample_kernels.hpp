@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between GridSampleJob and its kernel.
 
 namespace yuragi::operators {
@@ -28,8 +30,6 @@ struct GridSampleKernelArguments {
 struct GridSampleKernels {
   void (*sample)(const GridSampleKernelArguments&) noexcept;
 };
-extern const GridSampleKernels grid_sample_kernels_x86_64;
-extern const GridSampleKernels grid_sample_kernels_x86_64_v3;
-extern const GridSampleKernels grid_sample_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(GridSampleKernels, grid_sample_kernels);
 
 }  // namespace yuragi::operators

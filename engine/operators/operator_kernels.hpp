@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between the jobs of this folder and their kernels.
 
 namespace yuragi::operators {
@@ -89,25 +91,19 @@ struct OscillatorKernelArguments {
 struct SampleKernels {
   void (*sample)(const SampleKernelArguments&) noexcept;
 };
-extern const SampleKernels sample_kernels_x86_64;
-extern const SampleKernels sample_kernels_x86_64_v3;
-extern const SampleKernels sample_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(SampleKernels, sample_kernels);
 
 struct BendingKernels {
   void (*bend)(const BendingKernelArguments&) noexcept;
   void (*bend_locally)(const LocalBendingKernelArguments&) noexcept;
   void (*bend_coat)(const CoatBendingKernelArguments&) noexcept;
 };
-extern const BendingKernels bending_kernels_x86_64;
-extern const BendingKernels bending_kernels_x86_64_v3;
-extern const BendingKernels bending_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(BendingKernels, bending_kernels);
 
 struct OscillatorKernels {
   void (*step)(const OscillatorKernelArguments&) noexcept;       ///< all alike
   void (*step_each)(const OscillatorKernelArguments&) noexcept;  ///< each in its own way
 };
-extern const OscillatorKernels oscillator_kernels_x86_64;
-extern const OscillatorKernels oscillator_kernels_x86_64_v3;
-extern const OscillatorKernels oscillator_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(OscillatorKernels, oscillator_kernels);
 
 }  // namespace yuragi::operators

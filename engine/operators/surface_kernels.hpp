@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between ThresholdRampJob, ColorMapJob, DisplacementJob and their kernels.
 
 namespace yuragi::operators {
@@ -37,8 +39,6 @@ struct SurfaceKernels {
   void (*map_colors)(const ColorMapArguments&) noexcept;
   void (*displace)(const DisplacementArguments&) noexcept;
 };
-extern const SurfaceKernels surface_kernels_x86_64;
-extern const SurfaceKernels surface_kernels_x86_64_v3;
-extern const SurfaceKernels surface_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(SurfaceKernels, surface_kernels);
 
 }  // namespace yuragi::operators

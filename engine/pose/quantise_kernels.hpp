@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between quantise.cpp and its kernel.
 
 namespace yuragi::pose {
@@ -22,8 +24,6 @@ struct QuantiseKernels {
   void (*to_uint8)(const QuantiseArguments<std::uint8_t>&) noexcept;
 };
 
-extern const QuantiseKernels quantise_kernels_x86_64;
-extern const QuantiseKernels quantise_kernels_x86_64_v3;
-extern const QuantiseKernels quantise_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(QuantiseKernels, quantise_kernels);
 
 }  // namespace yuragi::pose

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between StrandKinematicsJob, TreeKinematicsJob and their kernel.
 
 namespace yuragi::pose {
@@ -31,8 +33,6 @@ struct StrandKernels {
   void (*joint_positions)(const StrandKernelArguments&) noexcept;
 };
 
-extern const StrandKernels strand_kernels_x86_64;
-extern const StrandKernels strand_kernels_x86_64_v3;
-extern const StrandKernels strand_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(StrandKernels, strand_kernels);
 
 }  // namespace yuragi::pose

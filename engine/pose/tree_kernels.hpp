@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between TreeKinematicsJob and its kernels.
 
 namespace yuragi::pose {
@@ -48,8 +50,6 @@ struct TreeKernels {
   void (*carry)(const TreeKernelArguments&) noexcept;
 };
 
-extern const TreeKernels tree_kernels_x86_64;
-extern const TreeKernels tree_kernels_x86_64_v3;
-extern const TreeKernels tree_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(TreeKernels, tree_kernels);
 
 }  // namespace yuragi::pose

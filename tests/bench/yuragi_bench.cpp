@@ -234,7 +234,9 @@ int run(int argc, char** argv) {
       const auto found = std::find_if(std::begin(kSimdRows), std::end(kSimdRows),
                                       [wanted](SimdRow one) { return name_of(one) == wanted && is_runnable(one); });
       if (found == std::end(kSimdRows)) {
-        std::cerr << "yuragi-bench: no row " << wanted << " on this machine; rows: x86-64, x86-64-v3, x86-64-v4\n";
+        std::cerr << "yuragi-bench: no row " << wanted << " on this machine; rows:";
+        for (const SimdRow one : kSimdRows) std::cerr << ' ' << name_of(one);
+        std::cerr << '\n';
         return 64;
       }
       row = *found;

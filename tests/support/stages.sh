@@ -86,6 +86,9 @@ collect() {
 
 # build_preset PRESET: configures and builds a preset of CMakePresets.json.
 build_preset() {
+  if [ "$1" = arm64 ]; then
+    check "making the tree of libraries for arm64" config/arm64_sysroot.sh || return
+  fi
   check "configuring $1" cmake --preset "$1" --log-level=WARNING "${configuration[@]}" || return
   check "building $1" timed "$1: build" cmake --build --preset "$1" || return
   /usr/bin/python3 tests/support/build_times.py "build/$1" || true

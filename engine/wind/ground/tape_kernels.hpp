@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "engine/base/kernel.hpp"
+
 // Internal: between WindTapes and its kernel.
 
 namespace yuragi::wind::ground {
@@ -44,8 +46,6 @@ struct TapeKernels {
   /// Both at many places, to the same bits.
   void (*many)(const TapeKernelArguments&) noexcept;
 };
-extern const TapeKernels tape_kernels_x86_64;
-extern const TapeKernels tape_kernels_x86_64_v3;
-extern const TapeKernels tape_kernels_x86_64_v4;
+YURAGI_DECLARE_KERNEL_ROWS(TapeKernels, tape_kernels);
 
 }  // namespace yuragi::wind::ground

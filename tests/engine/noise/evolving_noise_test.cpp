@@ -128,7 +128,7 @@ class EvolvingNoiseOnEachRow : public EachSimdRow {};
 YURAGI_ON_EACH_ROW(EvolvingNoiseOnEachRow);
 
 TEST_P(EvolvingNoiseOnEachRow, HasTheSameBits) {
-  EvolvingNoise base = EvolvingNoise::make(kSpec, 1.0, SimdRow::kX86_64).value();
+  EvolvingNoise base = EvolvingNoise::make(kSpec, 1.0, kBaseSimdRow).value();
   EvolvingNoise noise = EvolvingNoise::make(kSpec, 1.0, GetParam()).value();
   for (int frame = 0; frame < 20; ++frame) {
     base.advance(1.0 / 60.0);

@@ -50,7 +50,7 @@ TEST_P(BendingJobOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
   for (const std::size_t count : {1U, 7U, 16U, 100U, 1003U}) {
     Strands expected(count);
     BendingJob base = expected.job(4.0, -3.0);
-    base.row = SimdRow::kX86_64;
+    base.row = kBaseSimdRow;
     EXPECT_EQ(base.run(), BendingJob::Problem::kNone);
     Strands strands(count);
     BendingJob job = strands.job(4.0, -3.0);

@@ -90,7 +90,7 @@ TEST_P(ClothDynamicsOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
     expected.blow(3.0F, 8.0F, tick / 7);
     cloth.blow(3.0F, 8.0F, tick / 7);
     ClothDynamicsJob base = expected.job();
-    base.row = SimdRow::kX86_64;
+    base.row = kBaseSimdRow;
     base.run();
     ClothDynamicsJob job = cloth.job();
     job.row = GetParam();
@@ -101,11 +101,11 @@ TEST_P(ClothDynamicsOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
   // And so does the spline through it.
   ClothSpline expected_spline(expected.coarse.knots(), kFineColumns, kFineLinks);
   ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
-  expected_spline.spread(expected.coarse.lean(), SimdRow::kX86_64);
+  expected_spline.spread(expected.coarse.lean(), kBaseSimdRow);
   spline.spread(cloth.coarse.lean(), GetParam());
   std::vector<float> expected_out(kFineLinks * 2 * pose::padded_to_blocks(kFineColumns), 0.5F);
   std::vector<float> out = expected_out;
-  ClothSplineJob{.spline = &expected_spline, .share = 0.7F, .row = SimdRow::kX86_64, .out = expected_out}.run();
+  ClothSplineJob{.spline = &expected_spline, .share = 0.7F, .row = kBaseSimdRow, .out = expected_out}.run();
   ClothSplineJob{.spline = &spline, .share = 0.7F, .row = GetParam(), .out = out}.run();
   EXPECT_EQ(bits_of(out), bits_of(expected_out));
 }
@@ -201,7 +201,7 @@ TEST(ClothDynamicsTest, FixedEdgesDoNotMove) {
 
   // Nor does the fixed column of what is made from it.
   ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
-  spline.spread(cloth.coarse.lean(), SimdRow::kX86_64);
+  spline.spread(cloth.coarse.lean(), kBaseSimdRow);
   const std::size_t stride = pose::padded_to_blocks(kFineColumns);
   std::vector<float> out(kFineLinks * 2 * stride);
   EXPECT_EQ((ClothSplineJob{.spline = &spline, .out = out}.run()), ClothSplineJob::Problem::kNone);
@@ -214,7 +214,7 @@ TEST(ClothSplineTest, StaysBetweenTheCoarseLeansAndFollowsThem) {
   cloth.blow(2.0F, 6.0F);
   cloth.go_on(200);
   ClothSpline spline(cloth.coarse.knots(), kFineColumns, kFineLinks);
-  spline.spread(cloth.coarse.lean(), SimdRow::kX86_64);
+  spline.spread(cloth.coarse.lean(), kBaseSimdRow);
   const std::size_t stride = pose::padded_to_blocks(kFineColumns);
   std::vector<float> out(kFineLinks * 2 * stride);
   ClothSplineJob{.spline = &spline, .out = out}.run();
@@ -253,7 +253,7 @@ struct EvenLeans {
 TEST(ClothSplineTest, GoesThroughTheLeansOfAnyKnots) {
   const EvenLeans even;
   ClothSpline spline(even.knots, EvenLeans::kColumns, EvenLeans::kLinks);
-  spline.spread(even.leans, SimdRow::kX86_64);
+  spline.spread(even.leans, kBaseSimdRow);
   const std::size_t stride = pose::padded_to_blocks(EvenLeans::kColumns);
   std::vector<float> curved(EvenLeans::kLinks * 2 * stride, 0.5F);
   std::vector<float> straight(curved.size());
@@ -285,9 +285,9 @@ TEST(ClothSplineTest, LinesOfNoLeanAreTheBaseOnEveryRow) {
             ClothLineJob::Problem::kNone);
   for (std::size_t i = 0; i < out.size(); ++i) EXPECT_EQ(out[i], base[i % width]);
 
-  spline.spread(even.leans, SimdRow::kX86_64);
+  spline.spread(even.leans, kBaseSimdRow);
   std::vector<float> expected(out.size());
-  ClothLineJob{.spline = &spline, .base = base, .first_link = 5, .row = SimdRow::kX86_64, .out = expected}.run();
+  ClothLineJob{.spline = &spline, .base = base, .first_link = 5, .row = kBaseSimdRow, .out = expected}.run();
   for (const SimdRow row : kSimdRows) {
     if (!is_runnable(row)) continue;
     ClothLineJob{.spline = &spline, .base = base, .first_link = 5, .row = row, .out = out}.run();

@@ -55,7 +55,7 @@ TEST_P(ClothProjectionJobOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
   HangingCloth expected(48);
   HangingCloth cloth(48);
   ClothProjectionJob base = expected.job();
-  base.row = SimdRow::kX86_64;
+  base.row = kBaseSimdRow;
   EXPECT_EQ(base.run(), ClothProjectionJob::Problem::kNone);
   ClothProjectionJob job = cloth.job();
   job.row = GetParam();

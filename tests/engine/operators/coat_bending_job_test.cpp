@@ -50,7 +50,7 @@ TEST_P(CoatBendingOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
   for (const std::size_t count : {1U, 7U, 16U, 1003U}) {
     BlownHairs expected(count);
     CoatBendingJob base = expected.job(4.0, -7.0);
-    base.row = SimdRow::kX86_64;
+    base.row = kBaseSimdRow;
     EXPECT_EQ(base.run(), CoatBendingJob::Problem::kNone);
     BlownHairs hairs(count);
     CoatBendingJob job = hairs.job(4.0, -7.0);

@@ -143,7 +143,7 @@ TEST_P(CrownJobsOnEachRow, SplitComputesTheSameBitsAsTheBaseRow) {
     Parts found(count);
     SplitJob base = expected.job();
     SplitJob job = found.job();
-    base.row = SimdRow::kX86_64;
+    base.row = kBaseSimdRow;
     job.row = GetParam();
     EXPECT_EQ(base.run(), SplitJob::Problem::kNone);
     EXPECT_EQ(job.run(), SplitJob::Problem::kNone);
@@ -272,7 +272,7 @@ TEST_P(CrownJobsOnEachRow, ForceComputesTheSameBitsAsTheBaseRow) {
     Gusts found(count);
     BranchForceJob base = expected.job(6.0);
     BranchForceJob job = found.job(6.0);
-    base.row = SimdRow::kX86_64;
+    base.row = kBaseSimdRow;
     job.row = GetParam();
     EXPECT_EQ(base.run(), BranchForceJob::Problem::kNone);
     EXPECT_EQ(job.run(), BranchForceJob::Problem::kNone);
@@ -384,7 +384,7 @@ TEST_P(CrownJobsOnEachRow, TiltComputesTheSameBitsAsTheBaseRow) {
     Branches found(count);
     TiltJob base = expected.job(0.7);
     TiltJob job = found.job(0.7);
-    base.row = SimdRow::kX86_64;
+    base.row = kBaseSimdRow;
     job.row = GetParam();
     EXPECT_EQ(base.run(), TiltJob::Problem::kNone);
     EXPECT_EQ(job.run(), TiltJob::Problem::kNone);
@@ -497,7 +497,7 @@ TEST_P(CrownJobsOnEachRow, LeafResponseComputesTheSameBitsAsTheBaseRow) {
     LeafPlaces found(count);
     LeafResponseJob base = expected.job();
     LeafResponseJob job = found.job();
-    base.row = SimdRow::kX86_64;
+    base.row = kBaseSimdRow;
     job.row = GetParam();
     EXPECT_EQ(base.run(), LeafResponseJob::Problem::kNone);
     EXPECT_EQ(job.run(), LeafResponseJob::Problem::kNone);
@@ -621,7 +621,7 @@ TEST_P(CrownJobsOnEachRow, FlutterComputesTheSameBitsAsTheBaseRow) {
     Leaves found(sprays);
     FlutterJob base = expected.job();
     FlutterJob job = found.job();
-    base.row = SimdRow::kX86_64;
+    base.row = kBaseSimdRow;
     job.row = GetParam();
     EXPECT_EQ(base.run(), FlutterJob::Problem::kNone);
     EXPECT_EQ(job.run(), FlutterJob::Problem::kNone);

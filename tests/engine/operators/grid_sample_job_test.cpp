@@ -51,7 +51,7 @@ std::vector<float> by_places(std::span<const GridNoiseLayer> layers) {
                     .weight = layers[i].weight});
   }
   std::vector<float> out(x[0].size());
-  EXPECT_EQ((SampleJob{.layers = read, .row = SimdRow::kX86_64, .out = out}.run()), SampleJob::Problem::kNone);
+  EXPECT_EQ((SampleJob{.layers = read, .row = kBaseSimdRow, .out = out}.run()), SampleJob::Problem::kNone);
   return out;
 }
 

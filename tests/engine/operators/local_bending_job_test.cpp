@@ -47,7 +47,7 @@ TEST_P(LocalBendingOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
   for (const std::size_t count : {1U, 7U, 16U, 1003U}) {
     BlownStrands expected(count);
     LocalBendingJob base = expected.job();
-    base.row = SimdRow::kX86_64;
+    base.row = kBaseSimdRow;
     EXPECT_EQ(base.run(), LocalBendingJob::Problem::kNone);
     BlownStrands strands(count);
     LocalBendingJob job = strands.job();

@@ -44,7 +44,7 @@ TEST_P(OscillatorOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
     return static_cast<float>(random.uniform(static_cast<std::uint64_t>(tick) * 100 + i) - 0.5);
   };
   OscillatorJob job{.step = OscillatorStep::exact(2.0, 0.2, kOscillatorTick_s), .blend = 0.7};
-  job.row = SimdRow::kX86_64;
+  job.row = kBaseSimdRow;
   const auto base = swing(job, 37, 200, drive);
   job.row = GetParam();
   EXPECT_EQ(bits_of(swing(job, 37, 200, drive)), bits_of(base));
@@ -167,7 +167,7 @@ TEST_P(OscillatorOnEachRow, EachAtItsOwnPaceComputesTheSameBitsAsTheBaseRow) {
   const auto drive = [](int tick, std::size_t i) { return tick % 17 < 8 ? 0.3F : -0.01F * static_cast<float>(i); };
   const OscillatorSteps steps = paces(37);
   OscillatorJob job{.steps = &steps, .blend = 0.7};
-  job.row = SimdRow::kX86_64;
+  job.row = kBaseSimdRow;
   const auto base = swing(job, 37, 200, drive);
   job.row = GetParam();
   EXPECT_EQ(bits_of(swing(job, 37, 200, drive)), bits_of(base));

@@ -53,7 +53,7 @@ TEST_P(PropagationJobOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
   expected.go_on(100);
   chain.go_on(100);
   PropagationJob base = expected.job();
-  base.row = SimdRow::kX86_64;
+  base.row = kBaseSimdRow;
   EXPECT_EQ(base.run(), PropagationJob::Problem::kNone);
   PropagationJob job = chain.job();
   job.row = GetParam();

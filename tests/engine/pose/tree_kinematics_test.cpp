@@ -183,7 +183,7 @@ YURAGI_ON_EACH_ROW(TreeKinematicsOnEachRow);
 TEST_P(TreeKinematicsOnEachRow, ComputesTheSameBitsAsTheBaseRow) {
   const TreeSkeleton tree = wild_tree();
   const TreePose pose = some_bends(tree, 3.0);
-  const TreeJoints expected = joints_of(tree, pose, SimdRow::kX86_64);
+  const TreeJoints expected = joints_of(tree, pose, kBaseSimdRow);
   const TreeJoints found = joints_of(tree, pose, GetParam());
   for (std::size_t i = 0; i < tree.levels.size(); ++i) {
     EXPECT_EQ(bits_of(found.level(i).data()), bits_of(expected.level(i).data())) << i;

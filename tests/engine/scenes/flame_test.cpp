@@ -366,7 +366,7 @@ YURAGI_ON_EACH_ROW(FlameOnEachRow);
 
 TEST_P(FlameOnEachRow, BurnsTheSameBitForBit) {
   for (const std::string form : {"texture", "shape"}) {
-    const auto base = flame(form, {}, {.seed = 3, .row = SimdRow::kX86_64});
+    const auto base = flame(form, {}, {.seed = 3, .row = kBaseSimdRow});
     const auto scene = flame(form, {}, {.seed = 3, .row = GetParam()});
     for (std::uint64_t tick = 0; tick < 200; ++tick) {
       base->tick(scripted_wind(tick), kFlameTick_s);

@@ -268,7 +268,7 @@ class RippleOnEachRow : public EachSimdRow {};
 YURAGI_ON_EACH_ROW(RippleOnEachRow);
 
 TEST_P(RippleOnEachRow, MovesTheSameBitForBit) {
-  const auto base = ripple({}, {.seed = 3, .row = SimdRow::kX86_64});
+  const auto base = ripple({}, {.seed = 3, .row = kBaseSimdRow});
   const auto scene = ripple({}, {.seed = 3, .row = GetParam()});
   for (std::uint64_t tick = 0; tick < 200; ++tick) {
     base->tick(scripted_wind(tick), kRippleTick_s);

@@ -105,7 +105,7 @@ TEST_P(TapeRows, HaveTheBitsOfTheBaseRow) {
   const std::vector<float> x_m = {-3.0F, -1.0F, 0.3F, 2.0F, 4.0F};
   const std::vector<float> z_m = {2.0F, 0.0F, 1.1F, -3.0F, 3.5F};
   for (std::size_t run = 0; run < 2; ++run) {
-    const SimdRow row = run == 0 ? SimdRow::kX86_64 : GetParam();
+    const SimdRow row = run == 0 ? kBaseSimdRow : GetParam();
     wind::ground::WindTapes tapes(1, row);
     MeasuredWind measured(shared_gusts(), {6.0, 2.0}, sensors_at(1));
     WindGrid grid(shared_gusts(), x_m, z_m, row);
