@@ -259,6 +259,16 @@ class Viewer::Show {
     return now_s() - last_s_;
   }
 
+  /// All parts of a wall, whose viewers may run on several machines, are drawn as the slowest can: the daemon passes on
+  /// what each gives up.
+  void agree_with_wall() {
+    pace_->hold(sensors_->given_up);
+    const std::uint8_t own = pace_->given_up();
+    if (own == said_given_up_ && own <= sensors_->given_up) return;
+    connection_.send(wire::Display{.given_up = own});
+    said_given_up_ = own;
+  }
+
   /// How much is drawn of the next picture, after one of this size.
   void choose_pace(const PixelSize& size, std::optional<double> work_s) {
     pace_->set_ladder(pace::PaceLadder(renderer_->wanted_quality(), display_interval_s()));
@@ -356,6 +366,7 @@ class Viewer::Show {
     const bool is_first_status = inbox.sensors && !sensors_;
     if (inbox.sensors) {
       sensors_ = std::move(inbox.sensors);
+      if (wall_) agree_with_wall();
       director_->take_status(*sensors_, panel_.is_setting() ? kHandFade_s : light::SkyKeeper::kFade_s);
     }
 
@@ -505,6 +516,7 @@ class Viewer::Show {
   std::optional<pace::PaceKeeper> pace_;                  // of a window: a picture in a file has all
   pace::PaceStep told_{.quality = look::Quality::kAuto};  // in the log
   PixelSize paced_size_;
+  std::uint8_t said_given_up_ = 0;  // to the daemon
   int measured_pictures_ = 0;
   double utc_s_ = 0.0;  // the daemon's clock: of the newest frame
   stream::SceneTimeline timeline_;

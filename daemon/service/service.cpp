@@ -525,6 +525,7 @@ class Service::Io {
     status.late_ticks = loop_ ? loop_->counters().skipped_ticks.load(std::memory_order_relaxed) : 0;
     status.clients = static_cast<std::uint32_t>(stream_.client_count());
     const stream::ClientCounts& counts = stream_.counts();
+    status.given_up = stream_.given_up();
     status.refused_clients = counts.refused;
     status.stuck_clients = counts.stuck;
     status.idle_clients = counts.idle;

@@ -87,6 +87,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool is_open() const { return socket_.is_open(); }
   const Peer& peer() const { return peer_; }
   bool is_trusted() const { return is_trusted_; }
+  std::uint8_t given_up() const { return is_open() ? given_up_ : 0; }
 
   void start() {
     feed_->log->info("client {} connected", endpoint_);
@@ -217,13 +218,18 @@ class Connection : public std::enable_shared_from_this<Connection> {
     });
   }
 
-  /// A client may send one subscription, and after that Controls.
+  /// A client may send one subscription, and after that Controls and Displays.
   void take_message() {
     if (queue_.is_dismissed()) return;  // and nothing more is read
     const auto message = wire::decode(body_);
     if (!message) return end("its message was refused: " + std::string(name_of(message.error())));
     const auto* control = std::get_if<wire::Control>(&*message);
     if (control != nullptr && queue_.is_subscribed()) return take_control(*control);
+    const auto* display = std::get_if<wire::Display>(&*message);
+    if (display != nullptr && queue_.is_subscribed()) {
+      given_up_ = display->given_up;
+      return read_prefix();
+    }
     const auto* wish = std::get_if<wire::Subscribe>(&*message);
     if (wish == nullptr || queue_.is_subscribed()) return end("it sent a message that clients must not send");
     if (wish->protocol != wire::kProtocol) return end("it speaks protocol " + std::to_string(wish->protocol));
@@ -313,6 +319,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   bool is_trusted_;  // of this machine, or it has shown the token
   std::string endpoint_, client_name_;
   std::string dismissed_because_;
+  std::uint8_t given_up_ = 0;  // wire::Display
   bool takes_new_scenes_ = false;
   bool wants_traces_ = false;
   std::string traced_sensor_;                         // empty: all of them
@@ -330,6 +337,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
  public:
   Server(asio::io_context& io, std::string_view listen, TcpStreamSettings settings)
       : acceptor_(open_acceptor(io, listen)), check_timer_(io), accept_timer_(io) {
+    settings.hello.takes_display = true;
     feed_->hello = share(wire::encode(settings.hello));
     feed_->poses.set_scenes(share(wire::encode(settings.scenes)));
     settings.scenes.scenes.clear();  // only the encoded bytes are needed from here on
@@ -349,6 +357,12 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
   std::size_t client_count() const {
     return static_cast<std::size_t>(
         std::count_if(connections_.begin(), connections_.end(), [](const auto& c) { return c->is_open(); }));
+  }
+
+  std::uint8_t given_up() const {
+    std::uint8_t most = 0;
+    for (const auto& connection : connections_) most = std::max(most, connection->given_up());
+    return most;
   }
 
   bool has_untrusted_clients() const {
@@ -518,6 +532,10 @@ void TcpStream::publish_scenes(SharedBytes scenes) {
 void TcpStream::publish_sensors(SharedBytes here, SharedBytes elsewhere) {
   server_->publish_sensors(std::move(here), std::move(elsewhere));
 }
+std::uint8_t TcpStream::given_up() const {
+  return server_->given_up();
+}
+
 bool TcpStream::has_untrusted_clients() const {
   return server_->has_untrusted_clients();
 }

@@ -65,11 +65,11 @@ struct ClientCounts {
 /// Each client gets a Hello, subscribes once, and is then sent the newest messages of that kind (ClientQueue), thinned
 /// out as it asked for (PoseViews, FramePace). Where
 /// the scenes change, a client that takes new ones gets them before the first frame of them; another one is let go.
-/// After that it may send Controls, each of which gets a reply. A client that sends anything else, does not subscribe,
-/// asks for nothing, or stops reading is disconnected, and that is logged (ClientLog); where it can still read, it is
-/// told why by a second Hello. Who gets a place is decided by admission_refusal(). The kernel asks every 10 s whether a
-/// silent client is still there, so that one that vanished without a word is forgotten within a minute. Send buffers
-/// are kept small, so that a slow client gets new frames.
+/// After that it may send Controls, each of which gets a reply, and Displays. A client that sends anything else, does
+/// not subscribe, asks for nothing, or stops reading is disconnected, and that is logged (ClientLog); where it can
+/// still read, it is told why by a second Hello. Who gets a place is decided by admission_refusal(). The kernel asks
+/// every 10 s whether a silent client is still there, so that one that vanished without a word is forgotten within a
+/// minute. Send buffers are kept small, so that a slow client gets new frames.
 ///
 /// All work is done in callbacks on the thread that runs `io`, which must outlive this object. Thread-safe: no.
 class TcpStream final : public Transport {
@@ -88,6 +88,8 @@ class TcpStream final : public Transport {
   void publish_sensors(SharedBytes here, SharedBytes elsewhere) override;
   std::size_t client_count() const override;
   bool has_untrusted_clients() const override;
+  /// The most of all clients' wire::Display.
+  std::uint8_t given_up() const;
 
   /// Has any client subscribed to the raw messages of this sensor's device?
   bool wants_trace(std::string_view sensor) const;

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "drivers/sensor/driver.hpp"
+
 namespace yuragi::drivers::modbus {
 namespace {
 

@@ -50,6 +50,7 @@ bool read(const fb::Hello& from, Hello& to) {
   if (from.refused() != nullptr && !read_text(from.refused(), to.refused.emplace())) return false;
   if (const auto from_deg = from.wind_from_deg(); from_deg && is_within(*from_deg, 0.0, 360.0))
     to.wind_from_deg = *from_deg;
+  to.takes_display = from.takes_display();
   return is_within(to.tick_rate_hz, 0.0, 1e6) && read_text(from.software(), to.software);
 }
 
@@ -283,6 +284,7 @@ bool read(const fb::Sensors& from, Sensors& to) {
   read(from.look(), to.look);
   to.parameters_revision = from.parameters_revision();
   to.recent_ticks = from.recent_ticks();
+  to.given_up = from.given_up();
   to.recent_skipped_ticks = std::min(from.recent_skipped_ticks(), to.recent_ticks);
   const std::size_t troubles = from.troubles() == nullptr ? 0 : from.troubles()->size();
   if (troubles > kMaxTroubles) return false;
@@ -293,6 +295,11 @@ bool read(const fb::Sensors& from, Sensors& to) {
   return read_cameras(from, to) && read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
          read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder) &&
          read(from.animation(), to.animation);
+}
+
+bool read(const fb::Display& from, Display& to) {
+  to.given_up = from.given_up();
+  return true;
 }
 
 bool read(const fb::PlayerCommand& from, PlayerCommand& to) {
@@ -433,6 +440,8 @@ Result<Message, WireError> decode(std::span<const std::uint8_t> bytes) {
       return read_body<ControlReply>(message.body_as_ControlReply());
     case fb::Body_RawTrace:
       return read_body<RawTrace>(message.body_as_RawTrace());
+    case fb::Body_Display:
+      return read_body<Display>(message.body_as_Display());
     case fb::Body_NONE:
       break;
   }

@@ -324,6 +324,7 @@ Bytes encode(const Hello& hello) {
   table.add_tick_rate_hz(hello.tick_rate_hz);
   if (hello.refused) table.add_refused(refused);
   if (hello.wind_from_deg) table.add_wind_from_deg(*hello.wind_from_deg);
+  table.add_takes_display(hello.takes_display);
   return finish(builder, fb::Body_Hello, table.Finish());
 }
 
@@ -418,7 +419,13 @@ Bytes encode(const Sensors& sensors) {
   table.add_recent_ticks(sensors.recent_ticks);
   table.add_recent_skipped_ticks(sensors.recent_skipped_ticks);
   table.add_troubles(trouble_list);
+  table.add_given_up(sensors.given_up);
   return finish(builder, fb::Body_Sensors, table.Finish());
+}
+
+Bytes encode(const Display& display) {
+  Builder builder;
+  return finish(builder, fb::Body_Display, fb::CreateDisplay(builder, display.given_up));
 }
 
 Bytes encode(const Control& control) {

@@ -67,6 +67,7 @@ struct Hello {
   double tick_rate_hz = 0.0;
   std::optional<std::string> refused = std::nullopt;   ///< why the server closes the connection behind this message
   std::optional<double> wind_from_deg = std::nullopt;  ///< where the wind comes from while no sensor is live, 0 to 360
+  bool takes_display = false;                          ///< the server takes Display
 };
 
 /// Why a client of this build cannot use the server, for a person, with the server as subject: "speaks protocol 3, this
@@ -228,6 +229,7 @@ struct Sensors {
   std::uint64_t recent_ticks = 0;          ///< of the last 10 minutes, with those that were skipped; 0: not known
   std::uint64_t recent_skipped_ticks = 0;  ///< those of them that were skipped
   std::vector<std::string> troubles = {};  ///< what else does not work at present and is tried again, for a person
+  std::uint8_t given_up = 0;               ///< the most of all clients' Display
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };
@@ -314,7 +316,13 @@ struct RawTrace {
   std::uint64_t lost = 0;           ///< messages of this sensor that were passed over just before
 };
 
-using Message = std::variant<Hello, Subscribe, Scenes, Frame, Sensors, Control, ControlReply, RawTrace>;
+/// How much a client that shows a part of a wall gives up of its pictures: so many steps. All parts are to look the
+/// same.
+struct Display {
+  std::uint8_t given_up = 0;
+};
+
+using Message = std::variant<Hello, Subscribe, Scenes, Frame, Sensors, Control, ControlReply, RawTrace, Display>;
 
 enum class WireError : std::uint8_t {
   kTooLong,       ///< the size prefix is above the limit
@@ -337,6 +345,7 @@ Bytes encode(const Sensors& sensors);
 Bytes encode(const Control& control);
 Bytes encode(const ControlReply& reply);
 Bytes encode(const RawTrace& trace);
+Bytes encode(const Display& display);
 
 /// Encodes frame after frame into one buffer that it owns and keeps. Realtime-safe after the first frame that shows
 /// every scene of a set: it quantises straight into the buffer, and nothing is allocated. Thread-safe: no.

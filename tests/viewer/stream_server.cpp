@@ -60,6 +60,8 @@ void StreamServer::read_subscription(const std::shared_ptr<Client>& client) {
         ++subscriptions_;
       } else if (const auto* control = std::get_if<wire::Control>(&**message)) {
         controls_.push_back(*control);
+      } else if (const auto* display = std::get_if<wire::Display>(&**message)) {
+        given_up_ = display->given_up;
       }
       subscribed_.notify_all();
     }

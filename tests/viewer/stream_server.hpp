@@ -6,6 +6,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -16,7 +17,7 @@
 
 namespace yuragi::viewer {
 
-/// A server on loopback that says what a test tells it to say. It reads each client's Subscribe and Controls.
+/// A server on loopback that says what a test tells it to say. It reads each client's Subscribe, Controls and Displays.
 /// Thread-safe: yes. Sending never waits; what a slow client does not read is kept.
 class StreamServer {
  public:
@@ -43,6 +44,12 @@ class StreamServer {
     return token_;
   }
 
+  /// Of the last Display; null where none has come.
+  std::optional<std::uint8_t> given_up() {
+    const std::lock_guard lock(mutex_);
+    return given_up_;
+  }
+
   /// Waits (up to half a minute) until as many Controls as this have come in all, and returns them.
   std::vector<wire::Control> wait_for_controls(std::size_t count);
 
@@ -62,6 +69,7 @@ class StreamServer {
   std::condition_variable subscribed_;
   std::size_t subscriptions_ = 0;
   std::vector<wire::Control> controls_;
+  std::optional<std::uint8_t> given_up_;
   Secret token_;
 
   std::thread thread_;

@@ -23,11 +23,13 @@ PaceKeeper::PaceKeeper(const PaceLadder& ladder, std::size_t first)
 
 void PaceKeeper::set_ladder(const PaceLadder& ladder) {
   if (ladder == ladder_) return;
-  const PaceStep before = step();
+  const PaceStep before = ladder_[step_];
   ladder_ = ladder;
   // The same picture, or the first one that has no more; in the same time, where that can be.
   step_ = ladder_.slowest_of(before.quality);
-  while (step_ + 1 < ladder_.size() && step().quality == before.quality && step().part.side > before.part.side) ++step_;
+  while (step_ + 1 < ladder_.size() && ladder_[step_].quality == before.quality &&
+         ladder_[step_].part.side > before.part.side)
+    ++step_;
   while (step_ > 0 && before.refreshes == 1 && !is_picture_step(step_)) --step_;
   settle();
 }
@@ -45,7 +47,10 @@ void PaceKeeper::advance(double passed_s, std::optional<double> work_s) {
   passed_s = std::clamp(passed_s, 0.0, kLongest_s);
   settling_s_ = std::max(settling_s_ - passed_s, 0.0);
   for (double& since_s : since_changes_s_) since_s = std::min(since_s + passed_s, kHour_s);
-  if (drawn_ == step().part) {  // on the way there a picture is more work
+  if (drawn_step() != step_) {
+    count_ = 0;
+    judged_over_s_ = 0.0;
+  } else if (drawn_ == step().part) {  // on the way there a picture is more work
     judged_over_s_ += passed_s;
     if (work_s && count_ < works_s_.size()) works_s_[count_++] = std::clamp(*work_s, 0.0, kLongest_s);
   }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "viewer/pace/pace_ladder.hpp"
@@ -34,19 +36,26 @@ class PaceKeeper {
   /// What is drawn has changed, in size or kind: what was measured is forgotten.
   void settle();
 
+  /// Another part of the same wall gives up so much (PaceLadder::given_up): no more is drawn here. What its own
+  /// pictures would need is not known meanwhile.
+  void hold(std::uint8_t given_up) { held_ = given_up; }
+  /// What it would give up by itself.
+  std::uint8_t given_up() const { return PaceLadder::given_up(ladder_[step_]); }
+
   /// A picture was made, and the one before it began `passed_s` before it. `work_s`: how long it took, without waiting
   /// for the display; null where that was not measured, or says nothing of the next ones, since shaders were compiled.
   void advance(double passed_s, std::optional<double> work_s);
 
-  const PaceStep& step() const { return ladder_[step_]; }
+  const PaceStep& step() const { return ladder_[drawn_step()]; }
   /// The step's, on the way there.
   DrawnPart drawn() const { return drawn_; }
   /// The time that there is for a picture.
-  double picture_s() const { return ladder_.picture_s(step_); }
+  double picture_s() const { return ladder_.picture_s(drawn_step()); }
   /// The median that it has judged last; 0 before.
   double median_s() const { return median_s_; }
 
  private:
+  std::size_t drawn_step() const { return held_ == 0 ? step_ : std::max(step_, ladder_.giving_up(held_)); }
   void judge();
   void learn();
   bool may_change() const;
@@ -55,7 +64,8 @@ class PaceKeeper {
   bool is_picture_step(std::size_t step) const;
 
   PaceLadder ladder_;
-  std::size_t step_;
+  std::size_t step_;  ///< that suits this machine
+  std::uint8_t held_ = 0;
   DrawnPart drawn_;
   std::array<double, 12> saves_{};  ///< of the work of the step before, what is left in each
 

@@ -31,6 +31,18 @@ PaceLadder::PaceLadder(look::Quality wanted, double refresh_s)
   }
 }
 
+std::uint8_t PaceLadder::given_up(const PaceStep& step) {
+  const auto quality = std::ranges::find(kQualities, step.quality) - kQualities.begin();
+  const auto part = step.part == DrawnPart{} ? 0 : std::ranges::find(kParts, step.part) - kParts.begin() + 1;
+  return static_cast<std::uint8_t>(quality + part);
+}
+
+std::size_t PaceLadder::giving_up(std::uint8_t least) const {
+  std::size_t i = 0;
+  while (i + 1 < count_ && given_up(steps_[i]) < least) ++i;
+  return i;
+}
+
 std::size_t PaceLadder::slowest_of(look::Quality quality) const {
   const auto rank_of = [](look::Quality of) { return std::ranges::find(kQualities, of) - kQualities.begin(); };
   std::size_t i = 0;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "engine/look/look.hpp"
 
@@ -48,6 +49,11 @@ class PaceLadder {
   const PaceStep& operator[](std::size_t i) const { return steps_[i]; }
   /// The time that there is for a picture.
   double picture_s(std::size_t i) const { return refresh_s_ * static_cast<double>(steps_[i].refreshes); }
+  /// How much of the picture itself a step gives up: the same number of steps in every ladder, whatever its rates and
+  /// qualities.
+  static std::uint8_t given_up(const PaceStep& step);
+  /// The first step that gives up so much; the last one where none does.
+  std::size_t giving_up(std::uint8_t least) const;
   /// The first step with this quality or a lower one and as few pictures as there may be.
   std::size_t slowest_of(look::Quality quality) const;
 

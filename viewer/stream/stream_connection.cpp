@@ -57,10 +57,11 @@ class StreamConnection::Session {
   }
 
   void send(const wire::Control& control) {
-    asio::post(context_, [this, bytes = wire::encode(control)]() mutable {
-      if (!is_subscribed_) return;
-      unsent_.push_back(std::move(bytes));
-      if (!is_writing_) write(attempt_);
+    asio::post(context_, [this, bytes = wire::encode(control)]() mutable { send_now(std::move(bytes)); });
+  }
+  void send(const wire::Display& display) {
+    asio::post(context_, [this, bytes = wire::encode(display)]() mutable {
+      if (takes_display_) send_now(std::move(bytes));
     });
   }
 
@@ -148,6 +149,12 @@ class StreamConnection::Session {
     read(attempt);
   }
 
+  void send_now(wire::Bytes bytes) {
+    if (!is_subscribed_) return;
+    unsent_.push_back(std::move(bytes));
+    if (!is_writing_) write(attempt_);
+  }
+
   /// Writes what send() has left, one after the other.
   void write(std::uint64_t attempt) {
     is_writing_ = !unsent_.empty();
@@ -188,6 +195,7 @@ class StreamConnection::Session {
           give_up(fmt::format("the daemon at {} ({}) {}", address(), hello->software, *mismatch));
           return false;
         }
+        takes_display_ = hello->takes_display;
       }
       deliver(std::move(**message));
     }
@@ -248,7 +256,8 @@ class StreamConnection::Session {
   // Of the connection's thread alone.
   bool is_subscribed_ = false;
   bool is_writing_ = false;
-  std::deque<wire::Bytes> unsent_;  // Controls
+  bool takes_display_ = false;      // the daemon of the newest Hello
+  std::deque<wire::Bytes> unsent_;  // Controls and Displays
   asio::io_context context_{1};
   tcp::resolver resolver_{context_};
   tcp::socket socket_{context_};
@@ -280,6 +289,9 @@ StreamStatus StreamConnection::status() const {
 }
 void StreamConnection::send(const wire::Control& control) {
   session_->send(control);
+}
+void StreamConnection::send(const wire::Display& display) {
+  session_->send(display);
 }
 void StreamConnection::wait_for_news(Nanoseconds limit) {
   session_->wait_for_news(limit);

@@ -66,6 +66,8 @@ class StreamConnection {
 
   /// Sends a Control, soon. Where there is no connection it is dropped, and no reply comes.
   void send(const wire::Control& control);
+  /// Likewise; to a daemon that does not know it, nothing is sent.
+  void send(const wire::Display& display);
 
   /// Waits until there is something to take(), the status changes, or `limit` has passed.
   void wait_for_news(Nanoseconds limit);

@@ -917,6 +917,32 @@ TEST_F(TcpStreamTest, OtherMachinesGetAStateOfTheSensorsOfTheirOwn) {
   EXPECT_TRUE(turn_until([&] { return !stream_.has_untrusted_clients(); }));
 }
 
+TEST_F(TcpStreamTest, KnowsTheMostThatAPartOfAWallGivesUp) {
+  TestClient left(io_, stream_.local_endpoint());
+  left.send(wire::encode(wire::Subscribe{.sensors = true, .client = ""}));
+  EXPECT_EQ(stream_.given_up(), 0);
+  {
+    RemoteClient right(io_, stream_.local_endpoint());
+    right.send(wire::encode(wire::Subscribe{.sensors = true, .client = ""}));
+    right.send(wire::encode(wire::Display{.given_up = 4}));
+    left.send(wire::encode(wire::Display{.given_up = 1}));
+    ASSERT_TRUE(turn_until([&] { return stream_.given_up() == 4; }));
+    right.send(wire::encode(wire::Display{.given_up = 0}));
+    ASSERT_TRUE(turn_until([&] { return stream_.given_up() == 1; }));
+    right.send(wire::encode(wire::Display{.given_up = 200}));
+    ASSERT_TRUE(turn_until([&] { return stream_.given_up() == 200; }));
+  }
+  EXPECT_TRUE(turn_until([&] { return stream_.given_up() == 1; })) << "what is gone gives up nothing";
+  EXPECT_FALSE(left.closed);
+}
+
+TEST_F(TcpStreamTest, ADisplayBeforeTheSubscriptionEndsTheConnection) {
+  TestClient client(io_, stream_.local_endpoint());
+  client.send(wire::encode(wire::Display{.given_up = 4}));
+  EXPECT_TRUE(turn_until([&] { return client.closed; }));
+  EXPECT_EQ(stream_.given_up(), 0);
+}
+
 TEST_F(TcpStreamTest, OnlyLoopbackIsThisMachine) {
   for (const char* address : {"127.0.0.1", "127.8.9.10", "::1", "::ffff:127.0.0.1"}) {
     EXPECT_TRUE(TcpStreamSettings::is_loopback(address)) << address;

@@ -1,3 +1,4 @@
+#include <array>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -24,6 +25,14 @@ TEST(WireRoundTrip, HelloComesBackAsItWas) {
 
 TEST(WireRoundTrip, AHelloThatRefusesNobodySaysSo) {
   EXPECT_FALSE(decoded<Hello>(encode(Hello{})).refused.has_value());
+}
+
+TEST(WireRoundTrip, WhatAPartOfAWallGivesUpComesBack) {
+  EXPECT_FALSE(decoded<Hello>(encode(Hello{})).takes_display);
+  EXPECT_TRUE(decoded<Hello>(encode(Hello{.takes_display = true})).takes_display);
+  for (const std::uint8_t given_up : std::array<std::uint8_t, 3>{0, 4, 255}) {
+    EXPECT_EQ(decoded<Display>(encode(Display{.given_up = given_up})).given_up, given_up);
+  }
 }
 
 TEST(WireRoundTrip, SubscribeComesBackAsItWas) {
@@ -393,6 +402,7 @@ TEST(WireRoundTrip, HowTheDaemonDoesComesBack) {
   EXPECT_EQ(sensors.refused_clients, 6U);
   EXPECT_EQ(sensors.stuck_clients, 7U);
   EXPECT_EQ(sensors.idle_clients, 8U);
+  EXPECT_EQ(sensors.given_up, 3);
   EXPECT_EQ(sensors.parameters_revision, 21U);
   ASSERT_TRUE(sensors.io_lateness && sensors.tick_lateness);
   EXPECT_EQ(sensors.io_lateness->p50_s, 0.0625);

@@ -422,7 +422,8 @@ inline wire::Sensors sensors() {
                                          .scenes = {{"grass", 0.001953125}, {"fire", 0.0009765625}}},
       .recent_ticks = 36'000,
       .recent_skipped_ticks = 40,
-      .troubles = {"the page cannot be served"}};
+      .troubles = {"the page cannot be served"},
+      .given_up = 3};
 }
 
 inline wire::RawTrace raw_trace() {

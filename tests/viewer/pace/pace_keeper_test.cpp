@@ -1,5 +1,6 @@
 #include "viewer/pace/pace_keeper.hpp"
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -168,6 +169,38 @@ TEST(PaceKeeperTest, TheGrassAndTheMeshesChangeSlowly) {
     before = keeper.drawn();
   }
   EXPECT_LT(before.blades, 0.6F);
+}
+
+TEST(PaceLadderTest, WhatIsGivenUpIsTheSameNumberInEveryLadder) {
+  const std::array ladders{kLadder, PaceLadder(look::Quality::kAuto, 1.0 / 144.0),
+                           PaceLadder(look::Quality::kLow, kRefresh_s)};
+  for (const PaceLadder& ladder : ladders) {
+    for (std::uint8_t least = 0; least < 12; ++least) {
+      const PaceStep& step = ladder[ladder.giving_up(least)];
+      if (least >= PaceLadder::given_up(ladder[0]) && least <= 6) EXPECT_EQ(PaceLadder::given_up(step), least);
+      if (least <= 6 && least >= 2) EXPECT_EQ(step.part, kLadder[kLadder.giving_up(least)].part);
+    }
+  }
+}
+
+TEST(PaceKeeperTest, DrawsNoMoreThanAnotherPartOfTheWall) {
+  PaceKeeper keeper(kLadder, 0);
+  const auto quick = [](double) { return Machine{0.010}; };
+  run_for(keeper, 10.0, quick);
+  keeper.hold(3);
+  run_for(keeper, 600.0, quick);
+  EXPECT_EQ(keeper.step().quality, look::Quality::kLow);
+  EXPECT_EQ(keeper.drawn(), PaceLadder::kParts[0]);
+  EXPECT_EQ(keeper.given_up(), 0) << "nor does it say that it needs this itself";
+  keeper.hold(1);
+  EXPECT_EQ(keeper.step(), kLadder[2]);
+  // Where it is the slower one, it goes further down.
+  keeper.hold(0);
+  run_for(keeper, 70.0, [](double) { return Machine{0.2}; });
+  const std::uint8_t own = keeper.given_up();
+  EXPECT_GE(own, 3);
+  keeper.hold(1);
+  EXPECT_EQ(PaceLadder::given_up(keeper.step()), own);
 }
 
 TEST(PaceKeeperTest, AnotherLadderBeginsWhereThePictureIs) {

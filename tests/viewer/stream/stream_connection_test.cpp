@@ -174,6 +174,21 @@ TEST(StreamConnection, SendsControlsInOrderAndHandsOverTheReplies) {
   ASSERT_TRUE(viewer.wait_until([&] { return viewer.has_new_connection; }));
 }
 
+TEST(StreamConnection, TellsOnlyADaemonThatKnowsItWhatTheWallGivesUp) {
+  for (const bool is_known : {false, true}) {
+    StreamServer server(
+        wire::encode(wire::Hello{.software = "a test", .tick_rate_hz = 60.0, .takes_display = is_known}));
+    Viewer viewer(options_for(server.port()));
+    ASSERT_TRUE(server.wait_for_subscriptions(1));
+    server.send(scenes_named("grass"));
+    ASSERT_TRUE(viewer.wait_until([&] { return !viewer.scenes.empty(); }));  // and so the Hello has come
+    viewer.connection.send(wire::Display{.given_up = 3});
+    viewer.connection.send(wire::Control{});
+    ASSERT_EQ(server.wait_for_controls(1).size(), 1U);
+    EXPECT_EQ(server.given_up(), is_known ? std::optional<std::uint8_t>(3) : std::nullopt);
+  }
+}
+
 TEST(StreamConnection, ShowsTheTokenWithEachSubscription) {
   StreamServer server(kHello);
   StreamOptions options = options_for(server.port());
