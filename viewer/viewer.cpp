@@ -237,7 +237,9 @@ class Viewer::Show {
     step.quality = renderer_->quality();
     if (step == told_) return;
     const std::string text = pace::quality_text(step.quality, step.part, step.refreshes);
-    if (pace_ && pace_->median_s() > 0.0) {
+    if (pace_ && pace_->is_held()) {
+      std::fprintf(stderr, "yuragi-viewer: %s (as another part of the wall)\n", text.c_str());
+    } else if (pace_ && pace_->median_s() > 0.0) {
       std::fprintf(stderr, "yuragi-viewer: %s (a picture took %.0f ms, and there are now %.0f for it)\n", text.c_str(),
                    1e3 * pace_->median_s(), 1e3 * pace_->picture_s());
     } else {

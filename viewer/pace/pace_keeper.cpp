@@ -47,7 +47,7 @@ void PaceKeeper::advance(double passed_s, std::optional<double> work_s) {
   passed_s = std::clamp(passed_s, 0.0, kLongest_s);
   settling_s_ = std::max(settling_s_ - passed_s, 0.0);
   for (double& since_s : since_changes_s_) since_s = std::min(since_s + passed_s, kHour_s);
-  if (drawn_step() != step_) {
+  if (is_held()) {
     count_ = 0;
     judged_over_s_ = 0.0;
   } else if (drawn_ == step().part) {  // on the way there a picture is more work

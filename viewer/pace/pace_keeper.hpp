@@ -39,6 +39,8 @@ class PaceKeeper {
   /// Another part of the same wall gives up so much (PaceLadder::given_up): no more is drawn here. What its own
   /// pictures would need is not known meanwhile.
   void hold(std::uint8_t given_up) { held_ = given_up; }
+  /// Is less drawn than this machine could, for another part of the wall?
+  bool is_held() const { return drawn_step() != step_; }
   /// What it would give up by itself.
   std::uint8_t given_up() const { return PaceLadder::given_up(ladder_[step_]); }
 

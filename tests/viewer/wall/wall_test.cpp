@@ -134,7 +134,7 @@ TEST_F(WallTest, AMonitorThatLeavesAndReturnsIsFoundAgain) {
   EXPECT_EQ(viewer->end(), 0);
 }
 
-TEST_F(WallTest, IsBlackBeforeADaemonAnswersAndShowsWhatItStreamsThen) {
+TEST_F(WallTest, IsBlackBeforeADaemonAnswersAndShowsWhatItStreamsThenAsOtherPartsDo) {
   std::uint16_t port = 0;
   { port = StreamServer({}).port(); }
   const auto viewer = start({"--config", configuration(kTwoHalves), "--connect", "127.0.0.1:" + std::to_string(port)});
@@ -143,7 +143,7 @@ TEST_F(WallTest, IsBlackBeforeADaemonAnswersAndShowsWhatItStreamsThen) {
 
   const pose::Skeleton meadow = test_meadow(30, 6.0);
   wire::FrameEncoder encoder;
-  const StreamServer server(
+  StreamServer server(
       greeting_for(meadow) + frame_of(meadow, test_pose(meadow, 0.0, 0.3, 0.0, 140.0), 1, 0.1, 140.0, encoder), port);
   const auto is_lit = [&](int monitor_x) {
     const ScreenPixels seen = monitors_.pixels();
@@ -151,6 +151,11 @@ TEST_F(WallTest, IsBlackBeforeADaemonAnswersAndShowsWhatItStreamsThen) {
     return (seen.at(monitor_x + kWidth_px / 2, 20) & 0xFFU) > 100;
   };
   EXPECT_TRUE(comes_true([&] { return is_lit(0) && is_lit(kWidth_px); })) << viewer->said();
+
+  // Another part of the wall gives up all that it can, and so does this one.
+  server.send(wire::encode(wire::Sensors{.sensors = {}, .wind = {}, .given_up = 6}));
+  EXPECT_TRUE(comes_true([&] { return viewer->said().find("50 % as wide and high") != std::string::npos; }))
+      << viewer->said();
   EXPECT_EQ(viewer->end(), 0) << viewer->said();
 }
 
