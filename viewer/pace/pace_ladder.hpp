@@ -20,7 +20,7 @@ struct DrawnPart {
 /// One way to draw: what a picture has, and how often there is one.
 struct PaceStep {
   look::Quality quality = look::Quality::kHigh;
-  DrawnPart part;
+  DrawnPart part = {};
   int refreshes = 1;  ///< of the display, from one picture to the next
 
   friend bool operator==(const PaceStep&, const PaceStep&) = default;
