@@ -103,10 +103,10 @@ TEST(PaceKeeperTest, HoldsThePaceOnMachinesOfManySpeedsAndStaysThere) {
     EXPECT_LE(run_for(keeper, 1.5 * kHour_s, same).size(), 2U) << full_s;
     EXPECT_LE(work_s(keeper, machine), 1.05 * keeper.picture_s()) << full_s;
     // Nor has it given up what fits easily.
-    std::size_t i = 0;
-    while (kLadder[i] != keeper.step()) ++i;
-    if (i > 0)
-      EXPECT_GT(machine.work_s(kLadder[i - 1], kLadder[i - 1].part), 0.65 * kLadder.picture_s(i - 1)) << full_s;
+    std::size_t step = 0;
+    while (kLadder[step] != keeper.step()) ++step;
+    if (step == 0) continue;
+    EXPECT_GT(machine.work_s(kLadder[step - 1], kLadder[step - 1].part), 0.65 * kLadder.picture_s(step - 1)) << full_s;
   }
 }
 
