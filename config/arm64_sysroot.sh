@@ -26,7 +26,7 @@ while read -r package; do
     *-dev) packages+=("$package") ;;
   esac
 done < <(config/setup.sh --list)
-wanted="$mirror $suite ${packages[*]}"
+wanted="$mirror $suite ${packages[*]} $(sha256sum <config/arm64_sysroot.sh)" # and what is done with them
 if [ "$(cat "$sysroot/complete" 2>/dev/null)" = "$wanted" ]; then
   exit 0
 fi
@@ -62,6 +62,10 @@ for package in "$apt"/var/cache/apt/archives/*.deb; do
   for file in shlibs symbols; do
     dpkg-deb --ctrl-tarfile "$package" | tar -x -O "./$file" >>"$sysroot/DEBIAN/$file" 2>/dev/null || true # not all have it
   done
+done
+# Links to a place from the root on lead out of the tree: the linker would then take libm.a in place of libm.so.
+find "$sysroot" -type l -lname '/*' | while read -r link; do
+  ln -sfrT "$sysroot$(readlink "$link")" "$link"
 done
 rm -rf "$apt"
 echo "$wanted" >"$sysroot/complete"

@@ -310,8 +310,8 @@ ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file)
   read_evidence(reader, profile);
   profile.revision = reader.text("revision", "");
 
-  static constexpr std::string_view kTransports[] = {"rtu", "tcp"};
-  profile.is_serial = reader.choice("transport", kTransports, "rtu") == 0;
+  static constexpr std::string_view kSerialOrTcp[] = {"rtu", "tcp"};
+  profile.is_serial = reader.choice("transport", kSerialOrTcp, "rtu") == 0;
   read_serial(reader.table("serial", false), profile);
   read_timing(reader.table("timing", false), profile);
   profile.block_read = reader.flag("block_read", true);
