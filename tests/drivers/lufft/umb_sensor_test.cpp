@@ -89,7 +89,7 @@ TEST(Umb, SaysWhyItHasNoWind) {
        {std::pair('\x55', "the weather does not let it"), std::pair('\x28', "not ready yet"),
         std::pair('\x24', "does not measure wind"), std::pair('\x2A', "check the device")}) {
     ScriptedUmb umb;
-    umb.far_end.on_request = [&umb, &status = status](const std::string&) { umb.far_end.send(no_wind(status)); };
+    umb.far_end.on_request = [&umb, code = status](const std::string&) { umb.far_end.send(no_wind(code)); };
     umb.run(8s);
     EXPECT_TRUE(umb.sink.readings.empty());
     EXPECT_GE(umb.sink.count(decode::Refusal::kInvalid), 7);
