@@ -29,7 +29,7 @@ TEST(WireRoundTrip, AHelloThatRefusesNobodySaysSo) {
 
 TEST(WireRoundTrip, WhatAPartOfAWallGivesUpComesBack) {
   EXPECT_FALSE(decoded<Hello>(encode(Hello{})).takes_display);
-  EXPECT_TRUE(decoded<Hello>(encode(Hello{.takes_display = true})).takes_display);
+  EXPECT_TRUE(decoded<Hello>(encode(Hello{.software = "", .takes_display = true})).takes_display);
   for (const std::uint8_t given_up : std::array<std::uint8_t, 3>{0, 4, 255}) {
     EXPECT_EQ(decoded<Display>(encode(Display{.given_up = given_up})).given_up, given_up);
   }
