@@ -85,7 +85,7 @@ const std::vector<Parameter> kSignalKParameters = signalk_parameters();
 
 /// What a JSON text cannot hold as it is.
 bool needs_escape(char c) {
-  return c == '"' || c == '\\' || (c >= 0 && c < ' ');
+  return c == '"' || c == '\\' || static_cast<unsigned char>(c) < ' ';
 }
 
 /// What a line of HTTP holds between blanks.

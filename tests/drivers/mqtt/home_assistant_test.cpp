@@ -163,7 +163,8 @@ TEST(HomeAssistant, StandsAnyBytes) {
     const auto devices = announced_anemometers(announced_in(kEsphomeSpeedTopic, hurt), "");
     found += devices.empty() ? 0 : 1;
     for (const sensor::FoundDevice& device : devices)
-      EXPECT_TRUE(std::ranges::none_of(device.what + device.trouble, [](char c) { return c >= 0 && c < ' '; }));
+      EXPECT_TRUE(std::ranges::none_of(device.what + device.trouble,
+                                       [](char c) { return static_cast<unsigned char>(c) < ' '; }));
   }
   EXPECT_GT(found, 10'000);
 }
