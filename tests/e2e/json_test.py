@@ -19,7 +19,7 @@ from programs import HANG_S, Program
 BIN, ROOT = (os.path.abspath(word) for word in (sys.argv.pop(1), sys.argv.pop(1)))
 YURAGI = os.path.join(BIN, "yuragi")
 sys.path.insert(0, os.path.join(ROOT, "config", "package"))
-from program_help import Help  # pylint: disable=wrong-import-position
+import program_help  # pylint: disable=wrong-import-position
 
 PASSWORD = "hunter2-correct-horse"
 CONFIG = f"""\
@@ -142,7 +142,7 @@ class Json(unittest.TestCase):
                       '[[sensor]]\nname = "made-up"\ndriver = "synthetic"\n')
         cls.places = {"ALONE": alone, "WIND": os.path.join(cls.folder, "wind.windlog"), "PAGE": os.path.join(cls.folder, "page.html"), "ADDRESS": cls.address, "CONFIG": cls.config,
                       "MODBUS": slave.wait_for(r"(127\.0\.0\.1:\d+)").group(1)}
-        cls.program = Help(YURAGI)
+        cls.program = program_help.Help(program_help.Program(YURAGI))
         cls.commands = {words_of(command): command for command in leaves(cls.program)}
 
     def test_every_command_has_it_or_prints_no_table(self):
