@@ -5,6 +5,9 @@
 #include <chrono>
 #include <cstdio>
 #include <optional>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "engine/base/address.hpp"
 #include "viewer/gl/dimmer.hpp"
@@ -237,14 +240,14 @@ class Viewer::Show {
     step.quality = renderer_->quality();
     if (step == told_) return;
     const std::string text = pace::quality_text(step.quality, step.part, step.refreshes);
+    std::string reason;
     if (pace_ && pace_->is_held()) {
-      std::fprintf(stderr, "yuragi-viewer: %s (as another part of the wall)\n", text.c_str());
+      reason = " (as another part of the wall)";
     } else if (pace_ && pace_->median_s() > 0.0) {
-      std::fprintf(stderr, "yuragi-viewer: %s (a picture took %.0f ms, and there are now %.0f for it)\n", text.c_str(),
-                   1e3 * pace_->median_s(), 1e3 * pace_->picture_s());
-    } else {
-      std::fprintf(stderr, "yuragi-viewer: %s\n", text.c_str());
+      reason = fmt::format(" (a picture took {:.0f} ms, and there are now {:.0f} for it)", 1e3 * pace_->median_s(),
+                           1e3 * pace_->picture_s());
     }
+    std::fprintf(stderr, "yuragi-viewer: %s%s\n", text.c_str(), reason.c_str());
     told_ = step;
   }
 

@@ -16,7 +16,7 @@ enum class SimdRow : std::uint8_t {};
 /// The row that every machine of the kind runs.
 inline constexpr SimdRow kBaseSimdRow{0};
 
-#define YURAGI_COUNT_SIMD_ROW(name, printed, runnable) +1
+#define YURAGI_COUNT_SIMD_ROW(name, printed, runnable) +1  // NOLINT(bugprone-macro-parentheses): a summand
 inline constexpr std::size_t kSimdRowCount = 0 YURAGI_SIMD_ROWS(YURAGI_COUNT_SIMD_ROW);
 #undef YURAGI_COUNT_SIMD_ROW
 

@@ -41,11 +41,11 @@ if [ ! -e "$tree/etc/os-release" ]; then
   sed -i 's/^deb \[signed-by="[^"]*"\]/deb/' "$tree/etc/apt/sources.list"
 fi
 cp --remove-destination /etc/resolv.conf "$tree/etc/resolv.conf"
-mkdir -p "$tree/work"
-[ -d "$tree/work/yuragi" ] || git clone -q --no-hardlinks "$project" "$tree/work/yuragi"
-git -C "$tree/work/yuragi" fetch -q "$project" HEAD
-git -C "$tree/work/yuragi" reset -q --hard FETCH_HEAD
-[ ! -d "$project/../shared/data" ] || { mkdir -p "$tree/work/shared" && cp -r "$project/../shared/data" "$tree/work/shared"; }
+mkdir -p "$tree/src"
+[ -d "$tree/src/yuragi" ] || git clone -q --no-hardlinks "$project" "$tree/src/yuragi"
+git -C "$tree/src/yuragi" fetch -q "$project" HEAD
+git -C "$tree/src/yuragi" reset -q --hard FETCH_HEAD
+[ ! -d "$project/../shared/data" ] || { mkdir -p "$tree/src/shared" && cp -r "$project/../shared/data" "$tree/src/shared"; }
 
 # Also ends what a failed step has left running.
 mounted=()
@@ -67,7 +67,7 @@ failed=0
 step() {
   local began=$SECONDS
   if chroot "$tree" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 TERM=dumb \
-    bash -c "cd /work/yuragi && $2" >"$tree.$1.log" 2>&1 </dev/null; then
+    bash -c "cd /src/yuragi && $2" >"$tree.$1.log" 2>&1 </dev/null; then
     result="ok ($((SECONDS - began)) s)"
   else
     result="FAILED ($((SECONDS - began)) s)"
@@ -81,7 +81,7 @@ step setup 'config/setup.sh'
 row="| $name | $result"
 step demo 'rm -f demo.png && config/demo.sh 8 && test -s demo.png'
 built=$(sed -n 's/^demo: built in //p' "$tree.demo.log")
-warnings=$(grep -c 'warning:' "$tree/work/yuragi/build/demo.log" || true)
+warnings=$(grep -c 'warning:' "$tree/src/yuragi/build/demo.log" || true)
 row+=" | ${built:-FAILED}, $warnings warnings | $result"
 step setup-test 'config/setup.sh --test'
 row+=" | $result"

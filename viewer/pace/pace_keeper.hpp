@@ -45,7 +45,7 @@ class PaceKeeper {
   std::uint8_t given_up() const { return PaceLadder::given_up(ladder_[step_]); }
 
   /// A picture was made, and the one before it began `passed_s` before it. `work_s`: how long it took, without waiting
-  /// for the display; null where that was not measured, or says nothing of the next ones, since shaders were compiled.
+  /// for the display; null where that was not measured, or is no measure of the next ones, since shaders were compiled.
   void advance(double passed_s, std::optional<double> work_s);
 
   const PaceStep& step() const { return ladder_[drawn_step()]; }
@@ -69,7 +69,7 @@ class PaceKeeper {
   std::size_t step_;  ///< that suits this machine
   std::uint8_t held_ = 0;
   DrawnPart drawn_;
-  std::array<double, 12> saves_{};  ///< of the work of the step before, what is left in each
+  std::array<double, PaceLadder::kMostSteps> saves_{};  ///< of the work of the step before, what is left in each
 
   std::array<double, 128> works_s_{};  ///< since the last judgement
   std::size_t count_ = 0;

@@ -9,6 +9,11 @@ constexpr double kSlowestDisplay_s = 1.0 / 20.0;
 constexpr double kQuickestDisplay_s = 1.0 / 500.0;
 constexpr std::array kQualities{look::Quality::kHigh, look::Quality::kMedium, look::Quality::kLow};
 
+/// 0 is the best of kQualities.
+auto rank_of(look::Quality quality) {
+  return std::ranges::find(kQualities, quality) - kQualities.begin();
+}
+
 }  // namespace
 
 PaceLadder::PaceLadder(look::Quality wanted, double refresh_s)
@@ -32,9 +37,8 @@ PaceLadder::PaceLadder(look::Quality wanted, double refresh_s)
 }
 
 std::uint8_t PaceLadder::given_up(const PaceStep& step) {
-  const auto quality = std::ranges::find(kQualities, step.quality) - kQualities.begin();
   const auto part = step.part == DrawnPart{} ? 0 : std::ranges::find(kParts, step.part) - kParts.begin() + 1;
-  return static_cast<std::uint8_t>(quality + part);
+  return static_cast<std::uint8_t>(rank_of(step.quality) + part);
 }
 
 std::size_t PaceLadder::giving_up(std::uint8_t least) const {
@@ -44,7 +48,6 @@ std::size_t PaceLadder::giving_up(std::uint8_t least) const {
 }
 
 std::size_t PaceLadder::slowest_of(look::Quality quality) const {
-  const auto rank_of = [](look::Quality of) { return std::ranges::find(kQualities, of) - kQualities.begin(); };
   std::size_t i = 0;
   while (i + 1 < count_ &&
          (rank_of(steps_[i].quality) < rank_of(quality) || steps_[i].refreshes < steps_[count_ - 1].refreshes))

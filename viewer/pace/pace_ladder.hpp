@@ -34,6 +34,7 @@ struct PaceStep {
 /// Allocates nothing. Thread-safe: no.
 class PaceLadder {
  public:
+  static constexpr std::size_t kMostSteps = 12;
   static constexpr double kFewestPerSecond = 24.0;
   /// Below quality low. Each is at least 1 / 1.5 of the work of the one before. With fewer pixels than the last a
   /// meadow looks coarse: a machine that is slower still makes fewer pictures.
@@ -60,7 +61,7 @@ class PaceLadder {
   friend bool operator==(const PaceLadder&, const PaceLadder&) = default;
 
  private:
-  std::array<PaceStep, 12> steps_{};
+  std::array<PaceStep, kMostSteps> steps_{};
   std::size_t count_ = 0;
   double refresh_s_;
 };

@@ -32,11 +32,6 @@ struct WallWindow {
   GLuint vertex_array = 0;              // goes with its context
 };
 
-/// Can one context wait for another without the processor? From OpenGL 3.2 on.
-bool has_fences() {
-  return epoxy_gl_version() >= 32 || epoxy_has_gl_extension("GL_ARB_sync");
-}
-
 std::string missing_text(const std::string& wanted) {
   const std::string what = wanted.empty() ? "there is no monitor" : "there is no monitor \"" + wanted + "\"";
   return "output.window.monitor: " + what + "; there are:\n" + monitors_text();
@@ -59,6 +54,7 @@ struct Wall::State {
     }
     glfwMakeContextCurrent(first);
     pass.emplace();
+    has_fences = epoxy_gl_version() >= 32 || epoxy_has_gl_extension("GL_ARB_sync");
     glfwSetMonitorCallback([](GLFWmonitor*, int) { have_monitors_changed = true; });
     place();
   }
@@ -122,6 +118,7 @@ struct Wall::State {
   output::Output output;
   std::vector<WallWindow> windows;
   std::optional<WallPass> pass;
+  bool has_fences = false;  // one context can wait for another without the processor: from OpenGL 3.2 on
   output::Size size{.width_px = 1280, .height_px = 720};
   double looked_s = -std::numeric_limits<double>::infinity();
 };
@@ -155,7 +152,7 @@ double Wall::picture_interval_s() const {
 void Wall::show(const gl::RenderTarget& target, bool is_marked) {
   WallPass& pass = *state_->pass;
   pass.take(target);
-  const GLsync is_taken = has_fences() ? glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0) : nullptr;
+  const GLsync is_taken = state_->has_fences ? glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0) : nullptr;
   if (is_taken != nullptr) {
     glFlush();
   } else {
