@@ -15,7 +15,6 @@ namespace {
 
 constexpr int kRows = 256;  // the shader has the same number
 
-constexpr int kColumnsAPicture = 4;
 constexpr int kColumnsInAHurry = 64;  // while the sky changes
 
 constexpr float kFilter_rad = 0.02F;   // columns aside that a filter reaches into
@@ -62,17 +61,25 @@ void CloudMap::draw_columns(const Map& map, int first, int count) {
   glDisable(GL_SCISSOR_TEST);
 }
 
-void CloudMap::draw_missing(std::size_t strip) {
-  if (!missing_[strip]) return;
-  missing_.reset(strip);
-  draw_columns(maps_.at(to_), static_cast<int>(strip) * kStripColumns, kStripColumns);
+/// Those of the strips from `first` up to `end` that are missing.
+void CloudMap::draw_missing(std::size_t first, std::size_t end) {
+  while (first < end) {
+    std::size_t next = first;
+    while (next < end && missing_[next]) missing_.reset(next++);
+    if (next > first) {
+      draw_columns(maps_.at(to_), static_cast<int>(first) * kStripColumns,
+                   static_cast<int>(next - first) * kStripColumns);
+    }
+    first = next + 1;
+  }
 }
 
 void CloudMap::draw_missing(const meshes::Arc& bearings) {
   constexpr float kStrip_rad = glm::two_pi<float>() / static_cast<float>(kStrips);
   const auto first = static_cast<std::size_t>(bearings.from_rad / kStrip_rad);
-  const auto last = static_cast<std::size_t>((bearings.from_rad + bearings.size_rad) / kStrip_rad);
-  for (std::size_t strip = first; strip <= last; ++strip) draw_missing(strip % kStrips);
+  const auto end = static_cast<std::size_t>((bearings.from_rad + bearings.size_rad) / kStrip_rad) + 1;
+  draw_missing(std::min(first, kStrips), std::min(end, kStrips));
+  if (end > kStrips) draw_missing(0, std::min(end - kStrips, kStrips));  // around the map's edge
 }
 
 void CloudMap::advance(const light::Light& light, const gl::GlTexture& noise, const meshes::View& view) {
@@ -97,11 +104,12 @@ void CloudMap::advance(const light::Light& light, const gl::GlTexture& noise, co
     next_ = to_ == 0 ? 1 : 0;
     drawn_ = 0;
   }
-  const int wanted = is_nearly(maps_.at(to_).sky, now_, 0.015F) ? kColumnsAPicture : kColumnsInAHurry;
+  const int wanted = is_nearly(maps_.at(to_).sky, now_, 0.015F) ? kStripColumns : kColumnsInAHurry;
   if (missing_.any()) {
     const float drifted_rad = kDriftedAside * glm::distance(maps_.at(to_).sky.drift, now_.drift);
     draw_missing(meshes::widened(meshes::bearings_of(view, meshes::kMirrorMargin), kFilter_rad + drifted_rad));
-    for (int i = 0; i < wanted && missing_.any(); i += kStripColumns) draw_missing(swept_++);  // for views to come
+    const std::size_t swept = std::min(swept_ + static_cast<std::size_t>(wanted / kStripColumns), kStrips);
+    draw_missing(std::exchange(swept_, swept), swept);  // for views to come
     return;
   }
   if (drawn_ == 0) maps_.at(next_).sky = now_;

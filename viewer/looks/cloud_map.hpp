@@ -41,12 +41,12 @@ class CloudMap {
     gl::GlTexture texture;
     Sky sky;
   };
-  static constexpr int kColumns = 2048;  // the shader has the same number
-  static constexpr int kStripColumns = 16;
+  static constexpr int kColumns = 2048;    // the shader has the same number
+  static constexpr int kStripColumns = 4;  // so many a picture, while the sky stays as it is
   static constexpr std::size_t kStrips = kColumns / kStripColumns;
 
   static Sky sky_of(const light::Light& light);
-  void draw_missing(std::size_t strip);
+  void draw_missing(std::size_t first, std::size_t end);
   void draw_missing(const meshes::Arc& bearings);
   void draw_columns(const Map& map, int first, int count);
 

@@ -7,18 +7,20 @@ namespace yuragi::viewer::pace {
 namespace {
 
 constexpr double kJudgeWhileSettling_s = 1.0;
-constexpr std::size_t kFewPictures = 5;    // are judged only when they are all that there is for kJudge_s
-constexpr double kLongest_s = 2.0;         // a picture that took longer was held up by something else
-constexpr double kTooLong = 1.05;          // of the time that there is
-constexpr double kExpected = 0.7;          // of the work before, with the next step: until it is measured
-constexpr double kMostSaved = 0.3;         // what a measurement is believed
+constexpr std::size_t kFewPictures = 5;  // are judged only when they are all that there is for kJudge_s
+constexpr double kLongest_s = 2.0;       // a picture that took longer was held up by something else
+constexpr double kTooLong = 1.05;        // of the time that there is
+constexpr double kExpected = 0.7;        // of the work before, with the next step: until it is measured
+constexpr double kMostSaved = 0.3;       // what a measurement is believed
+constexpr double kSavesNothing = 0.95;   // of the work before, or more
+constexpr double kWarming_s = 1.0;       // what drivers prepare at first use makes pictures slow that are not so later
 constexpr double kBladesPerSecond = 0.08;  // of all; of the coarseness, as much
 
 }  // namespace
 
 PaceKeeper::PaceKeeper(const PaceLadder& ladder, std::size_t first)
     : ladder_(ladder), step_(std::min(first, ladder.size() - 1)), drawn_(ladder[step_].part) {
-  saves_.fill(kExpected);
+  settle();
 }
 
 void PaceKeeper::set_ladder(const PaceLadder& ladder) {
@@ -36,8 +38,10 @@ void PaceKeeper::set_ladder(const PaceLadder& ladder) {
 
 void PaceKeeper::settle() {
   settling_s_ = kSettling_s;
+  warming_s_ = kWarming_s;
   saves_.fill(kExpected);
   change_.reset();
+  worthwhile_step_ = step_;
   count_ = 0;
   judged_over_s_ = 0.0;
   spare_s_ = 0.0;
@@ -46,11 +50,12 @@ void PaceKeeper::settle() {
 void PaceKeeper::advance(double passed_s, std::optional<double> work_s) {
   passed_s = std::clamp(passed_s, 0.0, kLongest_s);
   settling_s_ = std::max(settling_s_ - passed_s, 0.0);
+  warming_s_ = std::max(warming_s_ - passed_s, 0.0);
   for (double& since_s : since_changes_s_) since_s = std::min(since_s + passed_s, kHour_s);
   if (is_held()) {
     count_ = 0;
     judged_over_s_ = 0.0;
-  } else if (drawn_ == step().part) {  // on the way there a picture is more work
+  } else if (warming_s_ == 0.0 && drawn_ == step().part) {  // on the way there a picture is more work
     judged_over_s_ += passed_s;
     if (work_s && count_ < works_s_.size()) works_s_[count_++] = std::clamp(*work_s, 0.0, kLongest_s);
   }
@@ -74,9 +79,7 @@ void PaceKeeper::judge() {
 
   if (median_s_ > kTooLong * picture_s()) {
     spare_s_ = 0.0;
-    std::size_t to = step_;
-    while (to + 1 < ladder_.size() && (to == step_ || expected_s(to) > ladder_.picture_s(to))) ++to;
-    if (to != step_ && may_change()) go_to(to);
+    if (const std::size_t to = least_late(); to != step_ && may_change()) go_to(to);
     return;
   }
   const bool has_room = step_ > 0 && expected_s(step_ - 1) <= ladder_.picture_s(step_ - 1);
@@ -86,6 +89,7 @@ void PaceKeeper::judge() {
 
 /// What the step to here has saved, or cost. Of several steps at once each has done as much.
 void PaceKeeper::learn() {
+  if (median_s_ <= kTooLong * picture_s()) worthwhile_step_ = step_;
   if (!change_) return;
   const auto [low, high] = std::minmax(change_->from, step_);
   const double ratio = step_ > change_->from ? median_s_ / change_->median_s : change_->median_s / median_s_;
@@ -94,7 +98,19 @@ void PaceKeeper::learn() {
   for (std::size_t i = low + 1; i <= high; ++i) {
     if (is_picture_step(i)) saves_[i] = std::clamp(std::pow(ratio, 1.0 / pictures), kMostSaved, 1.0);
   }
+  if (step_ < change_->from || ratio < kSavesNothing) worthwhile_step_ = step_;
   change_.reset();
+}
+
+/// The first step in which pictures are expected in time; where there is none, the first that is as little late as can
+/// be. Steps by which nothing was saved are given back.
+std::size_t PaceKeeper::least_late() const {
+  const auto late = [&](std::size_t step) { return expected_s(step) / ladder_.picture_s(step); };
+  std::size_t best = std::min(worthwhile_step_, step_);
+  for (std::size_t i = best; i < ladder_.size() && late(best) > 1.0; ++i) {
+    if (late(i) < kSavesNothing * late(best)) best = i;
+  }
+  return best;
 }
 
 bool PaceKeeper::may_change() const {

@@ -16,9 +16,10 @@ namespace yuragi::viewer::pace {
 /// It judges the median of the pictures of kJudge_s, so that one slow picture changes nothing. Where they take too
 /// long, it goes down at once to the first step in which they are expected to fit; where they would leave room in the
 /// step above for kSpare_s, one up. A step of the picture is expected to save 30 %, until it has been measured; so a
-/// step that was too much is tried again only when the machine has become quicker. There are at most two changes in an
-/// hour, but as many as it needs in the first kSettling_s, when the machine's speed is not known, and after settle().
-/// The grass and the meshes change slowly, so that no blade comes or goes at once.
+/// step that was too much is tried again only when the machine has become quicker, and one that saves nothing is given
+/// back: the machine is late for another reason. The first second is not judged, in which drivers still prepare. There
+/// are at most two changes in an hour, but as many as it needs in the first kSettling_s, when the machine's speed is
+/// not known, and after settle(). The grass and the meshes change slowly, so that no blade comes or goes at once.
 ///
 /// Pure: times are parameters. Allocates nothing. Thread-safe: no.
 class PaceKeeper {
@@ -60,13 +61,15 @@ class PaceKeeper {
   std::size_t drawn_step() const { return held_ == 0 ? step_ : std::max(step_, ladder_.giving_up(held_)); }
   void judge();
   void learn();
+  std::size_t least_late() const;
   bool may_change() const;
   void go_to(std::size_t step);
   double expected_s(std::size_t step) const;
   bool is_picture_step(std::size_t step) const;
 
   PaceLadder ladder_;
-  std::size_t step_;  ///< that suits this machine
+  std::size_t step_;                 ///< that suits this machine
+  std::size_t worthwhile_step_ = 0;  ///< the last step that has saved something, or in which pictures were in time
   std::uint8_t held_ = 0;
   DrawnPart drawn_;
   std::array<double, PaceLadder::kMostSteps> saves_{};  ///< of the work of the step before, what is left in each
@@ -77,6 +80,7 @@ class PaceKeeper {
   double judged_over_s_ = 0.0;
   double spare_s_ = 0.0;  ///< so long has there been room in the step above
   double settling_s_ = kSettling_s;
+  double warming_s_ = 0.0;
   std::array<double, 2> since_changes_s_{kHour_s, kHour_s};  ///< the last one first
 
   struct Change {

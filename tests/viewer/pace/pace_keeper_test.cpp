@@ -119,6 +119,31 @@ TEST(PaceKeeperTest, KnowsAVerySlowMachineWithinSeconds) {
   EXPECT_EQ(keeper.step(), kLadder[kLadder.size() - 1]);
 }
 
+TEST(PaceKeeperTest, GivesNothingUpThatSavesNothing) {
+  for (const double work_s : {0.040, 0.060, 0.300}) {
+    PaceKeeper keeper(kLadder, 0);
+    for (double now_s = 0.0; now_s < 2.0 * kHour_s; now_s += work_s) {
+      keeper.advance(work_s, work_s);
+      if (now_s > PaceKeeper::kSettling_s) {
+        ASSERT_EQ(keeper.step(), kLadder[1]) << now_s;
+      }
+    }
+  }
+  // Where only what is below quality low saves nothing, it is drawn in that.
+  PaceKeeper keeper(kLadder, 3);
+  const auto machine = [](double) { return Machine{.full_s = 0.12, .fixed = 1.0}; };
+  run_for(keeper, PaceKeeper::kSettling_s, machine);
+  EXPECT_EQ(keeper.step(), kLadder[3]);
+  EXPECT_TRUE(run_for(keeper, 2.0 * kHour_s, machine).empty());
+}
+
+TEST(PaceKeeperTest, DoesNotJudgeWhatADriverPreparesAtFirstUse) {
+  PaceKeeper keeper(kLadder, 0);
+  const std::vector<Change> changes =
+      run_for(keeper, 60.0, [](double now_s) { return Machine{now_s < 0.9 ? 0.07 : 0.014}; });
+  EXPECT_TRUE(changes.empty());
+}
+
 TEST(PaceKeeperTest, ASlowPictureNowAndThenChangesNothing) {
   PaceKeeper keeper(kLadder, 0);
   int picture = 0;
