@@ -269,6 +269,18 @@ function(yuragi_add_to_ctest name parts)
   endforeach()
 endfunction()
 
+# yuragi_tool(NAME SOURCES ... LINK ...): a program by which people look at something, and which no test runs: built without sanitizers,
+# and without optimization, for what takes time is in the rooms that it links.
+function(yuragi_tool name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE yuragi_flags ${ARG_LINK})
+  target_compile_options(${name} PRIVATE ${YURAGI_UNOPTIMIZED})
+  if(YURAGI_SANITIZE)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+  endif()
+endfunction()
+
 # yuragi_join(NAME TARGET...): with YURAGI_JOIN_ROOMS, compiles these rooms and programs as one file, which parses each library's
 # headers and generates the code of its inline functions once instead of once a room. Each target stays, as it is linked, with an
 # empty source. All must be optimised alike. A source with compile properties of its own stays in its target. yuragi_unity_groups

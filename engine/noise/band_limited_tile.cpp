@@ -33,10 +33,7 @@ NoiseTile2 without_waves_from(double end, const NoiseTile2& base, fft::RealFft& 
 
   // There and back multiplies by the number of samples.
   const Standard scale{0.0, 1.0 / static_cast<double>(base.values.size())};
-  NoiseTile2 tile{base.size, {}};
-  tile.values.reserve(base.values.size());
-  for (const double sample : fft.samples()) tile.values.push_back(on_grid(sample, scale));
-  return tile;
+  return {base.size, values_on_grid(fft.samples(), scale)};
 }
 
 }  // namespace

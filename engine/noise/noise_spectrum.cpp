@@ -1,5 +1,6 @@
 #include "engine/noise/noise_spectrum.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -146,6 +147,12 @@ Standard standard_of(std::span<const double> samples) noexcept {
   double sum_squares = 0.0;
   for (const double sample : samples) sum_squares += (sample - mean) * (sample - mean);
   return {mean, 1.0 / std::sqrt(sum_squares / count)};
+}
+
+std::vector<float> values_on_grid(std::span<const double> samples, Standard standard) {
+  std::vector<float> values(samples.size());
+  std::ranges::transform(samples, values.begin(), [&](double sample) { return on_grid(sample, standard); });
+  return values;
 }
 
 }  // namespace yuragi::noise

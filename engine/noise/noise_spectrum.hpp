@@ -53,6 +53,9 @@ inline float on_grid(double sample, Standard standard) noexcept {
   return static_cast<float>(((sample - standard.mean) * standard.scale + kRound) - kRound);
 }
 
+/// All samples of a tile, standardised.
+std::vector<float> values_on_grid(std::span<const double> samples, Standard standard);
+
 /// Walks over the rows of a half spectrum (all axes but the first), each with the row where its mirror images stand.
 struct SpectrumRow {
   std::size_t index;

@@ -10,12 +10,7 @@ std::vector<float> synthesise(int dims, const NoiseSpec& spec) {
   fft::RealFft fft(dims, spec.size);
   fill_spectrum(fft, spec);
   fft.inverse();
-
-  const Standard standard = standard_of(fft.samples());
-  std::vector<float> values;
-  values.reserve(fft.samples().size());
-  for (const double sample : fft.samples()) values.push_back(on_grid(sample, standard));
-  return values;
+  return values_on_grid(fft.samples(), standard_of(fft.samples()));
 }
 
 }  // namespace

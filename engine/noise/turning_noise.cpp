@@ -14,11 +14,7 @@ namespace {
 /// A variance of exactly 1, by what the samples themselves have.
 NoiseTile2 tile_of(fft::RealFft& fft) {
   fft.inverse();
-  const Standard standard = standard_of(fft.samples());
-  NoiseTile2 tile{fft.size(), {}};
-  tile.values.reserve(fft.samples().size());
-  for (const double sample : fft.samples()) tile.values.push_back(on_grid(sample, standard));
-  return tile;
+  return {fft.size(), values_on_grid(fft.samples(), standard_of(fft.samples()))};
 }
 
 }  // namespace

@@ -195,7 +195,7 @@ name = "roof is silent"
 sensor = "roof"
 after = 1
 end_after = 1
-command = 'echo "$YURAGI_ALERT_STATE: $YURAGI_ALERT_MESSAGE" >> {self.told}'
+command = 'echo "$YURAGI_ALERT_STATE: $YURAGI_ALERT_MESSAGE" >> {self.told}; echo "$YURAGI_ALERT_STATE has been written"'
 webhook = "http://127.0.0.1:{webhook.server_port}/hooks/s3cret"
 """, port)
         with self.daemon() as daemon:
@@ -209,6 +209,7 @@ webhook = "http://127.0.0.1:{webhook.server_port}/hooks/s3cret"
             with self.sensor(port):
                 daemon.wait_for(r"alert roof is silent: ended: sensor roof is live again")
                 ended = webhook.next()
+                daemon.wait_for("ended has been written")
             self.assertEqual(ended["state"], "ended")
             daemon.end()
             self.assertNotIn("s3cret", daemon.text())

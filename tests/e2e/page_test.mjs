@@ -206,13 +206,15 @@ test("one button hides all scenes, and shows them again", { timeout: 2 * HANG_MS
   const page = await open(url);
   await page.getByRole("switch", { name: /lawn/ }).waitFor();
   await page.selectOption("#fade", "0");
-  const shown = () => page.$$eval("#scenes [role=switch]", (all) => all.map((one) => one.checked));
+  /** The button's word follows the first scene, the other one may come later. */
+  const waitForAll = (checked) => page.waitForFunction((checked) =>
+    [...document.querySelectorAll("#scenes [role=switch]")].every((one) => one.checked === checked), checked);
   await page.getByRole("button", { name: "Hide all" }).click();
   await page.getByRole("button", { name: "Show all" }).waitFor();
-  assert.deepEqual(await shown(), [false, false]);
+  await waitForAll(false);
   await page.getByRole("button", { name: "Show all" }).click();
   await page.getByRole("button", { name: "Hide all" }).waitFor();
-  assert.deepEqual(await shown(), [true, true]);
+  await waitForAll(true);
   await page.context().close();
 });
 

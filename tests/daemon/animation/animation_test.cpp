@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/sensing/sensor_hub.hpp"
 #include "engine/pose/pose_arrays.hpp"
 #include "engine/pose/pose_hash.hpp"
+#include "tests/support/gusty_wind.hpp"
 #include "tests/support/stroke_run.hpp"
 
 namespace yuragi::daemon::animation {
@@ -29,7 +29,7 @@ settings::Config installation(const std::string& first, const std::string& secon
 }
 
 Animation animation_of(const settings::Config& config) {
-  return {config, sensing::make_gust_noise(config)};
+  return {config, shared_gusts()};
 }
 
 wire::Frame shown_by(Animation& animation) {

@@ -8,6 +8,7 @@
 
 #include "daemon/sensing/sensor_hub.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
+#include "tests/support/gusty_wind.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -98,7 +99,7 @@ class FallbackRecordingTest : public ::testing::Test {
 
 TEST_F(FallbackRecordingTest, PlaysWhileEverySensorIsSilentAndEndsWhenOneIsLiveAgain) {
   std::vector<double> recorded;
-  SensorHub hub(config_, clock_, make_gust_noise(config_),
+  SensorHub hub(config_, clock_, shared_gusts(),
                 [&](std::size_t, const wind::WindReading& reading) { recorded.push_back(reading.speed_m_s); });
   is_sending = true;
   ASSERT_TRUE(tick_until(hub, [&] { return last_.u_m_s > 11.0; })) << "the sensors' wind";
@@ -127,7 +128,7 @@ TEST_F(FallbackRecordingTest, PlaysWhileEverySensorIsSilentAndEndsWhenOneIsLiveA
 TEST_F(FallbackRecordingTest, GetsTheCalibrationOfTheSensorThatWasRecorded) {
   config_.sensors[1].name = "mast";
   config_.sensors[1].calibration.gain = 2.0;
-  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  SensorHub hub(config_, clock_, shared_gusts());
   ASSERT_TRUE(tick_until(hub, [&] { return plays(hub); }));
   EXPECT_EQ(hub.status().at(2).speed_m_s, 8.0);
 }
@@ -138,14 +139,14 @@ TEST_F(FallbackRecordingTest, ASpikeThatWasRecordedMovesNothing) {
   for (std::int64_t i = 0; i < 1500; ++i) readings.push_back(test::reading_at(20 * i, i % 40 == 39 ? 60.0 : 4.0));
   std::filesystem::remove(file());
   test::write_session(file(), readings, "mast");
-  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  SensorHub hub(config_, clock_, shared_gusts());
   ASSERT_TRUE(tick_until(hub, [&] { return plays(hub) && hub.status()[2].readings > 400; }));
   EXPECT_LT(hub.status()[2].speed_m_s, 5.0);
   EXPECT_LT(largest_step_m_s_, 0.8);
 }
 
 TEST_F(FallbackRecordingTest, ThatVanishedGivesWayToTheDefaultWind) {
-  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  SensorHub hub(config_, clock_, shared_gusts());
   std::filesystem::remove(file());
   const MonoTime begun = clock_.now().mono;
   ASSERT_TRUE(tick_until(hub, [&] { return clock_.now().mono - begun > 15s; }));
@@ -161,7 +162,7 @@ TEST_F(FallbackRecordingTest, ThatCannotBePlayedIsAMistakeOfTheConfiguration) {
   const auto complaint = [&](const std::string& text) -> std::string {
     try {
       const settings::Config config = settings::parse_config(text, "wall.toml");
-      SensorHub hub(config, clock_, make_gust_noise(config));
+      SensorHub hub(config, clock_, shared_gusts());
       return "";
     } catch (const settings::ConfigError& error) {
       return error.what();

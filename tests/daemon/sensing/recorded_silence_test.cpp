@@ -5,6 +5,7 @@
 
 #include "daemon/sensing/sensor_hub.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
+#include "tests/support/gusty_wind.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -36,8 +37,7 @@ class RecordedSilence : public ::testing::Test {
   int stale_steps(const settings::Config& config) {
     ManualClock clock;
     SensorHub hub(
-        config, clock, make_gust_noise(config), [](std::size_t, const wind::WindReading&) {}, 0.0,
-        SensorThread::kOfCaller);
+        config, clock, shared_gusts(), [](std::size_t, const wind::WindReading&) {}, 0.0, SensorThread::kOfCaller);
     int stale = 0;
     for (int i = 0; i < 3000; ++i) {
       clock.advance(500ms);

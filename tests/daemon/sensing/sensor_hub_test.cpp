@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/gusty_wind.hpp"
 #include "tests/support/manual_clock.hpp"
 
 namespace yuragi::daemon::sensing {
@@ -85,7 +86,7 @@ TEST_F(SensorHubTest, CalibratesForTheWindAndLeavesTheRecordingWhatTheSensorSaid
   config_.sensors[0].calibration.gain = 1.5;
   config_.sensors[0].calibration.north_offset_deg = 180.0;
   std::vector<double> received;
-  SensorHub hub(config_, clock_, make_gust_noise(config_),
+  SensorHub hub(config_, clock_, shared_gusts(),
                 [&](std::size_t, const wind::WindReading& reading) { received.push_back(reading.speed_m_s); });
   script_.polled.get_future().wait();
   EXPECT_NEAR(wind_after_a_while(hub, clock_).wind.u_m_s, 9.0, 0.2) << "from west, where the mark said east";
@@ -102,7 +103,7 @@ TEST_F(SensorHubTest, BringsReadingsToTheWindAndToTheListener) {
     sink.reading(reading_at(clock, 6.0));
   };
   std::vector<double> received;
-  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t sensor, const wind::WindReading& reading) {
+  SensorHub hub(config_, clock_, shared_gusts(), [&](std::size_t sensor, const wind::WindReading& reading) {
     EXPECT_EQ(sensor, 0U);
     received.push_back(reading.speed_m_s);
   });
@@ -132,7 +133,7 @@ TEST_F(SensorHubTest, AVaneThatFallsSilentIsMissedWhileTheCupTurns) {
       sink.reading(reading);
     }
   };
-  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  SensorHub hub(config_, clock_, shared_gusts());
   script_.polled.get_future().wait();
   hub.advance();
   const wire::SensorStatus status = hub.status().at(0);
@@ -173,7 +174,7 @@ const drivers::sensor::DriverDescription kHoldingDriver{
 TEST_F(SensorHubTest, WhatIsHeldKeepsTheSensorLiveAndIsNoReadingOfItsOwn) {
   config_.sensors[0].driver = &kHoldingDriver;
   std::atomic<int> received = 0;
-  SensorHub hub(config_, clock_, make_gust_noise(config_), [&](std::size_t, const wind::WindReading&) { ++received; });
+  SensorHub hub(config_, clock_, shared_gusts(), [&](std::size_t, const wind::WindReading&) { ++received; });
   // Two minutes: a sensor that measured the same for so long would be frozen.
   for (int tick = 0; tick < 1200; ++tick) {
     clock_.advance(std::chrono::milliseconds(100));
@@ -209,7 +210,7 @@ const drivers::sensor::DriverDescription kThrowingDriver{
 
 TEST_F(SensorHubTest, ADriverThatThrowsIsAStateAndIsTriedAgain) {
   config_.sensors[0].driver = &kThrowingDriver;
-  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  SensorHub hub(config_, clock_, shared_gusts());
   ASSERT_TRUE(clock_.wait_for_waiters(1));
   hub.advance();
   EXPECT_EQ(hub.status()[0].state, wind::judging::SensorState::kConnecting);
@@ -229,8 +230,7 @@ TEST_F(SensorHubTest, CountsWhatIsRefusedAndPublishesNothingOfIt) {
     sink.reading(reading_at(clock, -3.0));
   };
   bool received = false;
-  SensorHub hub(config_, clock_, make_gust_noise(config_),
-                [&](std::size_t, const wind::WindReading&) { received = true; });
+  SensorHub hub(config_, clock_, shared_gusts(), [&](std::size_t, const wind::WindReading&) { received = true; });
   script_.polled.get_future().wait();
   hub.advance();
 
@@ -246,7 +246,7 @@ TEST_F(SensorHubTest, ASensorThatWaitsForItsDeviceDoesNotHoldUpTheEnd) {
   script_.wait_for_interrupt = true;
   script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::SensorSink&) {};
   {
-    const SensorHub hub(config_, clock_, make_gust_noise(config_));
+    const SensorHub hub(config_, clock_, shared_gusts());
     script_.polled.get_future().wait();
   }  // hangs here for ever if poll() is not interrupted
   SUCCEED();
@@ -256,7 +256,7 @@ TEST_F(SensorHubTest, ReadingsThatNobodyTakesAreCountedAsLost) {
   script_.first_poll = [](const drivers::sensor::Clock& clock, drivers::sensor::SensorSink& sink) {
     for (int count = 0; count < 2000; ++count) sink.reading(reading_at(clock, 1.0));
   };
-  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  SensorHub hub(config_, clock_, shared_gusts());
   script_.polled.get_future().wait();
   hub.advance();
   const wire::SensorStatus status = hub.status().at(0);
@@ -275,7 +275,7 @@ TEST_F(SensorHubTest, CountsFramesAndHowOftenTheDeviceCameAgain) {
       sink.link(state, "");
     }
   };
-  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  SensorHub hub(config_, clock_, shared_gusts());
   script_.polled.get_future().wait();
   EXPECT_EQ(hub.status().at(0).frames, 5U) << "what is sent is no frame";
   EXPECT_EQ(hub.status().at(0).reconnects, 2U) << "the first connection is none";
@@ -292,7 +292,7 @@ TEST_F(SensorHubTest, HandsOnTheMessagesOfATracedSensorInTheirOrder) {
     sink.raw(drivers::sensor::RawDirection::kSent, std::vector<std::uint8_t>{1, 3, 0});
     sink.raw(drivers::sensor::RawDirection::kReceived, std::vector<std::uint8_t>(700, 0x5A));
   };
-  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  SensorHub hub(config_, clock_, shared_gusts());
   clock_.advance(std::chrono::seconds(2));
   hub.trace([](std::string_view sensor) { return sensor == "roof"; });
   is_traced.set_value();
@@ -322,7 +322,7 @@ TEST_F(SensorHubTest, MessagesThatFindNoRoomAreCountedInTheNextOne) {
     is_drained.get_future().wait();
     sink.raw(drivers::sensor::RawDirection::kReceived, message);
   };
-  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  SensorHub hub(config_, clock_, shared_gusts());
   hub.trace([](std::string_view) { return true; });
   is_traced.set_value();
   is_flooded.get_future().wait();
@@ -347,7 +347,7 @@ TEST_F(SensorHubTest, ATraceThatBeginsAgainHasNothingOfTheOneBefore) {
     is_traced.get_future().wait();
     sink.raw(drivers::sensor::RawDirection::kReceived, std::vector<std::uint8_t>{1});
   };
-  SensorHub hub(config_, clock_, make_gust_noise(config_));
+  SensorHub hub(config_, clock_, shared_gusts());
   hub.trace([](std::string_view) { return true; });
   is_traced.set_value();
   script_.polled.get_future().wait();
@@ -362,7 +362,7 @@ TEST_F(SensorHubTest, IsFinishedWhenEveryRecordingIs) {
   script_.first_poll = [](const drivers::sensor::Clock&, drivers::sensor::SensorSink& sink) {
     sink.link(wind::LinkState::kFinished, "the end");
   };
-  const SensorHub hub(config_, clock_, make_gust_noise(config_));
+  const SensorHub hub(config_, clock_, shared_gusts());
   script_.polled.get_future().wait();
   EXPECT_TRUE(hub.is_finished());
 }

@@ -201,7 +201,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 TEST(ConfigEdit, AnyLayoutIsChangedOnlyWhereItShould) {
   std::mt19937_64 random(11);
-  for (int round = 0; round < 400; ++round) {
+  for (int round = 0; round < 200; ++round) {
     const std::string text = random_config(random);
     SCOPED_TRACE(text);
     const std::vector<ConfigChange> changes = {{"calibration", "gain", 1.043},

@@ -204,7 +204,7 @@ TEST(StationPush, IsHurtOnlyWhereItsOwnValuesAre) {
 
 TEST(StationPush, NeverSaysWhatCannotBeNorASecret) {
   std::mt19937_64 random(20261123);
-  for (int i = 0; i < 100'000; ++i) {
+  for (int i = 0; i < 40'000; ++i) {
     std::string hurt(i % 3 == 0 ? kGw2000 : i % 3 == 1 ? kHp2550 : kDeafObserver);
     for (auto changes = 1 + random() % 4; changes > 0; --changes) {
       const auto at = static_cast<std::size_t>(random() % hurt.size());
