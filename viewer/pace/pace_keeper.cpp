@@ -6,7 +6,8 @@
 namespace yuragi::viewer::pace {
 namespace {
 
-constexpr double kJudgeWhileSettling_s = 1.0;
+constexpr double kJudgeSoon_s = 1.0;  // while settling, if pictures take far too long
+constexpr double kFarTooLong = 1.5;
 constexpr std::size_t kFewPictures = 5;  // are judged only when they are all that there is for kJudge_s
 constexpr double kLongest_s = 2.0;       // a picture that took longer was held up by something else
 constexpr double kTooLong = 1.05;        // of the time that there is
@@ -59,7 +60,8 @@ void PaceKeeper::advance(double passed_s, std::optional<double> work_s) {
     judged_over_s_ += passed_s;
     if (work_s && count_ < works_s_.size()) works_s_[count_++] = std::clamp(*work_s, 0.0, kLongest_s);
   }
-  const bool is_soon = settling_s_ > 0.0 && judged_over_s_ >= kJudgeWhileSettling_s && count_ >= kFewPictures;
+  const bool is_soon = settling_s_ > 0.0 && judged_over_s_ >= kJudgeSoon_s && count_ >= kFewPictures &&
+                       median_of_works_s() > kFarTooLong * picture_s();
   if (is_soon || (judged_over_s_ >= kJudge_s && count_ > 0)) judge();
 
   drawn_.side = step().part.side;
@@ -68,10 +70,14 @@ void PaceKeeper::advance(double passed_s, std::optional<double> work_s) {
   drawn_.coarseness += std::clamp(step().part.coarseness - drawn_.coarseness, -most, most);
 }
 
-void PaceKeeper::judge() {
+double PaceKeeper::median_of_works_s() {
   const auto middle = works_s_.begin() + static_cast<std::ptrdiff_t>(count_ / 2);
   std::nth_element(works_s_.begin(), middle, works_s_.begin() + static_cast<std::ptrdiff_t>(count_));
-  median_s_ = *middle;
+  return *middle;
+}
+
+void PaceKeeper::judge() {
+  median_s_ = median_of_works_s();
   learn();
   const double over_s = judged_over_s_;
   judged_over_s_ = 0.0;

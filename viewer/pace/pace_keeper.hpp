@@ -59,6 +59,7 @@ class PaceKeeper {
 
  private:
   std::size_t drawn_step() const { return held_ == 0 ? step_ : std::max(step_, ladder_.giving_up(held_)); }
+  double median_of_works_s();
   void judge();
   void learn();
   std::size_t least_late() const;

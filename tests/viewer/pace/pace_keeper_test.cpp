@@ -144,6 +144,12 @@ TEST(PaceKeeperTest, DoesNotJudgeWhatADriverPreparesAtFirstUse) {
   EXPECT_TRUE(changes.empty());
 }
 
+TEST(PaceKeeperTest, ALoadOfASecondChangesNothing) {
+  PaceKeeper keeper(kLadder, 1);
+  const auto machine = [](double now_s) { return Machine{std::fmod(now_s, 12.0) < 1.3 ? 0.037 : 0.025}; };
+  EXPECT_TRUE(run_for(keeper, 300.0, machine).empty());
+}
+
 TEST(PaceKeeperTest, ASlowPictureNowAndThenChangesNothing) {
   PaceKeeper keeper(kLadder, 0);
   int picture = 0;
