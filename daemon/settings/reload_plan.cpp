@@ -116,6 +116,7 @@ constexpr std::array kKeyRules = {
     KeyRule{"sensor.blend", "x", kTakesRestart},
     KeyRule{"sensor.blend", "z", kTakesRestart},
     KeyRule{"sensor.blend", "lead", kTakesRestart},
+    KeyRule{"sensor.blend", "value", kTakesRestart},
     KeyRule{"sensor.blend", "averaging", kTakesRestart},
     KeyRule{"sensor.blend", "direction_step", kTakesRestart},
 };

@@ -12,6 +12,9 @@ constexpr std::string_view kOfDriver = "auto";
 constexpr std::string_view kRelative = "relative";
 constexpr std::string_view kAtTheEdge =
     "its gusts enter at the windward edge of the scenes, wherever the wind comes from, and cross all of them";
+constexpr std::string_view kMean = "mean";
+constexpr std::string_view kInstant = "instant";
+constexpr std::array<std::string_view, 2> kValues = {kMean, kInstant};
 constexpr std::array<std::string_view, 3> kRoles = {kOfDriver, "absolute", kRelative};
 
 const std::array kSensorBlendParameters = {
@@ -57,12 +60,20 @@ const std::array kSensorBlendParameters = {
               .max = 1000.0,
               .help = "with x or z: its gusts enter the scenes this far upwind of its position. More of the scenes has "
                       "measured gusts, but later, by lead over wind speed"},
+    Parameter{.name = "value",
+              .unit = "",
+              .default_value = std::string(kMean),
+              .help = "what a reading is: mean, of the wind over the time that averaging states; instant, the wind of "
+                      "the moment, as most USB, UDP and RS-485 stations send it: gusts that it catches by chance are "
+                      "then not taken for slow ones",
+              .choices = kValues},
     Parameter{.name = "averaging",
               .unit = "s",
               .default_value = 0.0,
               .min = 0.0,
               .max = 3600.0,
-              .help = "averaging time of each reading; 0: the interval between readings, which is measured"},
+              .help = "averaging time of each reading that is a mean; 0: the interval between readings, which is "
+                      "measured"},
     Parameter{.name = "direction_step",
               .unit = "deg",
               .default_value = 0.0,
@@ -100,16 +111,18 @@ Result<wind::blend::BlendSourceSettings, ParameterError> blend_source_of(
     return ParameterError{"lead", "is counted from where the sensor stands; give x or z, too, or leave it out"};
   }
   const auto number_or_0 = [&values](std::string_view name) { return values.has(name) ? values.number(name) : 0.0; };
-  return wind::blend::BlendSourceSettings{.is_relative = is_relative,
-                                          .priority = static_cast<int>(values.integer("priority")),
-                                          .weight = values.number("weight"),
-                                          .has_place = has_place,
-                                          .east_m = number_or_0("x"),
-                                          .south_m = number_or_0("z"),
-                                          .lead_m = lead_m,
-                                          .fits_site = !is_relative && !driver.plays_recordings,
-                                          .averaging_s = values.number("averaging"),
-                                          .direction_step_deg = values.number("direction_step")};
+  return wind::blend::BlendSourceSettings{
+      .is_relative = is_relative,
+      .priority = static_cast<int>(values.integer("priority")),
+      .weight = values.number("weight"),
+      .has_place = has_place,
+      .east_m = number_or_0("x"),
+      .south_m = number_or_0("z"),
+      .lead_m = lead_m,
+      .fits_site = !is_relative && !driver.plays_recordings,
+      .value = values.text("value") == kInstant ? wind::ReadingValue::kInstant : wind::ReadingValue::kMean,
+      .averaging_s = values.number("averaging"),
+      .direction_step_deg = values.number("direction_step")};
 }
 
 }  // namespace yuragi::daemon::settings

@@ -3,18 +3,45 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <cstdio>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
 
+#include "engine/fft/real_fft.hpp"
+#include "engine/math/philox.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
+#include "engine/wind/turbulence/wind_spectrum.hpp"
 #include "tests/support/places.hpp"
 
 namespace yuragi::proof {
 namespace {
 
 constexpr std::array<const char*, 2> kNames = {"20180720T133000", "20180720T140000"};
+
+wind::WindReading reading_of(wind::WindVector wind, double time_s) {
+  wind::WindReading reading;
+  reading.time.mono = MonoTime(from_seconds(time_s));
+  reading.speed_m_s = speed_of(wind);
+  reading.direction_deg = wind::direction_from_deg(wind);
+  return reading;
+}
+
+/// A component of a made-up wind: random waves of a spectrum.
+std::vector<double> noise_of(const wind::turbulence::WindSpectrum& spectrum, double rate_hz, std::size_t size,
+                             std::uint64_t seed, std::uint64_t stream) {
+  fft::RealFft fft(1, size);
+  const math::RandomStream random(seed, stream);
+  const double step_hz = rate_hz / static_cast<double>(size);
+  for (std::size_t k = 1; k < size / 2; ++k) {
+    const auto [re, im] = random.normal_pair(k);
+    const double variance = spectrum.density_m2_s2_hz(static_cast<double>(k) * step_hz) * step_hz;
+    fft.spectrum()[k] = 0.5 * std::sqrt(variance) * std::complex<double>(re, im);
+  }
+  fft.inverse();
+  return {fft.samples().begin(), fft.samples().end()};
+}
 
 }  // namespace
 
@@ -60,6 +87,31 @@ SonicRecord sonic_or_synthetic(int number) {
   return record;
 }
 
+std::vector<wind::WindReading> moments_told(const SonicRecord& record, double interval_s) {
+  const auto per_block = static_cast<std::size_t>(std::lround(interval_s * record.rate_hz));
+  std::vector<wind::WindReading> readings;
+  for (std::size_t end = per_block; end <= record.samples.size(); end += per_block) {
+    readings.push_back(reading_of(record.samples[end - 1], static_cast<double>(end) / record.rate_hz));
+  }
+  return readings;
+}
+
+SonicRecord von_karman_record(double speed_m_s, double intensity, double length_m, std::uint64_t seed) {
+  constexpr std::size_t kSize = std::size_t{1} << 15;
+  SonicRecord record{.name = "von Karman", .samples = std::vector<wind::WindVector>(kSize)};
+  const auto component = [&](wind::turbulence::WindComponent which, double sigma_m_s) {
+    const auto spectrum =
+        wind::turbulence::WindSpectrum::make(
+            {.component = which, .speed_m_s = speed_m_s, .sigma_m_s = sigma_m_s, .length_m = length_m})
+            .value();
+    return noise_of(spectrum, record.rate_hz, kSize, seed, static_cast<std::uint64_t>(which));
+  };
+  const std::vector<double> along = component(wind::turbulence::WindComponent::kAlong, intensity * speed_m_s);
+  const std::vector<double> across = component(wind::turbulence::WindComponent::kAcross, 0.8 * intensity * speed_m_s);
+  for (std::size_t i = 0; i < kSize; ++i) record.samples[i] = {speed_m_s + along[i], across[i]};
+  return record;
+}
+
 std::vector<wind::WindReading> block_means(const SonicRecord& record, double interval_s) {
   const auto per_block = static_cast<std::size_t>(std::lround(interval_s * record.rate_hz));
   std::vector<wind::WindReading> readings;
@@ -67,11 +119,7 @@ std::vector<wind::WindReading> block_means(const SonicRecord& record, double int
     wind::WindVector sum{};
     for (std::size_t i = end - per_block; i < end; ++i) sum = sum + record.samples[i];
     const wind::WindVector mean = (1.0 / static_cast<double>(per_block)) * sum;
-    wind::WindReading reading;
-    reading.time.mono = MonoTime(from_seconds(static_cast<double>(end) / record.rate_hz));
-    reading.speed_m_s = speed_of(mean);
-    reading.direction_deg = wind::direction_from_deg(mean);
-    readings.push_back(reading);
+    readings.push_back(reading_of(mean, static_cast<double>(end) / record.rate_hz));
   }
   return readings;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,5 +32,12 @@ SonicRecord sonic_or_synthetic(int number);
 /// What a slower sensor would have said: vector means over blocks of `interval_s`, each heard at the end of its block.
 /// Their times begin at 0 with the record. A block that is not full at the end is left out.
 std::vector<wind::WindReading> block_means(const SonicRecord& record, double interval_s);
+
+/// The same of a station that tells the wind of the moment: the last sample of each block.
+std::vector<wind::WindReading> moments_told(const SonicRecord& record, double interval_s);
+
+/// A made-up wind of known spectrum, along east: von Karman's along and across it (engine/wind/README.md W5), the
+/// latter with 0.8 of the deviation; 54 minutes, ten samples a second.
+SonicRecord von_karman_record(double speed_m_s, double intensity, double length_m, std::uint64_t seed);
 
 }  // namespace yuragi::proof

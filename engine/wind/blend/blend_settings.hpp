@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/wind/reading_value.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
 #include "engine/wind/turbulence/synthetic_wind.hpp"
 
@@ -14,15 +15,17 @@ struct BlendSourceSettings {
   /// supplies the gusts that are too fast for the absolute sources. Where it is the only source its readings are used
   /// unchanged.
   bool is_relative = false;
-  int priority = 0;                 ///< lower first; equal ones share; 0: its place among the sources, from 1
-  double weight = 1.0;              ///< among those of the same priority; above 0
-  bool has_place = false;           ///< its position is configured; otherwise it is the windward edge
-  double east_m = 0.0;              ///< where it stands, from the middle of the scenes
-  double south_m = 0.0;             ///< (a relative one is taken to stand where those do whose gusts it fills)
-  double lead_m = 0.0;              ///< its pen is placed so far upwind: more of the wind is known, but later
-  double length_m = 0.0;            ///< integral length scale before anything is measured; 0: the blend's length
-  bool fits_site = false;           ///< its readings are live and of this site: they update the site's spectrum
-  double averaging_s = 0.0;         ///< a reading is the mean over so long; 0: over the interval, which is measured
+  int priority = 0;        ///< lower first; equal ones share; 0: its place among the sources, from 1
+  double weight = 1.0;     ///< among those of the same priority; above 0
+  bool has_place = false;  ///< its position is configured; otherwise it is the windward edge
+  double east_m = 0.0;     ///< where it stands, from the middle of the scenes
+  double south_m = 0.0;    ///< (a relative one is taken to stand where those do whose gusts it fills)
+  double lead_m = 0.0;     ///< its pen is placed so far upwind: more of the wind is known, but later
+  double length_m = 0.0;   ///< integral length scale before anything is measured; 0: the blend's length
+  bool fits_site = false;  ///< its readings are live and of this site: they update the site's spectrum
+  ReadingValue value = ReadingValue::kMean;
+  double averaging_s = 0.0;         ///< a reading that is a mean is one over so long; 0: over the interval, which is
+                                    ///< measured
   double direction_step_deg = 0.0;  ///< resolution of its vane; 0: detected
   double unchanged_for_s = 0.0;     ///< it speaks on change only: a silence of up to so long is none; 0: it does not
 };

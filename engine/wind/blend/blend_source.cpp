@@ -50,11 +50,12 @@ std::complex<double> averaged_and_held(double frequency_hz, double averaging_s, 
   return held * (averaging_s == interval_s ? held : mean_of_past(frequency_hz * averaging_s));
 }
 
-BandWeights full_trust_of(double interval_s) noexcept {
+BandWeights full_trust_of(double interval_s, const UnfoldedPart& unfolded = {}) noexcept {
   BandWeights trust{};
   trust[0] = 1.0;
   for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
-    trust[1 + band] = full_trust_at(turbulence::OctaveFollower::centre_hz(band), interval_s);
+    const double centre_hz = turbulence::OctaveFollower::centre_hz(band);
+    trust[1 + band] = full_trust_at(centre_hz, interval_s) * unfolded.at(centre_hz);
   }
   return trust;
 }
@@ -79,7 +80,7 @@ BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& 
       noise_(&noise),
       record_(settings.unchanged_for_s),
       direction_(settings.direction_step_deg),
-      measured_(turbulence_prior(blend, settings), blend.fit_memory_s),
+      measured_(turbulence_prior(blend, settings), blend.fit_memory_s, settings.value),
       turbulence_(measured_.along().turbulence()),
       along_(turbulence::gust_variances(noise, blend.climate.turbulence_intensity,
                                         turbulence_prior(blend, settings).length_m)),
@@ -106,7 +107,7 @@ bool BlendSource::accept(const WindReading& reading, const Around& around) noexc
   const bool is_new = record_.take(reading);
   if (!is_new && repeats) return true;
   wind_ = reading.speed_m_s * direction_.take(reading, gap_s, around.ahead, around.is_direction_live);
-  set_full_trust();
+  set_interval();
   if (is_first) begin();
   if (!is_new) return true;  // another one of the same burst: no independent sample of the turbulence
 
@@ -137,6 +138,7 @@ double BlendSource::expected_interval_s() const noexcept {
 }
 
 double BlendSource::averaging_s() const noexcept {
+  if (settings_.value == ReadingValue::kInstant) return 0.0;
   return settings_.averaging_s > 0.0 ? settings_.averaging_s : expected_interval_s();
 }
 
@@ -145,14 +147,14 @@ double BlendSource::slowness_s() const noexcept {
 }
 
 double BlendSource::trust_at(double frequency_hz) const noexcept {
-  return full_trust_at(frequency_hz, slowness_s());
+  return full_trust_at(frequency_hz, slowness_s()) * unfolded_.at(frequency_hz);
 }
 
-/// When the interval has changed.
-void BlendSource::set_full_trust() noexcept {
+/// When it has changed.
+void BlendSource::set_interval() noexcept {
   if (expected_interval_s() == interval_s_) return;
   interval_s_ = expected_interval_s();
-  full_trust_ = full_trust_of(slowness_s());
+  set_full_trust();
   passed_[0] = 1.0;
   for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
     passed_[1 + band] =
@@ -160,7 +162,14 @@ void BlendSource::set_full_trust() noexcept {
   }
 }
 
-/// Adds a reading, a mean over so long, to the turbulence, and to the site's spectrum if the source may update it.
+/// When the interval has changed, or the turbulence, by which samples of the moment are trusted.
+void BlendSource::set_full_trust() noexcept {
+  if (settings_.value == ReadingValue::kInstant) unfolded_.set(interval_s_, turbulence_.time_scale_s);
+  full_trust_ = full_trust_of(slowness_s(), unfolded_);
+}
+
+/// Adds a reading, a mean over so long or the value of its end, to the turbulence, and to the site's spectrum if the
+/// source may update it.
 void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
   const bool has_across = has_vane() && !is_coarse();
@@ -177,6 +186,7 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
   measured_.fit(interval_s, speed_m_s);
   turbulence_ = measured_.along().turbulence();
+  if (settings_.value == ReadingValue::kInstant) set_full_trust();
   const auto strengths = [&](const turbulence::TurbulenceFit& fit) {
     const turbulence::Turbulence turbulence = fit.turbulence();
     turbulence::GustVariances variances =

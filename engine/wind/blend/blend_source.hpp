@@ -10,6 +10,7 @@
 #include "engine/wind/blend/relative_scale.hpp"
 #include "engine/wind/blend/site_spectrum_fit.hpp"
 #include "engine/wind/blend/source_record.hpp"
+#include "engine/wind/blend/unfolded_part.hpp"
 #include "engine/wind/turbulence/gust_variances.hpp"
 #include "engine/wind/turbulence/octave_follower.hpp"
 #include "engine/wind/turbulence/wind_turbulence.hpp"
@@ -67,7 +68,11 @@ class BlendSource {
   /// Its frequency response (W19): what averaging, the holding of readings and its vane leave of a wave of the real
   /// wind. Times the response of its bands (OctaveFollower::Response) it is the source's part of the blend.
   SourceResponse passed_of(double frequency_hz) const noexcept;
-  /// The weight of a wave of this frequency while readings are on time (W18).
+  /// The power that is folded onto this frequency, over the wind's own there (W40): 0 of means.
+  double folded_over_own(double frequency_hz) const noexcept {
+    return settings_.value == ReadingValue::kInstant ? 1.0 / unfolded_.at(frequency_hz) - 1.0 : 0.0;
+  }
+  /// The weight of a wave of this frequency while readings are on time (W18, W40).
   double trust_at(double frequency_hz) const noexcept;
 
   const turbulence::Turbulence& turbulence() const noexcept { return turbulence_; }  ///< along the wind
@@ -81,6 +86,7 @@ class BlendSource {
   double expected_interval_s() const noexcept;
   double averaging_s() const noexcept;
   double slowness_s() const noexcept;
+  void set_interval() noexcept;
   void set_full_trust() noexcept;
   void measure(WindVector ahead, double mean_of_s) noexcept;
   void fit(double interval_s, double advection_m_s) noexcept;
@@ -95,6 +101,7 @@ class BlendSource {
   turbulence::OctaveFollower follower_;
   std::array<math::CriticallyDamped, turbulence::OctaveFollower::kBands + 1> trusts_{};
   BandWeights trust_{}, full_trust_{}, passed_{};
+  UnfoldedPart unfolded_;
   double interval_s_ = 0.0;  ///< that the full trust is made for
   double speed_m_s_ = 0.0;
   double measured_s_ = 0.0;  ///< for so long, at most the memory of that speed

@@ -73,7 +73,8 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
       weights_(source_count),
       level_shares_(source_count),
       place_weights_(source_count),
-      passed_(source_count) {
+      passed_(source_count),
+      folded_(source_count) {
   settings_.sources.resize(source_count);
   ground_.slope = plane_.ends();
   ground_.gusts.ahead = wind_from(1.0, settings.climate.mean_direction_deg);
@@ -263,16 +264,22 @@ double BlendedEstimator::trust() const noexcept {
   return knowable > 0.0 ? std::clamp(known / std::max(knowable, known), 0.0, 1.0) : 0.0;
 }
 
-/// The sources at one place add up by amplitude.
+/// The sources at one place add up by amplitude; what is folded onto a frequency, by power (W40).
 BlendedEstimator::Power BlendedEstimator::measured_power(const turbulence::OctaveFollower::Response& bands,
                                                          std::span<const BandWeights> shares) const noexcept {
   SourceResponse sum;
+  Power folded;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const std::complex<double> in_bands = bands.weighted(shares[i]);
-    sum.along += passed_[i].along * in_bands;
-    sum.across += passed_[i].across * in_bands;
+    const std::complex<double> along = passed_[i].along * in_bands;
+    const std::complex<double> across = passed_[i].across * in_bands;
+    sum.along += along;
+    sum.across += across;
+    folded.along += folded_[i] * std::norm(along);
+    folded.across += folded_[i] * std::norm(across);
   }
-  return {std::clamp(std::norm(sum.along), 0.0, 1.0), std::clamp(std::norm(sum.across), 0.0, 1.0)};
+  return {std::clamp(std::norm(sum.along) + folded.along, 0.0, 1.0),
+          std::clamp(std::norm(sum.across) + folded.across, 0.0, 1.0)};
 }
 
 /// The mean wind carries the gusts, and sets the downwind direction; their eddies turn over as the turbulence does.
@@ -426,7 +433,10 @@ void BlendedEstimator::weigh_octave(std::size_t octave, const MeasuredMean& meas
   const bool is_way = octave < turbulence::GustNoise::kFirstTileOctave;
   const double known_hz = is_way ? frequency_hz : frequency_hz / std::numbers::sqrt2;
   const turbulence::OctaveFollower::Response bands(known_hz);
-  for (std::size_t i = 0; i < sources_.size(); ++i) passed_[i] = sources_[i].passed_of(known_hz);
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    passed_[i] = sources_[i].passed_of(known_hz);
+    folded_[i] = sources_[i].folded_over_own(known_hz);
+  }
   if (is_way) {
     Power known;
     for (std::size_t p = 0; p < pens_.size(); ++p) {

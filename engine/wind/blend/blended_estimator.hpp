@@ -169,6 +169,7 @@ class BlendedEstimator {
   std::vector<double> weights_, level_shares_;
   std::vector<PlaceWeights> place_weights_;
   std::vector<SourceResponse> passed_;  ///< at the octave at hand
+  std::vector<double> folded_;          ///< the power that is folded onto it, over the wind's own
   BandWeights fade_{};                  ///< what the tape can hold of each band
   bool is_fading_ = false;
 };

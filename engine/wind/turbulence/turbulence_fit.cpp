@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/wind/turbulence/sampled_turbulence.hpp"
 #include "engine/wind/turbulence/von_karman.hpp"
 
 namespace yuragi::wind::turbulence {
@@ -123,8 +124,10 @@ double von_karman_share(double from_hz, double to_hz, double time_scale_s) noexc
 /// A wind without any turbulence has no logarithm.
 constexpr double kLeastIntensity = 1e-4;
 
-TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s) : prior_(prior), memory_s_(memory_s) {
+TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value)
+    : prior_(prior), memory_s_(memory_s), value_(value) {
   haar_table();  // made now, not on the way
+  if (value_ == ReadingValue::kInstant) make_sampled_haar_table();
   prior_.intensity = std::max(prior.intensity, kLeastIntensity);
   turbulence_ = {prior_.intensity, 8.0};
 }
@@ -178,8 +181,7 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
     double total = prior_.intensity_weight;
     for (std::size_t scale = 0; scale < used; ++scale) {
       if (weight[scale] == 0.0) continue;
-      log_shape[scale] =
-          std::log(von_karman_haar_variance(std::ldexp(interval_s, static_cast<int>(scale)) / time_scale_s));
+      log_shape[scale] = std::log(shape(scale, interval_s / time_scale_s));
       level += weight[scale] * (log_variance[scale] - log_shape[scale]);
       total += weight[scale];
     }
@@ -199,6 +201,13 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
   }
   interval_s_ = interval_s;
   scales_used_ = used;
+}
+
+/// Haar's variance of a scale over the variance of the turbulence.
+double TurbulenceFit::shape(std::size_t scale, double interval_over_time_scale) const noexcept {
+  return value_ == ReadingValue::kInstant
+             ? von_karman_sampled_haar_variance(scale, interval_over_time_scale)
+             : von_karman_haar_variance(std::ldexp(interval_over_time_scale, static_cast<int>(scale)));
 }
 
 double TurbulenceFit::expected(double tau_s) const noexcept {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "engine/wind/reading_value.hpp"
+
 namespace yuragi::wind::turbulence {
 
 /// The turbulence of one component of the wind: the parameters of von Karman's spectrum.
@@ -24,18 +26,18 @@ struct TurbulencePrior {
 /// (engine/wind/README.md W28, W29).
 ///
 /// It looks at Haar's variances: the mean squares of the differences between neighbouring means over 1, 2, 4 ...
-/// readings. Each is what a reading's averaging leaves of von Karman's spectrum, in closed form but for one integral
-/// that is tabled; intensity and time scale are fitted to all of them by least squares of logarithms. What remains
-/// between the spectrum and each of the scales is kept as a correction, so that the noise above the last scale goes on
-/// from what is measured there. Speeds are divided by the mean speed of their moment, so that a fit outlives a change
-/// of the wind. Source: Allan 1966, Statistics of atomic frequency standards (the variances); von Karman 1948.
+/// readings. Each is what a reading's averaging, or sampling, leaves of von Karman's spectrum, in closed form but for
+/// one integral that is tabled; intensity and time scale are fitted to all of them by least squares of logarithms. What
+/// remains between the spectrum and each of the scales is kept as a correction, so that the noise above the last scale
+/// goes on from what is measured there. Speeds are divided by the mean speed of their moment, so that a fit outlives a
+/// change of the wind. Source: Allan 1966, Statistics of atomic frequency standards (the variances); von Karman 1948.
 ///
 /// Thread-safe: no. Realtime-safe after construction: yes.
 class TurbulenceFit {
  public:
   static constexpr std::size_t kScales = 10;
 
-  TurbulenceFit(const TurbulencePrior& prior, double memory_s);
+  TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value = ReadingValue::kMean);
 
   /// A difference between two neighbouring means of 2^scale readings each, over the mean speed; `weight` (0 or more):
   /// how much it counts in the scale's mean square.
@@ -44,7 +46,8 @@ class TurbulenceFit {
   /// What has been added fades: so much time has gone by.
   void forget(double dt_s) noexcept;
 
-  /// Fits anew, for readings that are means over `interval_s` (above 0) in a wind of mean speed `speed_m_s` (above 0).
+  /// Fits anew, for readings every `interval_s` (above 0), means over that or values of the moment, in a wind of mean
+  /// speed `speed_m_s` (above 0).
   void fit(double interval_s, double speed_m_s) noexcept;
 
   Turbulence turbulence() const noexcept { return turbulence_; }
@@ -62,8 +65,11 @@ class TurbulenceFit {
   double correction(double frequency_hz) const noexcept;
 
  private:
+  double shape(std::size_t scale, double interval_over_time_scale) const noexcept;
+
   TurbulencePrior prior_;
   double memory_s_;
+  ReadingValue value_;
   std::array<double, kScales> squares_{}, weights_{};
   std::array<double, kScales> counts_{};
   Turbulence turbulence_;

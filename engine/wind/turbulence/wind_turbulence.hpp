@@ -25,7 +25,7 @@ namespace yuragi::wind::turbulence {
 class WindTurbulence {
  public:
   /// `prior`: along the wind; across it, the intensity is kAcrossPerAlong of it.
-  WindTurbulence(const TurbulencePrior& prior, double memory_s);
+  WindTurbulence(const TurbulencePrior& prior, double memory_s, ReadingValue value = ReadingValue::kMean);
 
   /// So much time has gone by.
   void forget(double dt_s) noexcept;
@@ -33,7 +33,7 @@ class WindTurbulence {
   void break_off() noexcept { history_size_ = 0; }
   /// The next reading, in a wind that blows toward the unit vector `ahead` with a mean of speed_m_s (above 0).
   void take(WindVector wind, WindVector ahead, double speed_m_s, bool has_across) noexcept;
-  /// Fits both, for readings that are means over interval_s.
+  /// Fits both, for readings every interval_s.
   void fit(double interval_s, double speed_m_s) noexcept;
 
   const TurbulenceFit& along() const noexcept { return along_; }

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace yuragi::wind::blend {
+
+/// How much of the power of a source's samples at a frequency is the wind's own there (von_karman_unfolded_part()),
+/// made anew with each fit, and read from a table in between. Of means it is 1 everywhere. Thread-safe: no.
+/// Realtime-safe: yes.
+class UnfoldedPart {
+ public:
+  UnfoldedPart() { parts_.fill(1.0); }
+
+  /// Of samples of the moment, every interval_s, of turbulence of this time scale (both above 0).
+  void set(double interval_s, double time_scale_s) noexcept;
+
+  /// 0.001 to 1.
+  double at(double frequency_hz) const noexcept;
+
+ private:
+  static constexpr std::size_t kAnOctave = 4;
+  static constexpr int kFirstOctave = -7;  ///< of the frequency times the interval; what is slower is folded alike
+  static constexpr int kLastOctave = 3;
+  static constexpr std::size_t kPoints = kAnOctave * static_cast<std::size_t>(kLastOctave - kFirstOctave) + 1;
+
+  double interval_s_ = 1.0;
+  std::array<double, kPoints> parts_{};
+};
+
+}  // namespace yuragi::wind::blend

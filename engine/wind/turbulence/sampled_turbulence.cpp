@@ -1,0 +1,99 @@
+#include "engine/wind/turbulence/sampled_turbulence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "engine/noise/von_karman_corner.hpp"
+#include "engine/wind/turbulence/turbulence_fit.hpp"
+#include "engine/wind/turbulence/von_karman.hpp"
+
+namespace yuragi::wind::turbulence {
+namespace {
+
+/// Means of more samples than this are as good as means over all of the time.
+constexpr std::size_t kSampledScales = 6;
+constexpr std::size_t kPoints = 121;
+constexpr double kLeastRatio = 1e-3;
+constexpr double kMostRatio = 1e3;
+
+/// The autocorrelation of u at a lag over L / U: the transform of W5. Von Karman 1948; as in ESDU 85020.
+double autocorrelation(double lag) {
+  const double x = lag / noise::kVonKarmanCorner;
+  if (x < 1e-9) return 1.0;
+  if (x > 600.0) return 0.0;
+  return std::pow(2.0, 2.0 / 3.0) / std::tgamma(1.0 / 3.0) * std::cbrt(x) * std::cyl_bessel_k(1.0 / 3.0, x);
+}
+
+double sampled_haar(std::size_t scale, double ratio) {
+  const std::size_t count = std::size_t{1} << scale;
+  std::vector<double> at(2 * count);
+  for (std::size_t lag = 0; lag < at.size(); ++lag) at[lag] = autocorrelation(ratio * static_cast<double>(lag));
+  // Of each mean with itself, less that of one with the other: pairs of samples that are so far apart, either way.
+  double sum = static_cast<double>(count) * (at[0] - at[count]);
+  for (std::size_t lag = 1; lag < count; ++lag) {
+    sum += static_cast<double>(count - lag) * (2.0 * at[lag] - at[count - lag] - at[count + lag]);
+  }
+  return 2.0 * sum / (static_cast<double>(count) * static_cast<double>(count));
+}
+
+/// ln of it, for each scale at equal steps of ln(interval / T).
+class SampledHaarTable {
+ public:
+  SampledHaarTable() {
+    for (std::size_t scale = 0; scale < kSampledScales; ++scale) {
+      for (std::size_t i = 0; i < kPoints; ++i) {
+        const double ratio = std::exp(std::log(kLeastRatio) + step() * static_cast<double>(i));
+        log_variance_[scale][i] = std::log(sampled_haar(scale, ratio));
+      }
+    }
+  }
+
+  double at(std::size_t scale, double ratio) const noexcept {
+    const double place = std::clamp((std::log(ratio) - std::log(kLeastRatio)) / step(), 0.0, kPoints - 1.0);
+    const auto below = std::min(static_cast<std::size_t>(place), kPoints - 2);
+    const double t = place - static_cast<double>(below);
+    const auto& values = log_variance_[scale];
+    return std::exp((1.0 - t) * values[below] + t * values[below + 1]);
+  }
+
+ private:
+  static double step() noexcept { return std::log(kMostRatio / kLeastRatio) / (kPoints - 1.0); }
+
+  std::array<std::array<double, kPoints>, kSampledScales> log_variance_{};
+};
+
+const SampledHaarTable& sampled_haar_table() {
+  static const SampledHaarTable kTable;
+  return kTable;
+}
+
+}  // namespace
+
+void make_sampled_haar_table() {
+  sampled_haar_table();
+}
+
+double von_karman_sampled_haar_variance(std::size_t scale, double interval_over_time_scale) noexcept {
+  if (scale < kSampledScales) return sampled_haar_table().at(scale, interval_over_time_scale);
+  return von_karman_haar_variance(std::ldexp(interval_over_time_scale, static_cast<int>(scale)));
+}
+
+double von_karman_unfolded_part(double frequency_hz, double interval_s, double time_scale_s) noexcept {
+  const double rate = time_scale_s / interval_s;  // everything in units of 1 / time scale
+  const double own_x = std::abs(frequency_hz) * time_scale_s;
+  const double own = von_karman_density(own_x);
+  // Waves that look alike are whole rates apart: the first of them one by one, the others by their integral.
+  constexpr int kTerms = 6;
+  const double nearest_x = std::abs(own_x - rate * std::round(own_x / rate));
+  double all = von_karman_density(nearest_x);
+  for (int k = 1; k <= kTerms; ++k) {
+    all += von_karman_density(k * rate - nearest_x) + von_karman_density(k * rate + nearest_x);
+  }
+  all += 2.0 * von_karman_share((kTerms + 0.5) * rate, std::numeric_limits<double>::infinity(), 1.0) / rate;
+  return std::clamp(own / all, 0.0, 1.0);
+}
+
+}  // namespace yuragi::wind::turbulence

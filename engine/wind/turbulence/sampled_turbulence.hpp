@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+
+namespace yuragi::wind::turbulence {
+
+// What samples of the moment show of turbulence with von Karman's spectrum (engine/wind/README.md W39, W40). A sample
+// every `interval` has the whole variance: the waves that are too quick for it are folded onto slower ones.
+// Thread-safe.
+
+/// The mean square of the difference between neighbouring means of 2^scale samples, over the variance, by the
+/// autocorrelation of the turbulence. `interval_over_time_scale`: from sample to sample, over L / U (above 0). Tabled
+/// and interpolated, within 1 % from 1e-3 to 1e3. Realtime-safe after make_sampled_haar_table().
+double von_karman_sampled_haar_variance(std::size_t scale, double interval_over_time_scale) noexcept;
+/// Makes the table now, in some milliseconds, and not at its first use.
+void make_sampled_haar_table();
+
+/// The part of the power of samples at a frequency that is the turbulence's own there, S / (S + F): 0 to 1, all that is
+/// folded onto it being F. Realtime-safe.
+double von_karman_unfolded_part(double frequency_hz, double interval_s, double time_scale_s) noexcept;
+
+}  // namespace yuragi::wind::turbulence

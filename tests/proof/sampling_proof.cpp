@@ -1,0 +1,146 @@
+// What a station makes of a wind of known spectrum that tells the value of the moment, or a mean: engine/wind/README.md
+// W39, W40.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "engine/wind/blend/blended_estimator.hpp"
+#include "tests/proof/band_power.hpp"
+#include "tests/proof/estimated_wind.hpp"
+#include "tests/proof/sonic_record.hpp"
+
+namespace yuragi::proof {
+namespace {
+
+using wind::ReadingValue;
+
+constexpr std::uint64_t kSampledSeeds = 4;
+constexpr double kSettledAfter_s = 600.0;  // the fit's memory
+constexpr double kSampledSegment_s = 300.0;
+constexpr double kSampledTo_hz = 0.6;
+constexpr double kSampledFrom_hz = 0.009375;
+
+/// What the wind that is made of a station's readings is, over the record's: mean of the records.
+struct Made {
+  double variance = 0.0;
+  std::vector<double> octaves_db;  ///< from kSampledFrom_hz to kSampledTo_hz
+
+  double worst_db() const {
+    double worst = 0.0;
+    for (const double level_db : octaves_db) worst = std::max(worst, std::abs(level_db));
+    return worst;
+  }
+};
+
+/// The wind at 10 Hz of a station that tells `value` every `interval_s`, and is taken for one that tells `taken`.
+std::vector<wind::WindVector> wind_of_station(const SonicRecord& record, ReadingValue value, ReadingValue taken,
+                                              double interval_s, std::uint64_t seed) {
+  const auto readings =
+      value == ReadingValue::kInstant ? moments_told(record, interval_s) : block_means(record, interval_s);
+  wind::blend::BlendedEstimator estimator(
+      1, {.climate = {.seed = 100 + seed}, .rate_hz = record.rate_hz, .sources = {{.value = taken}}}, shared_noise());
+  std::vector<wind::WindVector> wind;
+  std::size_t next = 0;
+  for (std::size_t tick = 0; tick < record.samples.size(); ++tick) {
+    const MonoTime now(from_seconds(static_cast<double>(tick) / record.rate_hz));
+    for (; next < readings.size() && readings[next].time.mono <= now; ++next) estimator.accept(0, readings[next]);
+    wind.push_back(estimator.advance(now).wind);
+  }
+  return wind;
+}
+
+Made make(const std::vector<SonicRecord>& records, ReadingValue value, ReadingValue taken, double interval_s) {
+  Made made;
+  std::vector<double> shown_density, real_density;
+  const auto add = [](std::vector<double>& sum, const std::vector<double>& more) {
+    sum.resize(more.size());
+    for (std::size_t i = 0; i < more.size(); ++i) sum[i] += more[i];
+  };
+  double step_hz = 0.0;
+  std::string ratios;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const SonicRecord& record = records[i];
+    const std::vector<wind::WindVector> wind = wind_of_station(record, value, taken, interval_s, i + 1);
+    const auto settled = static_cast<std::size_t>(kSettledAfter_s * record.rate_hz);
+    const auto shown = std::span(wind).subspan(settled);
+    const auto real = std::span(record.samples).subspan(settled);
+    const double ratio = moments_of(shown).variance_m2_s2 / moments_of(real).variance_m2_s2;
+    made.variance += ratio / static_cast<double>(records.size());
+    ratios += fmt::format(" {:.2f}", ratio);
+    Welch welch(record.rate_hz, kSampledSegment_s, kSampledTo_hz);
+    step_hz = welch.step_hz();
+    add(shown_density, Welch::density(welch.segments(shown)));
+    add(real_density, Welch::density(welch.segments(real)));
+  }
+  std::string levels;
+  for (const Band& band : octaves_down(kSampledTo_hz, kSampledFrom_hz)) {
+    made.octaves_db.push_back(decibel(power_in(shown_density, step_hz, band) / power_in(real_density, step_hz, band)));
+    levels += fmt::format(" {:+.1f}", made.octaves_db.back());
+  }
+  const auto name = [](ReadingValue of) { return of == ReadingValue::kInstant ? "moments" : "means"; };
+  fmt::print("{}: {} every {:g} s, taken for {}: variance {:.2f} ({} ), octaves from {:g} Hz{} dB\n",
+             records.front().name, name(value), interval_s, name(taken), made.variance, ratios, kSampledFrom_hz,
+             levels);
+  return made;
+}
+
+std::vector<SonicRecord> made_up(double speed_m_s, double intensity, double length_m) {
+  std::vector<SonicRecord> records;
+  for (std::uint64_t seed = 1; seed <= kSampledSeeds; ++seed) {
+    records.push_back(von_karman_record(speed_m_s, intensity, length_m, seed));
+  }
+  return records;
+}
+
+constexpr auto kInstant = ReadingValue::kInstant;
+constexpr auto kMean = ReadingValue::kMean;
+
+TEST(Sampling, OfTheMomentAddsNoPower) {
+  const std::vector<SonicRecord> records = made_up(5.0, 0.2, 40.0);
+  for (const double interval_s : {1.0, 5.0, 14.0}) {
+    const Made made = make(records, kInstant, kInstant, interval_s);
+    EXPECT_NEAR(made.variance, 1.0, 0.2) << interval_s;
+    EXPECT_LT(made.worst_db(), interval_s < 5.0 ? 2.0 : 2.5) << interval_s;
+  }
+  // As a mean it would count twice: what was folded into it, and the noise of the same waves.
+  EXPECT_GT(make(records, kInstant, kMean, 14.0).variance, 1.6);
+}
+
+TEST(Sampling, OfTheMomentAddsNoPowerToRealWind) {
+  std::vector<SonicRecord> records;
+  for (const int number : {0, 1}) {
+    const auto record = load_sonic(number);
+    if (!record) GTEST_SKIP() << "../shared/data/sonic is not here";
+    records.push_back(*record);
+  }
+  for (const double interval_s : {5.0, 14.0}) {
+    const Made made = make(records, kInstant, kInstant, interval_s);
+    EXPECT_NEAR(made.variance, 1.0, 0.25) << interval_s;
+    EXPECT_LT(made.worst_db(), 2.6) << interval_s;
+  }
+}
+
+TEST(Sampling, OfManyWinds) {
+  for (const double interval_s : {1.0, 5.0, 14.0, 60.0}) {
+    for (const auto& [speed, intensity, length] :
+         {std::array{3.0, 0.5, 15.0}, {10.0, 0.15, 100.0}, {5.0, 0.3, 300.0}}) {
+      const auto records = made_up(speed, intensity, length);
+      make(records, kInstant, kMean, interval_s);
+      const Made made = make(records, kInstant, kInstant, interval_s);
+      EXPECT_NEAR(made.variance, 1.0, interval_s > 14.0 ? 0.4 : 0.25) << interval_s << " s, " << length << " m";
+      const Made of_means = make(records, kMean, kMean, interval_s);
+      EXPECT_LT(std::abs(std::log(made.variance)), std::abs(std::log(of_means.variance)) + 0.1) << interval_s;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace yuragi::proof
