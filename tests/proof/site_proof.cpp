@@ -16,6 +16,7 @@
 #include "engine/math/philox.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
+#include "engine/wind/turbulence/von_karman_integrals.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
 #include "tests/proof/band_power.hpp"
 #include "tests/proof/estimated_wind.hpp"

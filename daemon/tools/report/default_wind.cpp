@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "daemon/tools/report/gust_means.hpp"
-#include "engine/wind/turbulence/turbulence_fit.hpp"
+#include "engine/wind/turbulence/von_karman_integrals.hpp"
 
 namespace yuragi::daemon::tools::report {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "daemon/tools/report/welch_spectrum.hpp"
-#include "engine/wind/turbulence/turbulence_fit.hpp"
+#include "engine/wind/turbulence/von_karman_integrals.hpp"
 
 namespace yuragi::daemon::tools::report {
 namespace {

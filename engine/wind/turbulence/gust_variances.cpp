@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "engine/noise/von_karman_corner.hpp"
-#include "engine/wind/turbulence/turbulence_fit.hpp"
+#include "engine/wind/turbulence/von_karman_integrals.hpp"
 
 namespace yuragi::wind::turbulence {
 

@@ -10,7 +10,7 @@
 
 #include "engine/fft/real_fft.hpp"
 #include "engine/wind/turbulence/gust_variances.hpp"
-#include "engine/wind/turbulence/turbulence_fit.hpp"
+#include "engine/wind/turbulence/von_karman_integrals.hpp"
 #include "engine/wind/turbulence/wind_spectrum.hpp"
 
 namespace yuragi::wind::turbulence {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/wind/turbulence/turbulence_fit.hpp"
 #include "engine/wind/turbulence/von_karman.hpp"
+#include "engine/wind/turbulence/von_karman_integrals.hpp"
 
 namespace yuragi::wind::turbulence {
 namespace {

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/noise/spectral_noise.hpp"
+#include "engine/wind/turbulence/von_karman_integrals.hpp"
 #include "engine/wind/turbulence/wind_spectrum.hpp"
 
 namespace yuragi::wind::turbulence {
