@@ -73,12 +73,14 @@ def kill_9(bench):
         daemon = bench.start(bench.settings.yuragi, "run", "--listen", "127.0.0.1:0", "--record", file, "--config",
                              bench.file("kill.toml", OSC_SENSOR.format(port=sender.port)))
         begin_s = time.monotonic()
-        if bench.random.random() < 0.2:  # while it begins
+        if kill + 1 < kills and bench.random.random() < 0.2:  # while it begins
             wait_until(begin_s + bench.random.uniform(0.0, 0.4))
             from_s = None
         else:
             from_s = wait_for_readings(bench, daemon)
-            wait_until(time.monotonic() + bench.random.uniform(*bench.choose((0.0, 4.0), (1.2, 2.5))))
+            # The last one comes after readings that must be there.
+            least_s = LOST_S + 0.3 if kill + 1 == kills else 0.0
+            wait_until(time.monotonic() + least_s + bench.random.uniform(*bench.choose((0.0, 4.0), (1.2, 2.5))))
         if daemon.process.poll() is not None:
             bench.failures.append(f"it ended by itself with {daemon.process.poll()}: {daemon.text()[-300:]}")
             break
