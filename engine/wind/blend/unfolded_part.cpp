@@ -22,7 +22,7 @@ void UnfoldedPart::set(double interval_s, double time_scale_s) noexcept {
 }
 
 double UnfoldedPart::at(double frequency_hz) const noexcept {
-  const double octave = std::log2(std::max(frequency_hz * interval_s_, 1e-9));
+  const double octave = std::log2(std::max(1e-9, frequency_hz * interval_s_));
   const double place =
       std::clamp((octave - kFirstOctave) * static_cast<double>(kAnOctave), 0.0, static_cast<double>(kPoints - 1));
   const auto below = std::min(static_cast<std::size_t>(place), kPoints - 2);

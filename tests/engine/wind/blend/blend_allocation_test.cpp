@@ -33,7 +33,7 @@ TEST(BlendAllocation, NeitherAReadingNorATickAllocates) {
   BlendSettings settings = BlendRun::usual();
   settings.sources = {{.priority = 1, .east_m = -5.0},
                       {.priority = 1, .east_m = 5.0, .averaging_s = 10.0},
-                      {.priority = 2, .direction_step_deg = 45.0},
+                      {.priority = 2, .value = ReadingValue::kInstant, .direction_step_deg = 45.0},
                       {.is_relative = true}};
   BlendedEstimator estimator(4, settings, shared_gust_noise());
   EXPECT_GT(blend_allocations, 0U) << "the counter does not count";

@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "engine/wind/blend/blended_estimator.hpp"
@@ -23,8 +22,8 @@ inline std::shared_ptr<const turbulence::GustNoise> shared_gust_noise() {
 /// An estimator, and a wind that is read every now and then; time is moved by hand.
 class BlendRun {
  public:
-  explicit BlendRun(std::size_t sources, BlendSettings settings)
-      : estimator_(sources, std::move(settings), shared_gust_noise()) {
+  explicit BlendRun(std::size_t sources, const BlendSettings& settings)
+      : estimator_(sources, settings, shared_gust_noise()) {
     state_ = estimator_.advance(now_);
   }
 

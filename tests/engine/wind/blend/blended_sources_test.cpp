@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -345,9 +346,10 @@ TEST(BlendedSources, AreFiniteBoundedAndContinuousUnderRandomFaults) {
   constexpr double kStrongest_m_s = 30.0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     BlendSettings settings = BlendRun::usual(seed, 0.3);
-    settings.sources = {{.priority = 1, .east_m = -20.0},
+    const ReadingValue value = seed % 2 == 0 ? ReadingValue::kInstant : ReadingValue::kMean;
+    settings.sources = {{.priority = 1, .east_m = -20.0, .value = value},
                         {.priority = 1, .weight = 4.0, .east_m = 20.0, .south_m = 5.0, .averaging_s = 20.0},
-                        {.priority = 2, .direction_step_deg = 45.0},
+                        {.priority = 2, .value = value, .direction_step_deg = 45.0},
                         {.is_relative = true}};
     BlendRun run(4, settings);
     std::mt19937_64 random(seed);
