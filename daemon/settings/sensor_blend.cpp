@@ -63,9 +63,10 @@ const std::array kSensorBlendParameters = {
     Parameter{.name = "value",
               .unit = "",
               .default_value = std::string(kMean),
-              .help = "what a reading is: mean, of the wind over the time that averaging states; instant, the wind of "
-                      "the moment, as most USB, UDP and RS-485 stations send it: gusts that it catches by chance are "
-                      "then not taken for slow ones",
+              .help =
+                  "what the station reports: mean, the mean wind over the averaging time; instant, the instantaneous "
+                  "wind, as most USB, UDP and RS-485 stations do: short gusts that it happens to sample then do "
+                  "not count as slow ones",
               .choices = kValues},
     Parameter{.name = "averaging",
               .unit = "s",

@@ -4,10 +4,10 @@
 
 namespace yuragi::wind {
 
-/// What the value of a reading is.
+/// What a station reports.
 enum class ReadingValue : std::uint8_t {
-  kMean,     ///< the mean of the wind over a time
-  kInstant,  ///< the wind of the moment: waves that are quicker than half of the sampling rate are folded into it
+  kMean,     ///< the mean wind over a time
+  kInstant,  ///< the instantaneous wind: frequencies above half the sampling rate are folded into it (aliasing)
 };
 
 }  // namespace yuragi::wind

@@ -1,5 +1,5 @@
-// What a station makes of a wind of known spectrum that tells the value of the moment, or a mean: engine/wind/README.md
-// W39, W40.
+// The blended wind of stations that report instantaneous wind, or means, in winds of known spectrum and on real
+// recordings: engine/wind/README.md W39, W40.
 
 #include <algorithm>
 #include <array>
@@ -28,7 +28,7 @@ constexpr double kSampledSegment_s = 300.0;
 constexpr double kSampledTo_hz = 0.6;
 constexpr double kSampledFrom_hz = 0.009375;
 
-/// What the wind that is made of a station's readings is, over the record's: mean of the records.
+/// The blended wind of a station over the recorded wind, mean of the records.
 struct Made {
   double variance = 0.0;
   std::vector<double> octaves_db;  ///< from kSampledFrom_hz to kSampledTo_hz
@@ -40,11 +40,12 @@ struct Made {
   }
 };
 
-/// The wind at 10 Hz of a station that tells `value` every `interval_s`, and is taken for one that tells `taken`.
+/// Returns the blended wind, at the record's rate, of a station that reports `value` every `interval_s` and is
+/// configured as `taken`.
 std::vector<wind::WindVector> wind_of_station(const SonicRecord& record, ReadingValue value, ReadingValue taken,
                                               double interval_s, std::uint64_t seed) {
   const auto readings =
-      value == ReadingValue::kInstant ? moments_told(record, interval_s) : block_means(record, interval_s);
+      value == ReadingValue::kInstant ? instant_samples(record, interval_s) : block_means(record, interval_s);
   wind::blend::BlendedEstimator estimator(
       1, {.climate = {.seed = 100 + seed}, .rate_hz = record.rate_hz, .sources = {{.value = taken}}}, shared_noise());
   std::vector<wind::WindVector> wind;
@@ -85,8 +86,8 @@ Made make(const std::vector<SonicRecord>& records, ReadingValue value, ReadingVa
     made.octaves_db.push_back(decibel(power_in(shown_density, step_hz, band) / power_in(real_density, step_hz, band)));
     levels += fmt::format(" {:+.1f}", made.octaves_db.back());
   }
-  const auto name = [](ReadingValue of) { return of == ReadingValue::kInstant ? "moments" : "means"; };
-  fmt::print("{}: {} every {:g} s, taken for {}: variance {:.2f} ({} ), octaves from {:g} Hz{} dB\n",
+  const auto name = [](ReadingValue of) { return of == ReadingValue::kInstant ? "instant" : "mean"; };
+  fmt::print("{}: {} every {:g} s, configured as {}: variance {:.2f} ({} ), octaves from {:g} Hz{} dB\n",
              records.front().name, name(value), interval_s, name(taken), made.variance, ratios, kSampledFrom_hz,
              levels);
   return made;
@@ -110,7 +111,7 @@ TEST(Sampling, OfTheMomentAddsNoPower) {
     EXPECT_NEAR(made.variance, 1.0, 0.2) << interval_s;
     EXPECT_LT(made.worst_db(), interval_s < 5.0 ? 2.0 : 2.5) << interval_s;
   }
-  // As a mean it would count twice: what was folded into it, and the noise of the same waves.
+  // Configured as a mean, the folded gusts count twice: as measured, and as noise.
   EXPECT_GT(make(records, kInstant, kMean, 14.0).variance, 1.6);
 }
 

@@ -87,7 +87,7 @@ SonicRecord sonic_or_synthetic(int number) {
   return record;
 }
 
-std::vector<wind::WindReading> moments_told(const SonicRecord& record, double interval_s) {
+std::vector<wind::WindReading> instant_samples(const SonicRecord& record, double interval_s) {
   const auto per_block = static_cast<std::size_t>(std::lround(interval_s * record.rate_hz));
   std::vector<wind::WindReading> readings;
   for (std::size_t end = per_block; end <= record.samples.size(); end += per_block) {

@@ -33,8 +33,8 @@ SonicRecord sonic_or_synthetic(int number);
 /// Their times begin at 0 with the record. A block that is not full at the end is left out.
 std::vector<wind::WindReading> block_means(const SonicRecord& record, double interval_s);
 
-/// The same of a station that tells the wind of the moment: the last sample of each block.
-std::vector<wind::WindReading> moments_told(const SonicRecord& record, double interval_s);
+/// The readings of an instantaneous station: the last sample of each block, at its end.
+std::vector<wind::WindReading> instant_samples(const SonicRecord& record, double interval_s);
 
 /// A made-up wind of known spectrum, along east: von Karman's along and across it (engine/wind/README.md W5), the
 /// latter with 0.8 of the deviation; 54 minutes, ten samples a second.

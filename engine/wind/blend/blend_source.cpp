@@ -162,13 +162,13 @@ void BlendSource::set_interval() noexcept {
   }
 }
 
-/// When the interval has changed, or the turbulence, by which samples of the moment are trusted.
+/// Called when the interval has changed, or the fitted turbulence, which sets the trust in instantaneous samples.
 void BlendSource::set_full_trust() noexcept {
   if (settings_.value == ReadingValue::kInstant) unfolded_.set(interval_s_, turbulence_.time_scale_s);
   full_trust_ = full_trust_of(slowness_s(), unfolded_);
 }
 
-/// Adds a reading, a mean over so long or the value of its end, to the turbulence, and to the site's spectrum if the
+/// Adds a reading, a mean over so long or the wind at its end, to the turbulence, and to the site's spectrum if the
 /// source may update it.
 void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);

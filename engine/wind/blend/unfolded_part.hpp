@@ -12,7 +12,7 @@ class UnfoldedPart {
  public:
   UnfoldedPart() { parts_.fill(1.0); }
 
-  /// Of samples of the moment, every interval_s, of turbulence of this time scale (both above 0).
+  /// Sets it for instantaneous samples every interval_s of turbulence of this time scale (both above 0).
   void set(double interval_s, double time_scale_s) noexcept;
 
   /// 0.001 to 1.

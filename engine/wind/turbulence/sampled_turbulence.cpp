@@ -1,12 +1,12 @@
 #include "engine/wind/turbulence/sampled_turbulence.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "engine/noise/von_karman_corner.hpp"
+#include "engine/wind/turbulence/ratio_table.hpp"
 #include "engine/wind/turbulence/von_karman.hpp"
 #include "engine/wind/turbulence/von_karman_integrals.hpp"
 
@@ -15,9 +15,6 @@ namespace {
 
 /// Means of more samples than this are as good as means over all of the time.
 constexpr std::size_t kSampledScales = 6;
-constexpr std::size_t kPoints = 121;
-constexpr double kLeastRatio = 1e-3;
-constexpr double kMostRatio = 1e3;
 
 /// The autocorrelation of u at a lag over L / U: the transform of W5. Von Karman 1948; as in ESDU 85020.
 double autocorrelation(double lag) {
@@ -39,45 +36,26 @@ double sampled_haar(std::size_t scale, double ratio) {
   return 2.0 * sum / (static_cast<double>(count) * static_cast<double>(count));
 }
 
-/// ln of it, for each scale at equal steps of ln(interval / T).
-class SampledHaarTable {
- public:
-  SampledHaarTable() {
+/// Returns a table for each scale.
+const std::vector<RatioTable>& sampled_haar_tables() {
+  static const std::vector<RatioTable> kTables = [] {
+    std::vector<RatioTable> tables;
     for (std::size_t scale = 0; scale < kSampledScales; ++scale) {
-      for (std::size_t i = 0; i < kPoints; ++i) {
-        const double ratio = std::exp(std::log(kLeastRatio) + step() * static_cast<double>(i));
-        log_variance_[scale][i] = std::log(sampled_haar(scale, ratio));
-      }
+      tables.emplace_back([scale](double ratio) { return sampled_haar(scale, ratio); });
     }
-  }
-
-  double at(std::size_t scale, double ratio) const noexcept {
-    const double place = std::clamp((std::log(ratio) - std::log(kLeastRatio)) / step(), 0.0, kPoints - 1.0);
-    const auto below = std::min(static_cast<std::size_t>(place), kPoints - 2);
-    const double t = place - static_cast<double>(below);
-    const auto& values = log_variance_[scale];
-    return std::exp((1.0 - t) * values[below] + t * values[below + 1]);
-  }
-
- private:
-  static double step() noexcept { return std::log(kMostRatio / kLeastRatio) / (kPoints - 1.0); }
-
-  std::array<std::array<double, kPoints>, kSampledScales> log_variance_{};
-};
-
-const SampledHaarTable& sampled_haar_table() {
-  static const SampledHaarTable kTable;
-  return kTable;
+    return tables;
+  }();
+  return kTables;
 }
 
 }  // namespace
 
 void make_sampled_haar_table() {
-  sampled_haar_table();
+  sampled_haar_tables();
 }
 
 double von_karman_sampled_haar_variance(std::size_t scale, double interval_over_time_scale) noexcept {
-  if (scale < kSampledScales) return sampled_haar_table().at(scale, interval_over_time_scale);
+  if (scale < kSampledScales) return sampled_haar_tables()[scale].at(interval_over_time_scale);
   return von_karman_haar_variance(std::ldexp(interval_over_time_scale, static_cast<int>(scale)));
 }
 

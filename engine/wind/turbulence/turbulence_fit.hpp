@@ -46,7 +46,7 @@ class TurbulenceFit {
   /// What has been added fades: so much time has gone by.
   void forget(double dt_s) noexcept;
 
-  /// Fits anew, for readings every `interval_s` (above 0), means over that or values of the moment, in a wind of mean
+  /// Fits anew, for readings every `interval_s` (above 0), means over that or instantaneous, in a wind of mean
   /// speed `speed_m_s` (above 0).
   void fit(double interval_s, double speed_m_s) noexcept;
 

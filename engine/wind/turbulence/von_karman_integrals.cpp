@@ -1,11 +1,10 @@
 #include "engine/wind/turbulence/von_karman_integrals.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <numbers>
 
+#include "engine/wind/turbulence/ratio_table.hpp"
 #include "engine/wind/turbulence/von_karman.hpp"
 
 namespace yuragi::wind::turbulence {
@@ -20,44 +19,21 @@ double haar_power(double cycles) noexcept {
   return passed * passed;
 }
 
-/// ln of Haar's variance, at equal steps of ln(tau / T) from 1e-3 to 1e3.
-class HaarTable {
- public:
-  HaarTable() {
-    for (std::size_t i = 0; i < kPoints; ++i) log_variance_[i] = std::log(integral(std::exp(log_ratio_of(i))));
+/// Haar's variance for tau / T. Over ln x, by the trapezium rule.
+double haar_integral(double ratio) noexcept {
+  constexpr int kSteps = 3000;
+  const double log_from = std::log(1e-5);
+  const double log_step = (std::log(1e4) - log_from) / kSteps;
+  double sum = 0.0;
+  for (int k = 0; k <= kSteps; ++k) {
+    const double x = std::exp(log_from + log_step * k);
+    sum += x * von_karman_density(x) * haar_power(x * ratio) * log_step;
   }
+  return sum;
+}
 
-  double at(double ratio) const noexcept {
-    const double place = (std::log(ratio) - log_ratio_of(0)) / step();
-    const double inside = std::clamp(place, 0.0, static_cast<double>(kPoints - 1));
-    const auto below = std::min(static_cast<std::size_t>(inside), kPoints - 2);
-    const double t = inside - static_cast<double>(below);
-    return std::exp((1.0 - t) * log_variance_[below] + t * log_variance_[below + 1]);
-  }
-
- private:
-  static constexpr std::size_t kPoints = 121;
-  static double step() noexcept { return std::log(1e6) / static_cast<double>(kPoints - 1); }
-  static double log_ratio_of(std::size_t i) noexcept { return std::log(1e-3) + step() * static_cast<double>(i); }
-
-  /// Over ln x, by the trapezium rule.
-  static double integral(double ratio) noexcept {
-    constexpr int kSteps = 3000;
-    const double log_from = std::log(1e-5);
-    const double log_step = (std::log(1e4) - log_from) / kSteps;
-    double sum = 0.0;
-    for (int k = 0; k <= kSteps; ++k) {
-      const double x = std::exp(log_from + log_step * k);
-      sum += x * von_karman_density(x) * haar_power(x * ratio) * log_step;
-    }
-    return sum;
-  }
-
-  std::array<double, kPoints> log_variance_{};
-};
-
-const HaarTable& haar_table() {
-  static const HaarTable kTable;
+const RatioTable& haar_table() {
+  static const RatioTable kTable(haar_integral);
   return kTable;
 }
 
