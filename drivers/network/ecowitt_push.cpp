@@ -22,6 +22,7 @@
 #include "drivers/decode/network/station_push.hpp"
 #include "drivers/network/followed_station.hpp"
 #include "drivers/network/http_server.hpp"
+#include "drivers/network/station_silence.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
@@ -121,7 +122,8 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
         settings_(std::move(settings)),
         where_("http://" + to_string(settings_.address) + settings_.path),
         server_(settings_.address),
-        station_(settings_.station_key.reveal()) {}
+        station_(settings_.station_key.reveal()),
+        silence_(settings_.silence, kSilentPushPauses) {}
 
   void interrupt() noexcept override { server_.interrupt(); }
 
@@ -129,19 +131,18 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override {
     if (const auto opened = server_.open(); !opened) return opened.error();
     is_silent_ = true;
-    has_read_ = false;
     trouble_.clear();
     stranger_.clear();
-    last_pauses_ = {};
-    since_ = clock.now().mono;
-    return since_;
+    const MonoTime now = clock.now().mono;
+    silence_.begin(now);
+    return now;
   }
 
   Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
     Visits visits(*this, clock, sink);
     if (const auto served = server_.serve(kPushWait, visits); !served) return served.error();
     const MonoTime now = clock.now().mono;
-    if (now - since_ >= silence_limit()) {
+    if (silence_.is_long(now)) {
       is_silent_ = true;
       station_.lose();
     }
@@ -247,7 +248,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     said.time = now;
     sink.quantities(said);
     if (push->wind) {
-      publish(*push->wind, station, now, sink);
+      publish(*push, station, now, sink);
     } else {
       is_silent_ = true;
       trouble_ = push->wind.error() == Refusal::kInvalid
@@ -258,27 +259,20 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     return std::nullopt;
   }
 
-  void publish(const decode::DecodedWind& wind, const std::string& station, const Instant& now,
+  void publish(const decode::network::StationPush& push, const std::string& station, const Instant& now,
                sensor::SensorSink& sink) {
-    if (has_read_) last_pauses_ = {last_pauses_[1], now.mono - since_};
-    has_read_ = true;
+    silence_.end(std::string(push.identity), now.mono);
     is_silent_ = false;
-    since_ = now.mono;
     trouble_.clear();
     const std::string rival = station_.rival(now.mono);
     const std::string warning =
         rival.empty() ? "" : fmt::format("; {} pushes, too, and is not used: choose one by station_key or path", rival);
     report_connected(sink, fmt::format("{} pushes to {}{}", station, where_, warning));
     sink.reading({.time = now,
-                  .speed_m_s = *wind.speed_m_s,
-                  .direction_deg = wind.direction_deg,
-                  .gust_m_s = wind.gust_m_s,
+                  .speed_m_s = *push.wind->speed_m_s,
+                  .direction_deg = push.wind->direction_deg,
+                  .gust_m_s = push.wind->gust_m_s,
                   .quality = wind::ReadingQuality::kGood});
-  }
-
-  /// The smaller one of two pauses: one push that is lost is not the usual interval.
-  Nanoseconds silence_limit() const {
-    return std::max(settings_.silence, kSilentPushPauses * std::min(last_pauses_[0], last_pauses_[1]));
   }
 
   /// Why there is no wind.
@@ -289,7 +283,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     if (settings_.is_for_this_machine)
       return fmt::format("waits for pushes to {}, of this machine alone: a gateway needs another host, and from",
                          where_);
-    if (now - since_ < settings_.silence) return fmt::format("waits for pushes to {}{}", where_, stranger);
+    if (silence_.length(now) < settings_.silence) return fmt::format("waits for pushes to {}{}", where_, stranger);
     return fmt::format(
         "nothing has been pushed to {} for {:g} s: check that the gateway is on, its page Customized (`yuragi sensors "
         "describe ecowitt-push` says what to enter), and that no firewall stops TCP port {}{}",
@@ -300,13 +294,11 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
   std::string where_;
   HttpServer server_;
   FollowedStation station_;
+  StationSilence silence_;
   sensor::ReadingLimit limit_;
   std::string trouble_;   // of the last push that had no wind, since the last wind; empty: none
   std::string stranger_;  // who was refused first; empty: nobody
-  MonoTime since_{};      // the last reading, or since when there could have been one
   bool is_silent_ = true;
-  bool has_read_ = false;  // since it listens
-  std::array<Nanoseconds, 2> last_pauses_{};
 };
 
 Address push_address_of(const ParameterValues& values) {

@@ -16,6 +16,7 @@
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/bus/sender_filter.hpp"
 #include "drivers/network/followed_station.hpp"
+#include "drivers/network/station_silence.hpp"
 #include "drivers/network/tempest_finder.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reading_limit.hpp"
@@ -75,7 +76,8 @@ class TempestSensor final : public sensor::ReopeningSensor {
         settings_(std::move(settings)),
         where_(describe(settings_.port)),
         port_(bus::make_byte_port(settings_.port)),
-        station_(settings_.serial_number) {}
+        station_(settings_.serial_number),
+        silence_(settings_.silence, kSilentPauses) {}
 
   void interrupt() noexcept override { port_->interrupt(); }
 
@@ -83,11 +85,10 @@ class TempestSensor final : public sensor::ReopeningSensor {
   Result<MonoTime, Failure> open(const sensor::Clock& clock) override {
     if (const auto opened = port_->open(); !opened) return opened.error();
     is_silent_ = true;
-    has_read_ = false;
     hub_.clear();
-    last_pauses_ = {};
-    since_ = clock.now().mono;
-    return since_;
+    const MonoTime now = clock.now().mono;
+    silence_.begin(now);
+    return now;
   }
 
   Result<MonoTime, Failure> work(const sensor::Clock& clock, sensor::SensorSink& sink) override {
@@ -100,7 +101,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
     if (arrival.status == bus::ByteStatus::kForeign) sink.refused(decode::Refusal::kNotMine);
     if (arrival.status == bus::ByteStatus::kBytes) take_datagram(std::span(buffer_).first(arrival.size), now, sink);
 
-    if (now.mono - since_ >= silence_limit()) {
+    if (silence_.is_long(now.mono)) {
       is_silent_ = true;
       station_.lose();
     }
@@ -135,10 +136,8 @@ class TempestSensor final : public sensor::ReopeningSensor {
 
   void publish(const TempestMessage& message, const Instant& now, sensor::SensorSink& sink) {
     if (!limit_.admits(now.mono)) return sink.refused(decode::Refusal::kTooFrequent);
-    if (has_read_) last_pauses_ = {last_pauses_[1], now.mono - since_};
-    has_read_ = true;
+    silence_.end(message.serial_number, now.mono);
     is_silent_ = false;
-    since_ = now.mono;
     const std::string rival = station_.rival(now.mono);
     const std::string warning =
         rival.empty() ? "" : fmt::format("; {} is heard, too, and not used: choose one by serial_number", rival);
@@ -150,14 +149,9 @@ class TempestSensor final : public sensor::ReopeningSensor {
                   .quality = wind::ReadingQuality::kGood});
   }
 
-  /// The smaller one of two pauses: one message that is lost is not the usual interval.
-  Nanoseconds silence_limit() const {
-    return std::max(settings_.silence, kSilentPauses * std::min(last_pauses_[0], last_pauses_[1]));
-  }
-
   /// Why there is no wind.
   std::string trouble(MonoTime now) const {
-    const bool has_waited = now - since_ >= settings_.silence;
+    const bool has_waited = silence_.length(now) >= settings_.silence;
     const std::string station = settings_.serial_number.empty() ? "a station" : settings_.serial_number;
     if (!hub_.empty() && now - hub_heard_at_ < std::max(settings_.silence, kHubPatience)) {
       if (!settings_.serial_number.empty() && !other_.empty())
@@ -184,13 +178,11 @@ class TempestSensor final : public sensor::ReopeningSensor {
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kLargestDatagram);
   sensor::ReadingLimit limit_;
   FollowedStation station_;
+  StationSilence silence_;
   std::string hub_;    // that was heard last; empty: none
   std::string other_;  // a station that is not followed; empty: none
   MonoTime hub_heard_at_{};
-  MonoTime since_{};  // the last reading, or since when there could have been one
   bool is_silent_ = true;
-  bool has_read_ = false;                     // since it has the port
-  std::array<Nanoseconds, 2> last_pauses_{};  // between readings
   decode::network::TempestWinds winds_;
 };
 

@@ -301,6 +301,22 @@ TEST(EcowittPushDriver, KnowsTheIntervalThatIsSetInTheGateway) {
   EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
 }
 
+TEST(EcowittPushDriver, LearnsTheIntervalOfTheNextStationAnew) {
+  PushBench bench({{"silence", 60.0}});
+  for (int i = 0; i < 3; ++i) {
+    bench.ask(post_of(wind_form("AAA", 10)));
+    bench.clock.advance(600s);
+    bench.sensor->poll(bench.clock, bench.sink);
+  }
+  bench.clock.advance(2400s);  // 3000 s, five of AAA's pauses
+  bench.sensor->poll(bench.clock, bench.sink);
+  EXPECT_THAT(bench.ask(post_of(wind_form("BBB", 20))), StartsWith("HTTP/1.1 200"));
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnected);
+  bench.clock.advance(60s);
+  bench.sensor->poll(bench.clock, bench.sink);
+  EXPECT_EQ(bench.sink.last_state(), wind::LinkState::kConnecting);
+}
+
 /// Neither a message that is traced nor a status, whatever is wrong with the push.
 TEST(EcowittPushDriver, ShowsNoKey) {
   PushBench bench({{"path", std::string("/a")}});
