@@ -13,9 +13,6 @@ namespace {
 
 using Mode = std::complex<double>;
 
-/// 1 / (2 pi 1.339), in cycles: with it the integral scale of a line cut is that of the spec (engine/METHOD.md M2).
-constexpr double kCornerPerScale = 1.0 / (2.0 * std::numbers::pi * kVonKarmanCorner);
-
 /// A mode's own place in the random stream: its signed wave numbers side by side, 24, 24 and 16 bits.
 std::uint64_t address_of(std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y) noexcept {
   constexpr std::uint64_t kMask = (std::uint64_t{1} << 24U) - 1;
@@ -30,6 +27,11 @@ bool is_in_band(std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y, d
 }
 
 }  // namespace
+
+/// With it the integral scale of a line cut is that of the spec (engine/METHOD.md M2).
+double corner_cycles(double integral_scale) noexcept {
+  return 1.0 / (2.0 * std::numbers::pi * kVonKarmanCorner * integral_scale);
+}
 
 std::int64_t signed_wave(std::size_t index, std::size_t size) noexcept {
   return static_cast<std::int64_t>(index) - static_cast<std::int64_t>(index > size / 2 ? size : 0);
@@ -106,7 +108,7 @@ void fill_modes(fft::RealFft& fft, std::uint64_t seed,
 
 void fill_spectrum(fft::RealFft& fft, const NoiseSpec& spec) {
   const double exponent = mode_exponent(fft.dims(), spec.beta, spec.meaning);
-  const double corner = spec.integral_scale > 0.0 ? kCornerPerScale / spec.integral_scale : 0.0;
+  const double corner = spec.integral_scale > 0.0 ? corner_cycles(spec.integral_scale) : 0.0;
   fill_modes(fft, spec.seed, [&](std::int64_t wave_x, std::int64_t wave_z, std::int64_t wave_y) {
     // The constant mode is the mean: 0. Waves outside the band are left out.
     const auto k_squared = static_cast<double>(wave_x * wave_x + wave_z * wave_z + wave_y * wave_y);

@@ -32,6 +32,9 @@ void fill_spectrum(fft::RealFft& fft, const NoiseSpec& spec);
 void fill_modes(fft::RealFft& fft, std::uint64_t seed,
                 const std::function<double(std::int64_t, std::int64_t, std::int64_t)>& amplitude);
 
+/// Where von Karman's shape bends for an integral scale (above 0), in cycles an edge: 1 / (2 pi 1.339 L).
+double corner_cycles(double integral_scale) noexcept;
+
 /// The wave number that index `index` stands for on an axis of `size` samples: negative above its half.
 std::int64_t signed_wave(std::size_t index, std::size_t size) noexcept;
 

@@ -31,6 +31,30 @@ struct SampleKernelArguments {
   float* out = nullptr;
 };
 
+struct VectorSampleKernelLayer {
+  const float* tile_x = nullptr;
+  const float* tile_z = nullptr;
+  unsigned log2_size = 0;
+  const std::uint32_t* place_x = nullptr;
+  const std::uint32_t* place_z = nullptr;
+  std::uint32_t offset_x = 0;
+  std::uint32_t offset_z = 0;
+  float ahead_x = 0.0F;  ///< the unit vector of `along`, on the tile's axes
+  float ahead_z = 0.0F;
+  float along = 1.0F;
+  float across = 1.0F;
+  const float* along_weights = nullptr;  ///< of each place, beside `along`; null: 1
+  const float* across_weights = nullptr;
+};
+
+struct VectorSampleKernelArguments {
+  std::size_t count = 0;
+  std::size_t layer_count = 0;
+  VectorSampleKernelLayer layers[64] = {};
+  float* out_along = nullptr;
+  float* out_across = nullptr;
+};
+
 struct BendingKernelArguments {
   std::size_t count = 0;
   const float* strength = nullptr;
@@ -90,6 +114,7 @@ struct OscillatorKernelArguments {
 
 struct SampleKernels {
   void (*sample)(const SampleKernelArguments&) noexcept;
+  void (*sample_vectors)(const VectorSampleKernelArguments&) noexcept;
 };
 YURAGI_DECLARE_KERNEL_ROWS(SampleKernels, sample_kernels);
 

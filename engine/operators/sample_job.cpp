@@ -11,6 +11,14 @@ namespace {
 
 constexpr KernelRows<SampleKernels> kSampleRows = YURAGI_KERNEL_ROWS(sample_kernels);
 
+bool is_readable(const noise::VectorTile2* tile) noexcept {
+  return tile != nullptr && noise::is_readable(tile->x) && noise::is_readable(tile->z) && tile->x.size == tile->z.size;
+}
+
+const float* data_or_null(std::span<const float> weights) noexcept {
+  return weights.empty() ? nullptr : weights.data();
+}
+
 }  // namespace
 
 SampleJob::Problem SampleJob::validate() const noexcept {
@@ -40,9 +48,52 @@ SampleJob::Problem SampleJob::run() const noexcept {
                                                  .offset_x = layer.offset.x,
                                                  .offset_z = layer.offset.z,
                                                  .weight = layer.weight,
-                                                 .weights = layer.weights.empty() ? nullptr : layer.weights.data()};
+                                                 .weights = data_or_null(layer.weights)};
   }
   kSampleRows[row.value_or(best_simd_row())].sample(arguments);
+  return Problem::kNone;
+}
+
+VectorSampleJob::Problem VectorSampleJob::validate() const noexcept {
+  if (layers.size() > kMaxLayers) return Problem::kLayerCount;
+  if (out_across.size() != out_along.size()) return Problem::kSizesDiffer;
+  const auto has_size = [this](const auto& values) { return values.size() == out_along.size(); };
+  for (const VectorLayer& layer : layers) {
+    if (!is_readable(layer.tile)) return Problem::kTileNotReadable;
+    if (!has_size(layer.place_x) || !has_size(layer.place_z)) return Problem::kSizesDiffer;
+    if (!layer.along_weights.empty() && !has_size(layer.along_weights)) return Problem::kSizesDiffer;
+    if (!layer.across_weights.empty() && !has_size(layer.across_weights)) return Problem::kSizesDiffer;
+    for (const float number : {layer.ahead_x, layer.ahead_z, layer.along, layer.across}) {
+      if (!std::isfinite(number)) return Problem::kWeightNotFinite;
+    }
+  }
+  if (row && !is_runnable(*row)) return Problem::kRowNotRunnable;
+  return Problem::kNone;
+}
+
+VectorSampleJob::Problem VectorSampleJob::run() const noexcept {
+  const Problem problem = validate();
+  if (problem != Problem::kNone) return problem;
+
+  VectorSampleKernelArguments arguments{
+      .count = out_along.size(), .out_along = out_along.data(), .out_across = out_across.data()};
+  for (const VectorLayer& layer : layers) {
+    arguments.layers[arguments.layer_count++] = {
+        .tile_x = layer.tile->x.values.data(),
+        .tile_z = layer.tile->z.values.data(),
+        .log2_size = static_cast<unsigned>(std::countr_zero(layer.tile->x.size)),
+        .place_x = layer.place_x.data(),
+        .place_z = layer.place_z.data(),
+        .offset_x = layer.offset.x,
+        .offset_z = layer.offset.z,
+        .ahead_x = layer.ahead_x,
+        .ahead_z = layer.ahead_z,
+        .along = layer.along,
+        .across = layer.across,
+        .along_weights = data_or_null(layer.along_weights),
+        .across_weights = data_or_null(layer.across_weights)};
+  }
+  kSampleRows[row.value_or(best_simd_row())].sample_vectors(arguments);
   return Problem::kNone;
 }
 

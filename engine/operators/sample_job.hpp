@@ -8,6 +8,7 @@
 
 #include "engine/base/simd_row.hpp"
 #include "engine/noise/torus.hpp"
+#include "engine/noise/vector_noise.hpp"
 
 namespace yuragi::operators {
 
@@ -54,6 +55,47 @@ struct SampleJob {
   [[nodiscard]] Problem validate() const noexcept;
 
   /// Runs the job unless validate() finds a problem; returns the result of validate().
+  Problem run() const noexcept;
+};
+
+/// A shifted noise vector, and the places at which it is read: as a NoiseLayer. `ahead`: a unit vector on the tile's
+/// axes; a vector is weighed by its part along that one and its part to the left of it (from x to -z).
+struct VectorLayer {
+  const noise::VectorTile2* tile = nullptr;
+  std::span<const std::uint32_t> place_x;
+  std::span<const std::uint32_t> place_z;
+  noise::TorusPhase offset = {};
+  float ahead_x = 1.0F, ahead_z = 0.0F;
+  float along = 1.0F, across = 1.0F;
+  std::span<const float> along_weights = {};  ///< of each place, beside `along`; empty: 1
+  std::span<const float> across_weights = {};
+};
+
+/// The sampling operator for noise vectors: adds up layers at many places, out_along = sum of along * noise(place -
+/// offset) . ahead, and likewise to the left. Both components of a layer are read at once, as finding the samples costs
+/// as much as reading them. Owns nothing; no output overlaps an input or the other output. Thread-safe: jobs with
+/// different outputs, yes. Realtime-safe: yes. Every SIMD row computes the same bits, and layers are added in their
+/// order.
+struct VectorSampleJob {
+  static constexpr std::size_t kMaxLayers = 64;
+
+  std::span<const VectorLayer> layers;
+  std::optional<SimdRow> row = std::nullopt;  ///< unset: the widest that this machine can run
+
+  std::span<float> out_along;
+  std::span<float> out_across;
+
+  enum class Problem : std::uint8_t {
+    kNone,
+    kLayerCount,       ///< more than kMaxLayers
+    kTileNotReadable,  ///< none, is_readable() says no, or the two components differ in size
+    kSizesDiffer,      ///< places, weights (where there are any) and outputs
+    kWeightNotFinite,
+    kRowNotRunnable,
+  };
+  [[nodiscard]] Problem validate() const noexcept;
+
+  /// Runs the job unless validate() finds a problem; returns the result of validate(). Without layers: zeros.
   Problem run() const noexcept;
 };
 

@@ -44,15 +44,15 @@ struct Pairs {
   return __builtin_bit_cast(float, static_cast<std::uint32_t>(pair >> 32U));
 }
 
-[[gnu::always_inline]] inline float weight_at(const SampleKernelLayer& layer, std::size_t place) noexcept {
-  return layer.weights == nullptr ? layer.weight : layer.weight * layer.weights[place];
+[[gnu::always_inline]] inline float weight_at(float weight, const float* of_places, std::size_t place) noexcept {
+  return of_places == nullptr ? weight : weight * of_places[place];
 }
 
-/// Adds weight * noise at kAtOnce places to `sum`. A cell's two samples stand side by side in the tile, but for the
-/// last column's, whose east is the first: where one of the places is there, all are loaded one by one.
-[[gnu::always_inline]] inline void add_layer(const SampleKernelLayer& layer, std::size_t begin, float* sum) noexcept {
+/// Where kAtOnce places are on a layer's tile. Returns whether one of them is in the last column, whose east is the
+/// first.
+template <class Layer>
+[[gnu::always_inline]] inline bool find_cells(const Layer& layer, std::size_t begin, Cells& at) noexcept {
   const std::uint32_t last = (1U << layer.log2_size) - 1U;
-  Cells at;
   std::uint32_t wraps = 0;
   for (std::size_t i = 0; i < kAtOnce; ++i) {
     const noise::TorusCell x = noise::torus_cell(layer.place_x[begin + i] - layer.offset_x, layer.log2_size);
@@ -63,27 +63,69 @@ struct Pairs {
     at.z_fraction[i] = z.fraction;
     wraps |= x.first == last ? 1U : 0U;
   }
-  Pairs pairs;
-  if (wraps == 0) {
+  return wraps != 0;
+}
+
+/// A cell's two samples stand side by side in the tile, but for the last column's: where one of the places is there
+/// (`wraps`), all are loaded one by one.
+[[gnu::always_inline]] inline void load_pairs(const float* tile, unsigned log2_size, const Cells& at, bool wraps,
+                                              Pairs& pairs) noexcept {
+  if (!wraps) {
     for (std::size_t i = 0; i < kAtOnce; ++i) {
-      pairs.north[i] = load_pair(layer.tile + at.north[i]);
-      pairs.south[i] = load_pair(layer.tile + at.south[i]);
+      pairs.north[i] = load_pair(tile + at.north[i]);
+      pairs.south[i] = load_pair(tile + at.south[i]);
     }
   } else {
+    const std::uint32_t last = (1U << log2_size) - 1U;
     for (std::size_t i = 0; i < kAtOnce; ++i) {
-      pairs.north[i] = load_pair_around(layer.tile, at.north[i], last);
-      pairs.south[i] = load_pair_around(layer.tile, at.south[i], last);
+      pairs.north[i] = load_pair_around(tile, at.north[i], last);
+      pairs.south[i] = load_pair_around(tile, at.south[i], last);
     }
   }
-  alignas(64) float weights[kAtOnce];
-  for (std::size_t i = 0; i < kAtOnce; ++i) weights[i] = layer.weight;
-  if (layer.weights != nullptr) {
-    for (std::size_t i = 0; i < kAtOnce; ++i) weights[i] *= layer.weights[begin + i];
+}
+
+[[gnu::always_inline]] inline float value_at(const Pairs& pairs, const Cells& at, std::size_t i) noexcept {
+  const float north = noise::between(western(pairs.north[i]), eastern(pairs.north[i]), at.x_fraction[i]);
+  const float south = noise::between(western(pairs.south[i]), eastern(pairs.south[i]), at.x_fraction[i]);
+  return noise::between(north, south, at.z_fraction[i]);
+}
+
+/// A weight for each of kAtOnce places.
+[[gnu::always_inline]] inline void weigh(float weight, const float* of_places, std::size_t begin,
+                                         float* weights) noexcept {
+  for (std::size_t i = 0; i < kAtOnce; ++i) weights[i] = weight;
+  if (of_places != nullptr) {
+    for (std::size_t i = 0; i < kAtOnce; ++i) weights[i] *= of_places[begin + i];
   }
+}
+
+/// Adds weight * noise at kAtOnce places to `sum`.
+[[gnu::always_inline]] inline void add_layer(const SampleKernelLayer& layer, std::size_t begin, float* sum) noexcept {
+  Cells at;
+  const bool wraps = find_cells(layer, begin, at);
+  Pairs pairs;
+  load_pairs(layer.tile, layer.log2_size, at, wraps, pairs);
+  alignas(64) float weights[kAtOnce];
+  weigh(layer.weight, layer.weights, begin, weights);
+  for (std::size_t i = 0; i < kAtOnce; ++i) sum[i] += weights[i] * value_at(pairs, at, i);
+}
+
+/// The same of a vector, along the layer's direction and to the left of it.
+[[gnu::always_inline]] inline void add_vectors(const VectorSampleKernelLayer& layer, std::size_t begin, float* along,
+                                               float* across) noexcept {
+  Cells at;
+  const bool wraps = find_cells(layer, begin, at);
+  Pairs pairs_x, pairs_z;
+  load_pairs(layer.tile_x, layer.log2_size, at, wraps, pairs_x);
+  load_pairs(layer.tile_z, layer.log2_size, at, wraps, pairs_z);
+  alignas(64) float along_weights[kAtOnce], across_weights[kAtOnce];
+  weigh(layer.along, layer.along_weights, begin, along_weights);
+  weigh(layer.across, layer.across_weights, begin, across_weights);
   for (std::size_t i = 0; i < kAtOnce; ++i) {
-    const float north = noise::between(western(pairs.north[i]), eastern(pairs.north[i]), at.x_fraction[i]);
-    const float south = noise::between(western(pairs.south[i]), eastern(pairs.south[i]), at.x_fraction[i]);
-    sum[i] += weights[i] * noise::between(north, south, at.z_fraction[i]);
+    const float x = value_at(pairs_x, at, i);
+    const float z = value_at(pairs_z, at, i);
+    along[i] += along_weights[i] * (layer.ahead_x * x + layer.ahead_z * z);
+    across[i] += across_weights[i] * (layer.ahead_z * x - layer.ahead_x * z);
   }
 }
 
@@ -113,8 +155,9 @@ template <std::size_t known_layers>
     float sum = 0.0F;
     for (std::size_t index = 0; index < layers; ++index) {
       const SampleKernelLayer& layer = in.layers[index];
-      sum += weight_at(layer, i) * noise::read_bilinear(layer.tile, layer.log2_size, layer.place_x[i] - layer.offset_x,
-                                                        layer.place_z[i] - layer.offset_z);
+      sum += weight_at(layer.weight, layer.weights, i) * noise::read_bilinear(layer.tile, layer.log2_size,
+                                                                              layer.place_x[i] - layer.offset_x,
+                                                                              layer.place_z[i] - layer.offset_z);
     }
     in.out[i] = scaled(in, sum);
   }
@@ -132,8 +175,37 @@ void sample(const SampleKernelArguments& arguments) noexcept {
   }
 }
 
+void sample_vectors(const VectorSampleKernelArguments& arguments) noexcept {
+  const VectorSampleKernelArguments in = arguments;  // as above
+  std::size_t i = 0;
+  for (; i + kAtOnce <= in.count; i += kAtOnce) {
+    alignas(64) float along[kAtOnce] = {};
+    alignas(64) float across[kAtOnce] = {};
+    for (std::size_t layer = 0; layer < in.layer_count; ++layer) add_vectors(in.layers[layer], i, along, across);
+    for (std::size_t lane = 0; lane < kAtOnce; ++lane) {
+      in.out_along[i + lane] = along[lane];
+      in.out_across[i + lane] = across[lane];
+    }
+  }
+  for (; i < in.count; ++i) {
+    float along = 0.0F;
+    float across = 0.0F;
+    for (std::size_t index = 0; index < in.layer_count; ++index) {
+      const VectorSampleKernelLayer& layer = in.layers[index];
+      const noise::TorusCorners at =
+          noise::torus_corners(layer.log2_size, layer.place_x[i] - layer.offset_x, layer.place_z[i] - layer.offset_z);
+      const float x = noise::read_corners(layer.tile_x, at);
+      const float z = noise::read_corners(layer.tile_z, at);
+      along += weight_at(layer.along, layer.along_weights, i) * (layer.ahead_x * x + layer.ahead_z * z);
+      across += weight_at(layer.across, layer.across_weights, i) * (layer.ahead_z * x - layer.ahead_x * z);
+    }
+    in.out_along[i] = along;
+    in.out_across[i] = across;
+  }
+}
+
 }  // namespace
 
-const SampleKernels YURAGI_ROW_NAME(sample_kernels) = {sample};
+const SampleKernels YURAGI_ROW_NAME(sample_kernels) = {sample, sample_vectors};
 
 }  // namespace yuragi::operators

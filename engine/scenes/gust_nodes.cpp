@@ -35,15 +35,6 @@ GroundNodes coarse_of(const GroundNodes& nodes) {
   return coarse;
 }
 
-/// Reads and adds up those layers that there are.
-void add_up(std::span<const operators::NoiseLayer> layers, SimdRow row, std::span<float> out) noexcept {
-  if (layers.empty()) {
-    std::ranges::fill(out, 0.0F);
-  } else {
-    operators::SampleJob{.layers = layers, .row = row, .out = out}.run();
-  }
-}
-
 }  // namespace
 
 GustNodes::Nodes::Nodes(const wind::turbulence::GustNoise& gusts, const GroundNodes& nodes)
@@ -97,8 +88,7 @@ NodeRange GustNodes::coarse_nodes_of(const NodeRange& lines) const noexcept {
 
 void GustNodes::read(const wind::turbulence::GustNoise::Moment& moment, const GustWeights& weights,
                      const NodeRange& lines) noexcept {
-  read(moment, wind::turbulence::GustNoise::Component::kAlong, weights, lines);
-  read(moment, wind::turbulence::GustNoise::Component::kAcross, weights, lines);
+  read_tiles(moment, weights, lines);
   const NodeRange coarse = coarse_nodes_of(lines);
   for (std::size_t i = coarse.first; i < coarse.first + coarse.count; ++i) {
     envelope_[i] = gusts_->envelope(moment, coarse_.x_m[i], coarse_.z_m[i]);
@@ -113,39 +103,46 @@ void GustNodes::read_carried(const wind::turbulence::GustNoise::Moment& moment, 
   read(later, weights, lines);
 }
 
-/// One component at the nodes, and apart from it at the coarse nodes.
-void GustNodes::read(const wind::turbulence::GustNoise::Moment& moment,
-                     wind::turbulence::GustNoise::Component component, const GustWeights& weights,
-                     const NodeRange& lines) noexcept {
-  const bool is_along = component == wind::turbulence::GustNoise::Component::kAlong;
+/// At the nodes, and apart from them at the coarse nodes.
+void GustNodes::read_tiles(const wind::turbulence::GustNoise::Moment& moment, const GustWeights& weights,
+                           const NodeRange& lines) noexcept {
   std::array<wind::turbulence::GustNoise::Layer, wind::turbulence::GustNoise::kMaxLayers> octaves;
-  const std::size_t count = gusts_->layers(moment, component, octaves);
-  static_assert(wind::turbulence::GustNoise::kMaxLayers <= operators::SampleJob::kMaxLayers);
-  std::array<operators::NoiseLayer, wind::turbulence::GustNoise::kMaxLayers> fine;
-  std::array<operators::NoiseLayer, wind::turbulence::GustNoise::kMaxLayers> coarse;
+  const std::size_t count = gusts_->layers(moment, octaves);
+  static_assert(wind::turbulence::GustNoise::kMaxLayers <= operators::VectorSampleJob::kMaxLayers);
+  std::array<operators::VectorLayer, wind::turbulence::GustNoise::kMaxLayers> fine;
+  std::array<operators::VectorLayer, wind::turbulence::GustNoise::kMaxLayers> coarse;
   const NodeRange fine_range = nodes_of(lines);
   const NodeRange coarse_range = coarse_nodes_of(lines);
   std::size_t fine_count = 0;
   std::size_t coarse_count = 0;
   for (const wind::turbulence::GustNoise::Layer& layer : std::span(octaves).first(count)) {
-    if (held_[layer.octave] == 0.0F) continue;
+    const float held = held_[layer.octave];
+    if (held == 0.0F) continue;
     const bool is_slow = is_coarse(layer.octave);
     const Nodes& nodes = is_slow ? coarse_ : fine_;
     const NodeRange& range = is_slow ? coarse_range : fine_range;
     const std::size_t torus = wind::turbulence::GustNoise::torus_of(layer.octave);
-    const operators::NoiseLayer of_range{
+    (is_slow ? coarse[coarse_count++] : fine[fine_count++]) = {
         .tile = layer.tile,
         .place_x = range.of(std::span(nodes.on_torus_x[torus])),
         .place_z = range.of(std::span(nodes.on_torus_z[torus])),
         .offset = layer.offset,
-        .weight = held_[layer.octave] * layer.weight_m_s,
-        .weights = range.of((is_along ? weights.along : weights.across)[layer.octave])};
-    (is_slow ? coarse[coarse_count++] : fine[fine_count++]) = of_range;
+        .ahead_x = layer.ahead_x,
+        .ahead_z = layer.ahead_z,
+        .along = held * layer.along_m_s,
+        .across = held * layer.across_m_s,
+        .along_weights = range.of(weights.along[layer.octave]),
+        .across_weights = range.of(weights.across[layer.octave])};
   }
-  add_up(std::span(fine).first(fine_count), row_,
-         fine_range.of(std::span(is_along ? fine_.along_m_s : fine_.across_m_s)));
-  add_up(std::span(coarse).first(coarse_count), row_,
-         coarse_range.of(std::span(is_along ? coarse_.along_m_s : coarse_.across_m_s)));
+  const auto add_up = [this](std::span<const operators::VectorLayer> layers, Nodes& nodes, const NodeRange& range) {
+    operators::VectorSampleJob{.layers = layers,
+                               .row = row_,
+                               .out_along = range.of(std::span(nodes.along_m_s)),
+                               .out_across = range.of(std::span(nodes.across_m_s))}
+        .run();
+  };
+  add_up(std::span(fine).first(fine_count), fine_, fine_range);
+  add_up(std::span(coarse).first(coarse_count), coarse_, coarse_range);
 }
 
 /// Adds what the coarse nodes have to what the nodes have, and gives it the strength of the place.

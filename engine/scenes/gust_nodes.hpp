@@ -99,8 +99,8 @@ class GustNodes {
     float fraction = 0.0F;
   };
 
-  void read(const wind::turbulence::GustNoise::Moment& moment, wind::turbulence::GustNoise::Component component,
-            const GustWeights& weights, const NodeRange& lines) noexcept;
+  void read_tiles(const wind::turbulence::GustNoise::Moment& moment, const GustWeights& weights,
+                  const NodeRange& lines) noexcept;
   void add_coarse(const NodeRange& lines) noexcept;
   static std::vector<Between> between(std::size_t nodes, std::size_t coarse_nodes);
 

@@ -78,7 +78,7 @@ std::string request_of(std::string_view data) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto said = said_to(request_of({reinterpret_cast<const char*>(data), size}));
   require(!said || said->empty() || said->starts_with("HTTP/1."));
-  require(!said || said->find("HTTP/1.1 500") == std::string::npos);
+  require(!said || !said->starts_with("HTTP/1.1 500"));  // what is said of a host may be any text
   static unsigned count = 0;
   if (++count % 64 != 0) return 0;
   const auto page = said_to("GET / HTTP/1.0\r\nHost: roof\r\n\r\n");

@@ -16,8 +16,8 @@
 #include "engine/math/philox.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
-#include "engine/wind/turbulence/von_karman_integrals.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
+#include "engine/wind/turbulence/wind_spectrum.hpp"
 #include "tests/proof/band_power.hpp"
 #include "tests/proof/estimated_wind.hpp"
 #include "tests/proof/sonic_record.hpp"
@@ -171,16 +171,20 @@ SonicRecord made_up_wind(double speed_m_s, double sigma_m_s, double length_m, st
   constexpr double kStep = 1.0 / 32.0;
   for (double place = std::log2(1.0 / 1800.0); place < std::log2(5.0); place += kStep) {
     const double low_hz = std::exp2(place);
-    const double power = wind::turbulence::von_karman_share(low_hz, std::exp2(place + kStep), length_m / speed_m_s);
     for (const auto component : {&wind::WindVector::v_m_s, &wind::WindVector::u_m_s}) {
-      const double sigma =
-          component == &wind::WindVector::v_m_s ? sigma_m_s : wind::turbulence::kAcrossPerAlong * sigma_m_s;
+      const bool is_along = component == &wind::WindVector::v_m_s;
+      const auto spectrum = wind::turbulence::WindSpectrum::make(
+          {.component = is_along ? wind::turbulence::WindComponent::kAlong : wind::turbulence::WindComponent::kAcross,
+           .speed_m_s = speed_m_s,
+           .sigma_m_s = is_along ? sigma_m_s : wind::turbulence::kAcrossPerAlong * sigma_m_s,
+           .length_m = length_m});
+      const double variance =
+          spectrum->density_m2_s2_hz(low_hz * std::exp2(0.5 * kStep)) * low_hz * (std::exp2(kStep) - 1.0);
       const double frequency_hz = low_hz * std::exp2(kStep * random.uniform(drawn++));
       const double phase = 2.0 * std::numbers::pi * random.uniform(drawn++);
       const double turn = 2.0 * std::numbers::pi * frequency_hz / record.rate_hz;
       for (std::size_t i = 0; i < record.samples.size(); ++i) {
-        record.samples[i].*component +=
-            sigma * std::sqrt(2.0 * power) * std::cos(phase + turn * static_cast<double>(i));
+        record.samples[i].*component += std::sqrt(2.0 * variance) * std::cos(phase + turn * static_cast<double>(i));
       }
     }
   }

@@ -309,6 +309,7 @@ void BlendedEstimator::carry_gusts(const MeasuredMean& measured, double dt_s) no
   coherence.speed_m_s = advection_m_s_;
   coherence.length_m = gust_length_m(measured);
   coherence.decay_along += part * (ground::GustCoherence::decay_along_of(now.intensity) - coherence.decay_along);
+  coherence.decay_across += part * (ground::GustCoherence::decay_across_of(now.intensity) - coherence.decay_across);
   reach_m_ += std::clamp(settings_.reach_m - reach_m_, -kReachRate * way_m, kReachRate * way_m);
 }
 

@@ -6,13 +6,12 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <utility>
 
 #include "engine/math/philox.hpp"
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/noise/torus_read.hpp"
-#include "engine/noise/turning_noise.hpp"
 #include "engine/noise/unit_reading.hpp"
+#include "engine/noise/vector_noise.hpp"
 
 namespace yuragi::wind::turbulence {
 namespace {
@@ -83,8 +82,9 @@ noise::NoiseTile2 make_strength(std::uint64_t seed) {
 
 GustNoise::GustNoise(const GustNoiseSettings& settings)
     : evolves_(settings.evolves),
-      along_(make_octaves(settings, settings.seed ^ math::stream_id("gusts along the wind"))),
-      across_(make_octaves(settings, settings.seed ^ math::stream_id("gusts across the wind"))),
+      ways_along_(make_ways(settings.seed ^ math::stream_id("gusts along the wind"))),
+      ways_across_(make_ways(settings.seed ^ math::stream_id("gusts across the wind"))),
+      tiles_(make_tiles(settings)),
       strength_(make_strength(settings.seed)) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   for (std::size_t chain = 0; chain < 2; ++chain) {
@@ -111,30 +111,38 @@ GustNoise::GustNoise(const GustNoiseSettings& settings)
   }
 }
 
-GustNoise::Octaves GustNoise::make_octaves(const GustNoiseSettings& settings, std::uint64_t seed) {
-  Octaves component;
-  noise::TurningNoiseMaker turning;
-  for (std::size_t chain = 0; chain < 2; ++chain) {
-    const std::uint64_t chain_seed = seed + 100 * chain;
-    for (std::size_t i = 0; i < kTileOctaves; ++i) {
-      const noise::NoiseSpec spec = tile_octave(i, settings.samples, chain_seed + i);
-      noise::NoiseTile2& tile = component.tiles[chain * kTileOctaves + i];
-      if (settings.evolves) {
-        noise::TurningNoise2 noise = turning.make(spec).value();
-        noise::NoiseTile2& quarter = component.quarters[chain * kTileOctaves + i];
-        tile = std::move(noise.first);
-        quarter = std::move(noise.quarter);
-        noise::scale_to_unit_reading(quarter);
-      } else {
-        tile = noise::make_noise_2d(spec).value();
-      }
-      noise::scale_to_unit_reading(tile);
-    }
-    for (std::size_t i = 0; i < kWayOctaves; ++i) {
-      component.ways[chain * kWayOctaves + i] = way_octave(i, chain_seed + i);
+GustNoise::Ways GustNoise::make_ways(std::uint64_t seed) {
+  Ways ways;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    ways[i] = way_octave(i % kWayOctaves, seed + 100 * (i / kWayOctaves) + i % kWayOctaves);
+  }
+  return ways;
+}
+
+GustNoise::Tiles GustNoise::make_tiles(const GustNoiseSettings& settings) {
+  Tiles tiles;
+  noise::VectorNoiseMaker maker;
+  const std::uint64_t seed = settings.seed ^ math::stream_id("gusts of the tiles");
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const std::size_t chain = i / kTileOctaves;
+    const std::size_t octave = i % kTileOctaves;
+    tiles[i] = maker.make(tile_octave(octave, settings.samples, seed + 100 * chain + octave), settings.evolves).value();
+    for (noise::VectorTile2* tile : {&tiles[i].first, &tiles[i].quarter}) {
+      if (tile->x.size == 0) continue;
+      noise::scale_to_unit_reading(tile->x);
+      noise::scale_to_unit_reading(tile->z);
     }
   }
-  return component;
+  return tiles;
+}
+
+std::array<std::array<float, 2>, GustNoise::kTori> GustNoise::on_axes(WindVector unit) const noexcept {
+  std::array<std::array<float, 2>, kTori> axes{};
+  for (std::size_t torus = 0; torus < kTori; ++torus) {
+    const auto [x, z] = tori_[torus].turned(unit.u_m_s, -unit.v_m_s);
+    axes[torus] = {static_cast<float>(x), static_cast<float>(z)};
+  }
+  return axes;
 }
 
 GustNoise::Carried GustNoise::begin(std::uint64_t seed) const noexcept {
@@ -178,8 +186,38 @@ noise::TorusPhase GustNoise::place_on(std::size_t torus, double east_m, double s
   return {noise::torus_phase(x_m, tori_[torus].period_m), noise::torus_phase(z_m, tori_[torus].period_m)};
 }
 
-GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m) const noexcept {
-  return {read(along_, carried, east_m, south_m), read(across_, carried, east_m, south_m)};
+/// Octave by octave: a field that has moved by X is read at x - X; its eddies as far turned as they are.
+GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double south_m,
+                                WindVector ahead) const noexcept {
+  Values values{};
+  for (std::size_t i = 0; i < 2 * kWayOctaves; ++i) {
+    const std::uint32_t phase = (i < kWayOctaves ? carried.way_first : carried.way_second).phase();
+    values.along[i] = noise::read_noise(ways_along_[i], phase);
+    values.across[i] = noise::read_noise(ways_across_[i], phase);
+  }
+  Moment moment;
+  moment.carried = carried;
+  moment.ahead = ahead;
+  moment.along_m_s.fill(1.0F);
+  moment.across_m_s.fill(1.0F);
+  std::array<Layer, kMaxLayers> all;
+  const std::size_t count = layers(moment, all);
+  for (const Layer& layer : std::span(all).first(count)) {
+    const Gust gust = read(layer, place_on(torus_of(layer.octave), east_m, south_m));
+    values.along[kFirstTileOctave + layer.octave] += gust.along_m_s;
+    values.across[kFirstTileOctave + layer.octave] += gust.across_m_s;
+  }
+  return values;
+}
+
+GustNoise::Gust GustNoise::read(const Layer& layer, noise::TorusPhase place) noexcept {
+  const auto log2_size = static_cast<unsigned>(std::countr_zero(layer.tile->x.size));
+  const noise::TorusPhase there = place - layer.offset;
+  const noise::TorusCorners corners = noise::torus_corners(log2_size, there.x, there.z);
+  const float x = noise::read_corners(layer.tile->x.values.data(), corners);
+  const float z = noise::read_corners(layer.tile->z.values.data(), corners);
+  return {layer.along_m_s * (layer.ahead_x * x + layer.ahead_z * z),
+          layer.across_m_s * (layer.ahead_z * x - layer.ahead_x * z)};
 }
 
 WindVector GustNoise::everywhere(const Moment& moment) const noexcept {
@@ -187,52 +225,47 @@ WindVector GustNoise::everywhere(const Moment& moment) const noexcept {
   double across = 0.0;
   for (std::size_t i = 0; i < 2 * kWayOctaves; ++i) {
     const noise::TorusTravel& way = i < kWayOctaves ? moment.carried.way_first : moment.carried.way_second;
-    along += static_cast<double>(moment.along_m_s[i] * noise::read_noise(along_.ways[i], way.phase()));
-    across += static_cast<double>(moment.across_m_s[i] * noise::read_noise(across_.ways[i], way.phase()));
+    along += static_cast<double>(moment.along_m_s[i] * noise::read_noise(ways_along_[i], way.phase()));
+    across += static_cast<double>(moment.across_m_s[i] * noise::read_noise(ways_across_[i], way.phase()));
   }
   return turned(moment.ahead, along, across);
 }
 
-std::size_t GustNoise::layers(const Moment& moment, Component component,
-                              std::span<Layer, kMaxLayers> out) const noexcept {
-  const bool is_along = component == Component::kAlong;
-  const Octaves& octaves = is_along ? along_ : across_;
-  const auto& weights_m_s = is_along ? moment.along_m_s : moment.across_m_s;
+std::size_t GustNoise::layers(const Moment& moment, std::span<Layer, kMaxLayers> out) const noexcept {
+  const auto ahead = on_axes(moment.ahead);
   const Carried& carried = moment.carried;
   std::size_t count = 0;
   for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
-    const float weight_m_s = weights_m_s[2 * kWayOctaves + i];
-    if (weight_m_s < kNothing_m_s) continue;
-    const noise::TorusPhase offset = carried.tiles[torus_of(i)].phase();
-    out[count++] = {&octaves.tiles[i], i, offset, carried.eddies.cosine[i] * weight_m_s};
-    if (evolves_) out[count++] = {&octaves.quarters[i], i, offset, carried.eddies.sine[i] * weight_m_s};
+    const float along_m_s = moment.along_m_s[kFirstTileOctave + i];
+    const float across_m_s = moment.across_m_s[kFirstTileOctave + i];
+    if (along_m_s < kNothing_m_s && across_m_s < kNothing_m_s) continue;
+    const std::size_t torus = torus_of(i);
+    const auto add = [&](const noise::VectorTile2& tile, float part) {
+      out[count++] = {.tile = &tile,
+                      .octave = i,
+                      .offset = carried.tiles[torus].phase(),
+                      .ahead_x = ahead[torus][0],
+                      .ahead_z = ahead[torus][1],
+                      .along_m_s = part * along_m_s,
+                      .across_m_s = part * across_m_s};
+    };
+    add(tiles_[i].first, carried.eddies.cosine[i]);
+    if (evolves_) add(tiles_[i].quarter, carried.eddies.sine[i]);
   }
   return count;
 }
 
 WindVector GustNoise::local(const Moment& moment, double east_m, double south_m) const noexcept {
   std::array<noise::TorusPhase, kTori> places;
-  for (std::size_t i = 0; i < kTori; ++i) {
-    places[i] = place_on(i, east_m, south_m) - moment.carried.tiles[i].phase();
-  }
-  // What layers() lists, octave by octave: its tiles are equally large, and are read at the same place.
+  for (std::size_t torus = 0; torus < kTori; ++torus) places[torus] = place_on(torus, east_m, south_m);
+  std::array<Layer, kMaxLayers> all;
+  const std::size_t count = layers(moment, all);
   float along = 0.0F;
   float across = 0.0F;
-  for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
-    const float along_m_s = moment.along_m_s[2 * kWayOctaves + i];
-    const float across_m_s = moment.across_m_s[2 * kWayOctaves + i];
-    const noise::TorusPhase place = places[torus_of(i)];
-    const auto log2_size = static_cast<unsigned>(std::countr_zero(along_.tiles[i].size));
-    const noise::TorusCorners corners = noise::torus_corners(log2_size, place.x, place.z);
-    const float cosine = moment.carried.eddies.cosine[i];
-    const float sine = moment.carried.eddies.sine[i];
-    const auto add = [&](const Octaves& octaves, float weight_m_s, float& sum) {
-      if (weight_m_s < kNothing_m_s) return;
-      sum += cosine * weight_m_s * noise::read_corners(octaves.tiles[i].values.data(), corners);
-      if (evolves_) sum += sine * weight_m_s * noise::read_corners(octaves.quarters[i].values.data(), corners);
-    };
-    add(along_, along_m_s, along);
-    add(across_, across_m_s, across);
+  for (const Layer& layer : std::span(all).first(count)) {
+    const Gust gust = read(layer, places[torus_of(layer.octave)]);
+    along += gust.along_m_s;
+    across += gust.across_m_s;
   }
   const float strength = envelope(moment, east_m, south_m);
   return turned(moment.ahead, static_cast<double>(strength * along), static_cast<double>(strength * across));
@@ -243,25 +276,6 @@ float GustNoise::envelope(const Moment& moment, double east_m, double south_m) c
   if (g == 0.0F) return 1.0F;
   return std::exp(g * noise::read_noise(strength_, place_on(0, east_m, south_m) - moment.carried.tiles[0].phase()) -
                   g * g);
-}
-
-std::array<float, GustNoise::kOctaves> GustNoise::read(const Octaves& component, const Carried& carried, double east_m,
-                                                       double south_m) const noexcept {
-  std::array<float, kOctaves> values{};
-  for (std::size_t i = 0; i < 2 * kWayOctaves; ++i) {
-    values[i] =
-        noise::read_noise(component.ways[i], (i < kWayOctaves ? carried.way_first : carried.way_second).phase());
-  }
-  for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
-    // A field that has moved by X is read at x - X; its eddies as far turned as they are.
-    const std::size_t torus = torus_of(i);
-    const noise::TorusPhase place = place_on(torus, east_m, south_m) - carried.tiles[torus].phase();
-    float& value = values[2 * kWayOctaves + i];
-    value = noise::read_noise(component.tiles[i], place);
-    if (!evolves_) continue;
-    value = carried.eddies.cosine[i] * value + carried.eddies.sine[i] * noise::read_noise(component.quarters[i], place);
-  }
-  return values;
 }
 
 double eddy_turnover_m23_s(double sigma_m_s, double length_m) noexcept {

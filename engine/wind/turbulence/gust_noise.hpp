@@ -8,6 +8,7 @@
 
 #include "engine/noise/noise_tile.hpp"
 #include "engine/noise/torus.hpp"
+#include "engine/noise/vector_noise.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi::wind::turbulence {
@@ -24,7 +25,12 @@ struct GustNoiseSettings {
 
 /// Gusts as a pattern that the wind carries over the ground, taken apart into octaves of the wavenumber, so that each
 /// can be given its own strength at each moment (engine/wind/README.md W14). Every octave has mean 0 and variance 1 as
-/// it is read.
+/// it is read, in every direction.
+///
+/// The octaves of the tiles are vectors, what a plane through isotropic, incompressible turbulence has
+/// (noise::VectorNoise2): gusts are as narrow across the wind as W13 lets them be, from wherever it blows. The scalar
+/// part and the curl are mixed as in the inertial range: what is longer than the integral scale should have less curl,
+/// which no spectrum along or across the wind shows by more than 0.5 dB.
 ///
 /// Two chains of octaves are added, the second's waves longer than the first's by the golden section, so that no repeat
 /// is seen. A chain's waves of 2048 m down to 0.25 m are 2-D noises on three tori, each turned by an angle of its own:
@@ -33,7 +39,7 @@ struct GustNoiseSettings {
 /// everywhere in the scene: a 1-D noise along the way that the wind has come (65 km and 106 km before it repeats). An
 /// octave's shortest wave has four samples or more.
 ///
-/// Where it evolves, an octave of a tile is two tiles mixed, cos(a) of one and sin(a) of the other (TurningNoise2), and
+/// Where it evolves, an octave of a tile is two tiles mixed, cos(a) of one and sin(a) of the other (VectorNoise2), and
 /// its angle a advances by w = turnover |k|^(2/3) a second, |k| in the octave's middle: an eddy's own rate (Kolmogorov
 /// 1941), turnover being the cube root of the dissipation, eddy_turnover_m23_s().
 ///
@@ -68,7 +74,7 @@ class GustNoise {
   /// How far apart the samples of an octave's tiles are, m; octaves of the tiles are counted from the first chain's
   /// longest. A wave is read linearly between them.
   double sample_m(std::size_t tile_octave) const noexcept {
-    return tori_[torus_of(tile_octave)].period_m / static_cast<double>(along_.tiles[tile_octave].size);
+    return tori_[torus_of(tile_octave)].period_m / static_cast<double>(tiles_[tile_octave].first.x.size);
   }
 
   /// How far the eddies of each octave of the tiles, the first chain's and the second's, have turned.
@@ -105,11 +111,11 @@ class GustNoise {
              double turnover_m23_s = 0.0) const noexcept;
 
   /// The octaves' values, linear between samples, at a place (metres east and south of the middle of the scene), each
-  /// of variance 1: along the wind and across it.
+  /// of variance 1: along the unit vector `ahead` and to the left of it.
   struct Values {
     std::array<float, kOctaves> along, across;
   };
-  Values at(const Carried& carried, double east_m, double south_m) const noexcept;
+  Values at(const Carried& carried, double east_m, double south_m, WindVector ahead = {0.0, 1.0}) const noexcept;
 
   /// The pattern at a moment: how far it has been carried, which way its `along` points, and how strong each octave is
   /// (its standard deviation).
@@ -131,19 +137,19 @@ class GustNoise {
   float envelope(const Moment& moment, double east_m, double south_m) const noexcept;
 
   /// The gusts of a place as layers, to be read at many places at once and added up, without the envelope: a tile, how
-  /// far it has been carried, and its weight in m/s. A place is read at place_on(torus_of(layer.octave), ...) - offset.
-  /// An octave that evolves has two layers.
+  /// far it has been carried, which way `ahead` is on its axes, and its weights in m/s along that and across it. A
+  /// place is read at place_on(torus_of(layer.octave), ...) - offset. An octave that evolves has two layers.
   struct Layer {
-    const noise::NoiseTile2* tile = nullptr;
+    const noise::VectorTile2* tile = nullptr;
     std::size_t octave = 0;  ///< of the tiles, counted from the first chain's longest
     noise::TorusPhase offset;
-    float weight_m_s = 0.0F;
+    float ahead_x = 0.0F, ahead_z = 0.0F;
+    float along_m_s = 0.0F, across_m_s = 0.0F;
   };
-  enum class Component : std::uint8_t { kAlong, kAcross };
   static constexpr std::size_t kMaxLayers = 4 * kTileOctaves;  ///< half as many if nothing evolves
 
   /// Writes those that have a weight; how many they are.
-  std::size_t layers(const Moment& moment, Component component, std::span<Layer, kMaxLayers> out) const noexcept;
+  std::size_t layers(const Moment& moment, std::span<Layer, kMaxLayers> out) const noexcept;
 
   /// A place on a torus.
   noise::TorusPhase place_on(std::size_t torus, double east_m, double south_m) const noexcept;
@@ -158,24 +164,27 @@ class GustNoise {
       return {cosine * east_m + sine * south_m, cosine * south_m - sine * east_m};
     }
   };
-  /// One component of the wind: both chains' octaves.
-  struct Octaves {
-    std::array<noise::NoiseTile1, 2 * kWayOctaves> ways;
-    std::array<noise::NoiseTile2, 2 * kTileOctaves> tiles;
-    /// The tiles, a quarter turn on; empty if nothing evolves.
-    std::array<noise::NoiseTile2, 2 * kTileOctaves> quarters;
-  };
+  using Ways = std::array<noise::NoiseTile1, 2 * kWayOctaves>;
+  using Tiles = std::array<noise::VectorNoise2, 2 * kTileOctaves>;
 
-  static Octaves make_octaves(const GustNoiseSettings& settings, std::uint64_t seed);
-  std::array<float, kOctaves> read(const Octaves& component, const Carried& carried, double east_m,
-                                   double south_m) const noexcept;
+  /// Along the wind and to the left of it.
+  struct Gust {
+    float along_m_s = 0.0F, across_m_s = 0.0F;
+  };
+  static Gust read(const Layer& layer, noise::TorusPhase place) noexcept;
+
+  static Ways make_ways(std::uint64_t seed);
+  static Tiles make_tiles(const GustNoiseSettings& settings);
+  /// A unit vector on the axes of each torus.
+  std::array<std::array<float, 2>, kTori> on_axes(WindVector unit) const noexcept;
 
   std::array<double, 2> way_periods_m_;
   std::array<Torus, kTori> tori_;
   std::array<Octave, kOctaves> octaves_{};
   std::array<double, 2 * kTileOctaves> turn_rates_m_23_{};  ///< |k|^(2/3) in the middle of each octave of the tiles
   bool evolves_;
-  Octaves along_, across_;
+  Ways ways_along_, ways_across_;  ///< of both chains
+  Tiles tiles_;
   noise::NoiseTile2 strength_;  ///< the envelope's G, on the first torus
 };
 

@@ -13,10 +13,11 @@ double centre_hz(const GustNoise::Octave& octave, double advection_m_s) noexcept
 }
 
 GustVariances gust_variances(const GustNoise& noise, double intensity, double length_m) noexcept {
-  // On the ground, in two dimensions: what is left of von Karman's variance above |k|.
+  // On the ground, in two dimensions: what is left above |k| of the variance of one component.
   const auto above = [length_m](double rad_m) {
     const double reduced = noise::kVonKarmanCorner * length_m * rad_m;
-    return std::pow(1.0 + reduced * reduced, -1.0 / 3.0);
+    const double scalar = 1.0 / std::cbrt(1.0 + reduced * reduced);
+    return scalar * (7.0 - scalar * scalar * scalar) / 6.0;
   };
   // Along the way, in one: at a wind of 1 m/s a wavenumber k is a frequency k / 2 pi.
   const auto along_way = [length_m](double from_rad_m, double to_rad_m) {

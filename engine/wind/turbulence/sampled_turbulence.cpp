@@ -16,18 +16,24 @@ namespace {
 /// Means of more samples than this are as good as means over all of the time.
 constexpr std::size_t kSampledScales = 6;
 
-/// The autocorrelation of u at a lag over L / U: the transform of W5. Von Karman 1948; as in ESDU 85020.
-double autocorrelation(double lag) {
+/// The autocorrelation at a lag over L / U: the transform of W5. Von Karman 1948; as in ESDU 85020. Across the wind it
+/// is f + (r / 2) df/dr, f being that along it (incompressible turbulence, carried along frozen).
+double autocorrelation(double lag, WindComponent component) {
   const double x = lag / noise::kVonKarmanCorner;
   if (x < 1e-9) return 1.0;
   if (x > 600.0) return 0.0;
-  return std::pow(2.0, 2.0 / 3.0) / std::tgamma(1.0 / 3.0) * std::cbrt(x) * std::cyl_bessel_k(1.0 / 3.0, x);
+  const double scale = std::pow(2.0, 2.0 / 3.0) / std::tgamma(1.0 / 3.0) * std::cbrt(x);
+  const double along = scale * std::cyl_bessel_k(1.0 / 3.0, x);
+  if (component == WindComponent::kAlong) return along;
+  return along - 0.5 * x * scale * std::cyl_bessel_k(2.0 / 3.0, x);
 }
 
-double sampled_haar(std::size_t scale, double ratio) {
+double sampled_haar(std::size_t scale, double ratio, WindComponent component) {
   const std::size_t count = std::size_t{1} << scale;
   std::vector<double> at(2 * count);
-  for (std::size_t lag = 0; lag < at.size(); ++lag) at[lag] = autocorrelation(ratio * static_cast<double>(lag));
+  for (std::size_t lag = 0; lag < at.size(); ++lag) {
+    at[lag] = autocorrelation(ratio * static_cast<double>(lag), component);
+  }
   // Of each mean with itself, less that of one with the other: pairs of samples that are so far apart, either way.
   double sum = static_cast<double>(count) * (at[0] - at[count]);
   for (std::size_t lag = 1; lag < count; ++lag) {
@@ -37,26 +43,29 @@ double sampled_haar(std::size_t scale, double ratio) {
 }
 
 /// Returns a table for each scale.
-const std::vector<RatioTable>& sampled_haar_tables() {
-  static const std::vector<RatioTable> kTables = [] {
+const std::vector<RatioTable>& sampled_haar_tables(WindComponent component) {
+  static const auto kMade = [](WindComponent of) {
     std::vector<RatioTable> tables;
     for (std::size_t scale = 0; scale < kSampledScales; ++scale) {
-      tables.emplace_back([scale](double ratio) { return sampled_haar(scale, ratio); });
+      tables.emplace_back([scale, of](double ratio) { return sampled_haar(scale, ratio, of); });
     }
     return tables;
-  }();
-  return kTables;
+  };
+  static const std::vector<RatioTable> kAlong = kMade(WindComponent::kAlong);
+  static const std::vector<RatioTable> kAcross = kMade(WindComponent::kAcross);
+  return component == WindComponent::kAlong ? kAlong : kAcross;
 }
 
 }  // namespace
 
 void make_sampled_haar_table() {
-  sampled_haar_tables();
+  sampled_haar_tables(WindComponent::kAlong);
 }
 
-double von_karman_sampled_haar_variance(std::size_t scale, double interval_over_time_scale) noexcept {
-  if (scale < kSampledScales) return sampled_haar_tables()[scale].at(interval_over_time_scale);
-  return von_karman_haar_variance(std::ldexp(interval_over_time_scale, static_cast<int>(scale)));
+double von_karman_sampled_haar_variance(std::size_t scale, double interval_over_time_scale,
+                                        WindComponent component) noexcept {
+  if (scale < kSampledScales) return sampled_haar_tables(component)[scale].at(interval_over_time_scale);
+  return von_karman_haar_variance(std::ldexp(interval_over_time_scale, static_cast<int>(scale)), component);
 }
 
 double von_karman_unfolded_part(double frequency_hz, double interval_s, double time_scale_s) noexcept {

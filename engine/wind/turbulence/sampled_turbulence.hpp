@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "engine/wind/turbulence/wind_component.hpp"
+
 namespace yuragi::wind::turbulence {
 
 // What instantaneous samples show of turbulence with von Karman's spectrum (engine/wind/README.md W39, W40). A sample
@@ -9,10 +11,12 @@ namespace yuragi::wind::turbulence {
 // Thread-safe.
 
 /// The mean square of the difference between neighbouring means of 2^scale samples, over the variance, by the
-/// autocorrelation of the turbulence. `interval_over_time_scale`: from sample to sample, over L / U (above 0). Tabled
-/// and interpolated, within 1 % from 1e-3 to 1e3. Realtime-safe after make_sampled_haar_table().
-double von_karman_sampled_haar_variance(std::size_t scale, double interval_over_time_scale) noexcept;
-/// Makes the table now, in some milliseconds, and not at its first use.
+/// autocorrelation of the turbulence along the wind or across it. `interval_over_time_scale`: from sample to sample,
+/// over L / U (above 0). Tabled and interpolated, within 1 % from 1e-3 to 1e3. Realtime-safe after
+/// make_sampled_haar_table().
+double von_karman_sampled_haar_variance(std::size_t scale, double interval_over_time_scale,
+                                        WindComponent component = WindComponent::kAlong) noexcept;
+/// Makes the tables now, in some milliseconds, and not at its first use.
 void make_sampled_haar_table();
 
 /// The part of the power of samples at a frequency that is the turbulence's own there, S / (S + F): 0 to 1, all that is

@@ -33,8 +33,8 @@ constexpr double kLeastIntensity = 1e-4;
 
 }  // namespace
 
-TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value)
-    : prior_(prior), memory_s_(memory_s), value_(value) {
+TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value, WindComponent component)
+    : prior_(prior), memory_s_(memory_s), value_(value), component_(component) {
   make_haar_table();  // now, not on the way
   if (value_ == ReadingValue::kInstant) make_sampled_haar_table();
   prior_.intensity = std::max(prior.intensity, kLeastIntensity);
@@ -115,12 +115,12 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
 /// Haar's variance of a scale over the variance of the turbulence.
 double TurbulenceFit::shape(std::size_t scale, double interval_over_time_scale) const noexcept {
   return value_ == ReadingValue::kInstant
-             ? von_karman_sampled_haar_variance(scale, interval_over_time_scale)
-             : von_karman_haar_variance(std::ldexp(interval_over_time_scale, static_cast<int>(scale)));
+             ? von_karman_sampled_haar_variance(scale, interval_over_time_scale, component_)
+             : von_karman_haar_variance(std::ldexp(interval_over_time_scale, static_cast<int>(scale)), component_);
 }
 
 double TurbulenceFit::expected(double tau_s) const noexcept {
-  return square(turbulence_.intensity) * von_karman_haar_variance(tau_s / turbulence_.time_scale_s) *
+  return square(turbulence_.intensity) * von_karman_haar_variance(tau_s / turbulence_.time_scale_s, component_) *
          correction(kStrongestAt / tau_s);
 }
 

@@ -5,13 +5,14 @@
 #include <cstddef>
 
 #include "engine/wind/reading_value.hpp"
+#include "engine/wind/turbulence/wind_component.hpp"
 
 namespace yuragi::wind::turbulence {
 
 /// The turbulence of one component of the wind: the parameters of von Karman's spectrum.
 struct Turbulence {
   double intensity = 0.2;     ///< standard deviation over the mean speed
-  double time_scale_s = 8.0;  ///< integral length scale over the mean speed, L / U
+  double time_scale_s = 8.0;  ///< integral length scale of u over the mean speed, L / U, also of a component across
 };
 
 /// The prior of a fit, which it keeps to where there are few readings.
@@ -22,8 +23,8 @@ struct TurbulencePrior {
   double intensity_weight = 10.0;  ///< and the intensity
 };
 
-/// Fits turbulence to the readings of one component as they arrive: a rolling fit over past readings alone
-/// (engine/wind/README.md W28, W29).
+/// Fits turbulence to the readings of one component, along the wind or across it, as they arrive: a rolling fit over
+/// past readings alone (engine/wind/README.md W28, W29).
 ///
 /// It looks at Haar's variances: the mean squares of the differences between neighbouring means over 1, 2, 4 ...
 /// readings. Each is what a reading's averaging, or sampling, leaves of von Karman's spectrum, in closed form but for
@@ -37,7 +38,8 @@ class TurbulenceFit {
  public:
   static constexpr std::size_t kScales = 10;
 
-  TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value = ReadingValue::kMean);
+  TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value = ReadingValue::kMean,
+                WindComponent component = WindComponent::kAlong);
 
   /// A difference between two neighbouring means of 2^scale readings each, over the mean speed; `weight` (0 or more):
   /// how much it counts in the scale's mean square.
@@ -70,6 +72,7 @@ class TurbulenceFit {
   TurbulencePrior prior_;
   double memory_s_;
   ReadingValue value_;
+  WindComponent component_;
   std::array<double, kScales> squares_{}, weights_{};
   std::array<double, kScales> counts_{};
   Turbulence turbulence_;

@@ -20,31 +20,32 @@ double haar_power(double cycles) noexcept {
 }
 
 /// Haar's variance for tau / T. Over ln x, by the trapezium rule.
-double haar_integral(double ratio) noexcept {
+double haar_integral(double ratio, double (*density)(double)) noexcept {
   constexpr int kSteps = 3000;
   const double log_from = std::log(1e-5);
   const double log_step = (std::log(1e4) - log_from) / kSteps;
   double sum = 0.0;
   for (int k = 0; k <= kSteps; ++k) {
     const double x = std::exp(log_from + log_step * k);
-    sum += x * von_karman_density(x) * haar_power(x * ratio) * log_step;
+    sum += x * density(x) * haar_power(x * ratio) * log_step;
   }
   return sum;
 }
 
-const RatioTable& haar_table() {
-  static const RatioTable kTable(haar_integral);
-  return kTable;
+const RatioTable& haar_table(WindComponent component) {
+  static const RatioTable kAlong([](double ratio) { return haar_integral(ratio, von_karman_density); });
+  static const RatioTable kAcross([](double ratio) { return haar_integral(ratio, von_karman_density_across); });
+  return component == WindComponent::kAlong ? kAlong : kAcross;
 }
 
 }  // namespace
 
 void make_haar_table() {
-  haar_table();
+  haar_table(WindComponent::kAlong);
 }
 
-double von_karman_haar_variance(double tau_over_time_scale) noexcept {
-  return haar_table().at(tau_over_time_scale);
+double von_karman_haar_variance(double tau_over_time_scale, WindComponent component) noexcept {
+  return haar_table(component).at(tau_over_time_scale);
 }
 
 double von_karman_mean_variance(double tau_over_time_scale) noexcept {

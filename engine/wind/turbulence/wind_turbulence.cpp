@@ -23,7 +23,9 @@ TurbulencePrior across_the_wind(TurbulencePrior prior) {
 }  // namespace
 
 WindTurbulence::WindTurbulence(const TurbulencePrior& prior, double memory_s, ReadingValue value)
-    : along_(prior, memory_s, value), across_(across_the_wind(prior), memory_s, value), sums_(kRingSize) {}
+    : along_(prior, memory_s, value),
+      across_(across_the_wind(prior), memory_s, value, WindComponent::kAcross),
+      sums_(kRingSize) {}
 
 void WindTurbulence::forget(double dt_s) noexcept {
   along_.forget(dt_s);

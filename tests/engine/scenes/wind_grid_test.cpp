@@ -125,7 +125,7 @@ TEST(WindGrid, PlacesOfALargeSceneHaveTheVarianceOfTheGusts) {
   Places places(200.0, 2000);
   GustyWind gusty({6.0, 0.0}, 0.5F);
   double variance = 0.0;
-  constexpr int kMoments = 40;
+  constexpr int kMoments = 320;
   for (int moment = 0; moment < kMoments; ++moment) {
     WindGrid grid(shared_gusts(), places.x_m, places.z_m, best_simd_row());
     grid.step(gusty.step(37.0), 10.0);
@@ -245,7 +245,8 @@ TEST(WindGrid, GustsThatAreReadPartByPartComeNeitherLaterNorWeakerNorInSteps) {
     }
     EXPECT_GT(scatter, 0.0);
     EXPECT_NE(at_once.series.back(), in_parts.series.back());
-    EXPECT_LT(std::sqrt(squares / scatter), 0.03) << side_m;
+    // They differ by a delay, and by little else.
+    EXPECT_LT(std::sqrt(squares / slope_squares), 0.014) << "s, " << side_m;
     EXPECT_NEAR(scatter_in_parts / scatter, 1.0, 0.01) << side_m;
     // The quicker filter behind the straight lines is some 10 ms less late.
     EXPECT_NEAR(-difference_by_slope / slope_squares, -0.010, 0.004) << "s of delay, " << side_m;
