@@ -41,8 +41,9 @@ constexpr const char* kWindFooter =
     "direction_deg (where it comes from), trust (0: default wind only, 1: sensor only), state (default, handover, "
     "live).\n"
     "\n"
-    "Readings that the daemon would reject (spikes, a frozen value) are left out here, too; a --config with\n"
-    "[sensor.judge] enabled = false accepts all.\n"
+    "Readings that the daemon would reject (spikes, a frozen value, of three or more sensors one that the others "
+    "outvote)\n"
+    "are left out here, too; a --config with [sensor.judge] enabled = false accepts all.\n"
     "\n"
     "--sensor-interval simulates a slower sensor: vector means over that many seconds, given at their end. --gap "
     "leaves\n"
@@ -286,7 +287,8 @@ void run_wind(WindOptions options) {
       options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
   config.sensors.resize(1);
   if (options.seed) config.seed = *options.seed;
-  options.offline.judge = config.sensors[0].judge;
+  options.offline.rules = sensing::jury_rules_of(config.sensors[0]);
+  options.offline.stale_intervals = config.wind.stale_intervals;
 
   if (options.output == "-") return write_wind(options, config, stdout);
   const auto lock = lock_output(options.output);

@@ -52,9 +52,17 @@ bool has(const wind::WindReading& reading, Quantity quantity) {
   return quantity == Quantity::kDirection ? reading.direction_deg.has_value() : reading.gust_m_s.has_value();
 }
 
-/// Is it compared with other sensors? One whose scale is unknown is not.
-bool is_compared(const settings::SensorConfig& sensor) {
-  return sensor.judge && sensor.is_compared && !sensor.blend.is_relative;
+/// One that plays a recording does not measure the present wind, and is not compared with those that do.
+JuryRules live_rules_of(const settings::SensorConfig& sensor) {
+  JuryRules rules = jury_rules_of(sensor);
+  rules.is_compared = rules.is_compared && !sensor.driver->plays_recordings;
+  return rules;
+}
+
+SensorJury make_jury(const settings::Config& config) {
+  std::vector<JuryRules> rules;
+  for (const settings::SensorConfig& sensor : config.sensors) rules.push_back(live_rules_of(sensor));
+  return {rules, config.wind.stale_intervals};
 }
 
 /// The SiteSpectrum that a configuration expects, before any readings.
@@ -112,18 +120,13 @@ SensorHub::SensorHub(const settings::Config& config, const drivers::sensor::Cloc
       listener_(std::move(listener)),
       site_(make_site_spectrum(config.wind)),
       estimator_(make_estimator(config, std::move(noise), reach_m, site_)),
-      stale_intervals_(config.wind.stale_intervals),
-      vote_(config.sensors.size()),
+      jury_(make_jury(config)),
       fallback_(config, clock) {
   // Construct all before starting any, so that an error in the last one stops no running thread.
   std::vector<std::unique_ptr<drivers::sensor::Sensor>> sensors = settings::open_sensors(config.sensors);
   for (std::size_t index = 0; index < sensors.size(); ++index) {
     Channel channel;
     channel.config = config.sensors[index];
-    const std::optional<wind::judging::JudgeSettings>& judged_by = channel.config.judge;
-    channel.judge = wind::judging::ReadingJudge(judged_by.value_or(wind::judging::JudgeSettings{}));
-    channel.is_compared = is_compared(channel.config);
-    channel.record = wind::blend::SourceRecord(channel.config.blend.unchanged_for_s);
     if (const auto promises = channel.config.driver->promises) {
       const drivers::sensor::PromisedQuantities promised = promises(channel.config.values);
       channel.quantities = {QuantityWatch(promised.direction), QuantityWatch(promised.gust)};
@@ -146,17 +149,13 @@ void SensorHub::change(std::size_t index, const settings::SensorConfig& config) 
   Channel& channel = channels_[index];
   const settings::SensorConfig before = std::exchange(channel.config, config);
   if (before.by_name.calibration.all() != config.by_name.calibration.all()) {
-    if (const auto& last = channel.last_raw) {
-      channel.judge.recalibrate(before.calibration.applied_to(*last), config.calibration.applied_to(*last));
+    std::optional<std::pair<wind::WindReading, wind::WindReading>> last;
+    if (const auto& raw = channel.last_raw) {
+      last.emplace(before.calibration.applied_to(*raw), config.calibration.applied_to(*raw));
     }
-    vote_.forget_mean(index);
+    jury_.recalibrate(index, last);
   }
-  // A judge that has not judged has nothing to keep.
-  if (before.judge && config.judge) channel.judge.change(*config.judge);
-  if (before.judge.has_value() != config.judge.has_value()) {
-    channel.judge = wind::judging::ReadingJudge(config.judge.value_or(wind::judging::JudgeSettings{}));
-  }
-  channel.is_compared = is_compared(config);
+  jury_.change(index, live_rules_of(config));
 
   drivers::recording::RecordingPlayer* const player = channel.runner->player();
   if (player == nullptr || !config.values.has("rate")) return;
@@ -182,10 +181,10 @@ const wind::WindState& SensorHub::advance() {
     channel.runner->drain_quantities([&](const wind::StationQuantities& quantities) {
       if (quantities_listener_) quantities_listener_(index, quantities);
     });
-    judge_refusals(channel);
+    judge_refusals(index);
   }
   const MonoTime now = clock_.now().mono;
-  compare(now);
+  jury_.compare(now);
   fallback_.advance(is_any_live(),
                     [this](const wind::WindReading& reading) { estimator_.accept(channels_.size(), reading); });
   wind_ = estimator_.advance(now);
@@ -202,74 +201,42 @@ void SensorHub::take(std::size_t index, const wind::WindReading& raw) {
   wind::WindReading reading = channel.config.calibration.applied_to(raw);
   // A time in the future would make all readings that follow late ones.
   reading.time.mono = std::min(reading.time.mono, clock_.now().mono);
-  if (!wind::is_plausible(reading)) {
-    if (channel.config.judge) channel.judge.count_impossible(1);
-    return;
-  }
-  if (channel.record.has_reading() && reading.time.mono < channel.record.last()->time.mono) return;
-  if (reading.is_held) {
-    channel.record.hold(reading.time);
-    estimator_.accept(index, reading);
-    return;
-  }
-  const bool repeats = channel.record.has_reading() && wind::says_the_same(reading, *channel.record.last());
-  if (!channel.record.take(reading) && repeats) {
-    // A message that is said again has been judged.
-    if (channel.is_last_believed) {
-      estimator_.accept(index, reading);
-    } else {
+  switch (jury_.hear(index, reading)) {
+    case SensorJury::Verdict::kDropped:
+      break;
+    case SensorJury::Verdict::kDoubted:
       ++channel.not_believed;
-    }
-    return;
-  }
-
-  // Simulated readings are not judged: they may be constant.
-  const bool is_judged = channel.config.judge && reading.quality != wind::ReadingQuality::kSimulated;
-  const bool makes_sense = !is_judged || channel.judge.judge(reading, vote_.others_m_s(index));
-  if (makes_sense) vote_.accept(index, reading.time.mono, reading.speed_m_s);
-  channel.is_last_believed = makes_sense && vote_.vote_on(index) != wind::judging::Vote::kOutvoted;
-  if (channel.is_last_believed) {
-    estimator_.accept(index, reading);
-  } else {
-    ++channel.not_believed;
+      break;
+    case SensorJury::Verdict::kBelieved:
+      estimator_.accept(index, reading);
+      break;
   }
 }
 
 /// Readings that the driver refused as implausible count as faults, too.
-void SensorHub::judge_refusals(Channel& channel) const {
+void SensorHub::judge_refusals(std::size_t index) {
+  Channel& channel = channels_[index];
   const std::uint64_t impossible = channel.runner->refused_count(drivers::decode::Refusal::kImplausible);
-  if (channel.config.judge) channel.judge.count_impossible(impossible - channel.impossible);
+  jury_.count_impossible(index, impossible - channel.impossible);
   channel.impossible = impossible;
-}
-
-/// Compares the sensors that measure the present wind, and have no fault.
-void SensorHub::compare(MonoTime now) {
-  for (std::size_t index = 0; index < channels_.size(); ++index) {
-    const Channel& channel = channels_[index];
-    const wind::SourceReport report = channel.record.report(now, stale_intervals_);
-    const bool is_measured = !channel.config.driver->plays_recordings && report.last &&
-                             report.last->quality != wind::ReadingQuality::kSimulated;
-    const bool is_well =
-        report.health == wind::SourceHealth::kLive && channel.judge.fault() <= wind::judging::ReadingFault::kSpike;
-    vote_.set_comparable(index, channel.is_compared && is_measured && is_well);
-  }
-  vote_.advance(now);
 }
 
 SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
   const Channel& channel = channels_[index];
+  const wind::judging::ReadingJudge& judge = jury_.judge(index);
+  const wind::judging::SensorVote& vote = jury_.vote();
   return {.link = channel.link.state,
           .link_detail = channel.link.detail,
-          .report = channel.record.report(now, stale_intervals_),
+          .report = jury_.report(index, now),
           .is_replay = channel.config.driver->plays_recordings || channel.config.stand_in,
-          .fault = channel.judge.fault(),
-          .vote = vote_.vote_on(index),
-          .same_count = channel.judge.same_count(),
-          .same_for_s = channel.judge.same_for_s(),
-          .still_for_s = channel.judge.still_for_s(),
-          .bad_share = channel.judge.bad_share(),
-          .mean_m_s = vote_.mean_m_s(index),
-          .others_m_s = vote_.others_m_s(index)};
+          .fault = judge.fault(),
+          .vote = vote.vote_on(index),
+          .same_count = judge.same_count(),
+          .same_for_s = judge.same_for_s(),
+          .still_for_s = judge.still_for_s(),
+          .bad_share = judge.bad_share(),
+          .mean_m_s = vote.mean_m_s(index),
+          .others_m_s = vote.others_m_s(index)};
 }
 
 /// Logs changes of the link's state, and what a connected sensor says anew of it, but not each failed attempt.

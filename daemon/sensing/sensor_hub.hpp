@@ -12,15 +12,13 @@
 #include "daemon/sensing/fallback_recording.hpp"
 #include "daemon/sensing/player_director.hpp"
 #include "daemon/sensing/sensor_diagnosis.hpp"
+#include "daemon/sensing/sensor_jury.hpp"
 #include "daemon/sensing/sensor_runner.hpp"
 #include "daemon/sensing/sensor_status.hpp"
 #include "daemon/settings/config.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
-#include "engine/wind/blend/source_record.hpp"
 #include "engine/wind/judging/quantity_watch.hpp"
-#include "engine/wind/judging/reading_judge.hpp"
-#include "engine/wind/judging/sensor_vote.hpp"
 #include "engine/wind/turbulence/site_spectrum.hpp"
 #include "engine/wire/wire.hpp"
 
@@ -29,9 +27,9 @@ namespace yuragi::daemon::sensing {
 /// All sensors of an installation, and the estimator that makes one wind of their readings. Belongs to the I/O thread;
 /// each sensor runs on a thread of its own.
 ///
-/// Each sensor's readings are calibrated, judged by themselves (ReadingJudge) and compared with the other sensors'
-/// (SensorVote). Readings that are not believed do not reach the estimator, which treats the sensor as silent and
-/// hands over to other sources as usual. The listener gets every plausible reading, before calibration and judging.
+/// Each sensor's readings are calibrated, judged by themselves and compared with the other sensors' (SensorJury).
+/// Readings that are not believed do not reach the estimator, which treats the sensor as silent and hands over to other
+/// sources as usual. The listener gets every plausible reading, before calibration and judging.
 class SensorHub {
  public:
   /// Gets each plausible reading, before calibration; for the recorder.
@@ -96,11 +94,7 @@ class SensorHub {
 
   struct Channel {
     settings::SensorConfig config;
-    wind::judging::ReadingJudge judge;
-    bool is_compared = false;
     std::unique_ptr<SensorRunner> runner;
-    wind::blend::SourceRecord record;  ///< calibrated, believed or not
-    bool is_last_believed = false;     ///< of the last reading that was judged
     std::uint64_t readings = 0;
     std::uint64_t not_believed = 0;  ///< plausible readings that were left out of the wind
     std::uint64_t impossible = 0;    ///< readings that were refused as implausible
@@ -115,8 +109,7 @@ class SensorHub {
   void change(std::size_t index, const settings::SensorConfig& config);
   void take(std::size_t index, const wind::WindReading& reading);
   static SensorCounts counts_of(const Channel& channel);
-  void judge_refusals(Channel& channel) const;
-  void compare(MonoTime now);
+  void judge_refusals(std::size_t index);
   SensorEvidence evidence_of(std::size_t index, MonoTime now) const;
   std::vector<wire::QuantityStatus> quantities_of(std::size_t index, MonoTime now) const;
   void log_link(Channel& channel, MonoTime now) const;
@@ -127,8 +120,7 @@ class SensorHub {
   QuantitiesListener quantities_listener_;
   std::shared_ptr<wind::turbulence::SiteSpectrum> site_;
   wind::blend::BlendedEstimator estimator_;
-  double stale_intervals_;
-  wind::judging::SensorVote vote_;
+  SensorJury jury_;
   std::vector<Channel> channels_;
   FallbackRecording fallback_;  ///< the estimator's source behind those of the channels
   wind::WindState wind_;

@@ -61,9 +61,10 @@ Meadow placed_meadow(const ParameterValues& values, const SceneSetup& setup) {
 
 std::unique_ptr<Scene> make_grass(const ParameterValues& values, const SceneSetup& setup) {
   Meadow meadow = placed_meadow(values, setup);
-  return std::make_unique<StrandSway>(
-      meadow.skeleton, meadow.skeleton.root_x_m, meadow.skeleton.root_z_m, std::move(meadow.flexibility),
-      strand_sway_spec(values, setup.seed ^ math::stream_id("grass wind on the ground")), setup);
+  StrandSwaySpec spec = strand_sway_spec(values, setup.seed ^ math::stream_id("grass wind on the ground"));
+  spec.plant_height_m = values.number("blade_length");
+  return std::make_unique<StrandSway>(meadow.skeleton, meadow.skeleton.root_x_m, meadow.skeleton.root_z_m,
+                                      std::move(meadow.flexibility), spec, setup);
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ std::unique_ptr<Scene> make_ground(const ParameterValues& values, const SceneSet
   place(setup.placement, nodes);
   StrandSwaySpec spec = strand_sway_spec(values, setup.seed ^ math::stream_id("grass wind on the ground"));
   spec.shortest_canopy_wave_m = kGroundSway.shortest_canopy_wave_m;
+  spec.plant_height_m = values.number("blade_length");
   std::vector<float> flexibility(nodes.padded_count(), 1.0F);
   const std::vector<float> x_m = nodes.root_x_m;
   const std::vector<float> z_m = nodes.root_z_m;

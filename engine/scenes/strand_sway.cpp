@@ -13,6 +13,7 @@
 #include "engine/operators/bending_job.hpp"
 #include "engine/operators/local_bending_job.hpp"
 #include "engine/pose/pose_arrays.hpp"
+#include "engine/scenes/canopy_carry.hpp"
 #include "engine/scenes/strand_part.hpp"
 
 namespace yuragi::scenes {
@@ -22,8 +23,7 @@ namespace {
 constexpr double kPaceSpread = 0.15;
 
 constexpr std::array<std::string_view, 2> kGusts = {"outside", "own"};
-/// The part of the wind's speed that the canopy's waves run with; and how many standard deviations they reach.
-constexpr double kCanopyCarry = 0.65;
+/// How many standard deviations the canopy's waves reach.
 constexpr double kLargestCanopyWave = 2.2;
 
 constexpr std::array<std::string_view, 2> kBetaMeanings = {"transect", "radial"};
@@ -81,6 +81,7 @@ StrandSway::StrandSway(pose::StrandSkeleton strands, std::span<const float> plac
       steps_(flexibility_.size()),
       largest_flexibility_(largest_of(flexibility_)),
       lever_m_(largest_of(strands.link_length_m) * (static_cast<double>(strands.links_per_strand) + 1.0) / 2.0),
+      canopy_carry_(canopy_carry(spec.plant_height_m)),
       skeleton_(std::move(strands)),
       pose_(pose::rest_pose(skeleton_)) {
   if (setup.gusts) spec_.gust_strength = 0.0;
@@ -96,7 +97,7 @@ void StrandSway::shift(const wind::ground::GroundWind& wind, double dt_s) noexce
   wind_.step(wind, dt_s);
   if (outside_) {
     outside_->grid.step(wind, dt_s);
-    outside_->canopy.shift(kCanopyCarry * wind_.east_m_s(), kCanopyCarry * wind_.south_m_s(), dt_s);
+    outside_->canopy.shift(canopy_carry_ * wind_.east_m_s(), canopy_carry_ * wind_.south_m_s(), dt_s);
     return;
   }
   // The wind on the ground goes with the wind, and with the way that it has come its strength along it.
@@ -175,7 +176,7 @@ double StrandSway::largest_bend_input_step(double dt_s) const noexcept {
     const double largest_wave = spec_.canopy_waves * kLargestCanopyWave;
     const double wave_step =
         spec_.canopy_waves *
-        outside_->canopy.largest_change(kCanopyCarry * kStrongestSceneWind_m_s, kCanopyCarry * wind_step_m_s, dt_s);
+        outside_->canopy.largest_change(canopy_carry_ * kStrongestSceneWind_m_s, canopy_carry_ * wind_step_m_s, dt_s);
     return wind_step_m_s * (1.0 + largest_wave) + kStrongestSceneWind_m_s * std::min(wave_step, 2.0 * largest_wave);
   }
   const double largest_strength = 1.0 + spec_.turbulence * std::max(own_->noise.highest(), 0.0);

@@ -31,6 +31,7 @@ struct StrandSwaySpec {
   bool has_own_gusts = false;   ///< and not those of the wind outside, where the setup has these
   double canopy_waves = 0.15;   ///< beside the gusts outside: how much the stand's own waves vary the wind, as a part
   CarriedNoiseSpec noise = {};  ///< the wind on the ground
+  double plant_height_m = 0.7;  ///< decides how fast the stand's own waves run (canopy_carry())
   double shortest_canopy_wave_m = 2.0;  ///< the longest is twice as long
   double finest_wind_cell_m = 0.5;      ///< the wind outside is read at nodes no nearer to each other (WindGrid)
 };
@@ -47,9 +48,9 @@ struct StrandSwaySpec {
 /// wind where it stands (WindGrid), and is bent by it (LocalBendingJob). Over a few metres those gusts hardly differ;
 /// what is seen as bands that run over a stand are waves of its own, born where the wind is slowed at the tops of the
 /// plants and a few times as long as these are high (Raupach, Finnigan and Brunet 1996, "Coherent eddies and turbulence
-/// in vegetation canopies"). They are a band of noise that varies the wind on its way, and run at 0.65 of the wind 10 m
-/// up, 1.8 times that at the tops (Finnigan 2000, "Turbulence in plant canopies"). In nature they are longer across the
-/// wind than along it; these are not, since a tile cannot turn with the wind.
+/// in vegetation canopies"). They are a band of noise that varies the wind on its way, and run at 1.8 times the wind at
+/// the tops (canopy_carry()), half as fast as the wind 10 m up where blades are 0.7 m long. In nature they are longer
+/// across the wind than along it; these are not, since a tile cannot turn with the wind.
 ///
 /// Allocates when it is made, never afterwards. Thread-safe: no. Realtime-safe: a tick.
 class StrandSway final : public Scene {
@@ -114,6 +115,7 @@ class StrandSway final : public Scene {
   std::vector<float> natural_hz_;
   operators::OscillatorSteps steps_;
   double largest_flexibility_ = 0.0, lever_m_ = 0.0;
+  double canopy_carry_ = 0.0;  ///< the canopy's waves run with this part of the wind's speed
   pose::Skeleton skeleton_;
   pose::Pose pose_;
 };

@@ -69,6 +69,8 @@ SceneTable tree_table();
 SceneTable zelkova_table();
 SceneTable poplar_table();
 SceneTable grass_table();
+SceneTable short_grass_table();
+SceneTable tall_grass_table();
 SceneTable fur_table();
 SceneTable flame_table();
 SceneTable ripple_table();

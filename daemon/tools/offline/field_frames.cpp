@@ -43,7 +43,7 @@ Result<void, Failure> make_recorded_frames(const std::filesystem::path& recordin
   // Several ticks per frame. A frame is that of the first tick at its time or after it.
   OfflineWindOptions offline;
   offline.rate_hz = frames.rate_hz * std::ceil(kLeastTickRate_hz / frames.rate_hz);
-  offline.judge = config.sensors[0].judge;
+  offline.rules = sensing::jury_rules_of(config.sensors[0]);
   const double tick_s = 1.0 / offline.rate_hz;
   offline.until_s = frames.time_s(frames.count - 1) + tick_s;
   std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());

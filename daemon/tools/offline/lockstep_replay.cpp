@@ -8,6 +8,7 @@
 #include "daemon/sensing/player_director.hpp"
 #include "daemon/sensing/recorded_silence.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
+#include "daemon/sensing/sensor_jury.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
 #include "engine/pose/pose_hash.hpp"
 
@@ -126,8 +127,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
       sensing::recorded_unchanged_for_s(recording, options.playback.sensor) / options.rate;
   wind::blend::BlendedEstimator estimator = sensing::make_estimator(one_source, gusts, animation.reach_m());
   wind::shaping::WindShaping shaping(config.shaping.settings, gusts);
-  const std::optional<wind::judging::JudgeSettings>& judged_by = one_source.sensors[0].judge;
-  wind::judging::ReadingJudge judge(judged_by.value_or(wind::judging::JudgeSettings{}));
+  sensing::SensorJury jury({sensing::jury_rules_of(one_source.sensors[0])}, one_source.wind.stale_intervals);
 
   Ticks ticks(animation, config.animation.rate_hz, options.lead_s, progress, use);
   while (ticks.is_leading_in() || (!player.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s))) {
@@ -135,7 +135,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
     const Instant now{MonoTime(ticks.clock()), UtcTime(ticks.clock())};
     const auto played = player.play(now, [&](const wind::WindReading& reading) {
       // As in the daemon: readings that are not believed are left out.
-      if (judged_by && reading.quality != wind::ReadingQuality::kSimulated && !judge.judge(reading)) return;
+      if (jury.hear(0, reading) != sensing::SensorJury::Verdict::kBelieved) return;
       if (estimator.accept(0, reading)) ticks.add(reading);
     });
     if (!played) return played.error();

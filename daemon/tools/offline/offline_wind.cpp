@@ -1,6 +1,7 @@
 #include "daemon/tools/offline/offline_wind.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace yuragi::daemon::tools::offline {
 namespace {
@@ -75,22 +76,20 @@ class PlayedReadings {
   std::optional<Failure> failure_;
 };
 
-/// One source of the estimator, and the judge of its readings.
+/// One source of the estimator.
 class OfflineSource {
  public:
   OfflineSource(drivers::windlog::WindlogPlayback& playback, const OfflineWindOptions& options)
-      : readings_(playback, options),
-        is_judged_(options.judge.has_value()),
-        judge_(options.judge.value_or(wind::judging::JudgeSettings{})),
-        next_(readings_.next()) {}
+      : readings_(playback, options), next_(readings_.next()) {}
 
   bool has_more() const { return next_.has_value(); }
   const std::optional<Failure>& failure() const { return readings_.failure(); }
 
-  /// Passes the readings up to `now` to the estimator, as source `number`.
-  void feed(wind::blend::BlendedEstimator& estimator, std::size_t number, MonoTime now, OfflineWindResult& result) {
+  /// Passes the readings up to `now` that `jury` believes to the estimator, as source `number`.
+  void feed(wind::blend::BlendedEstimator& estimator, sensing::SensorJury& jury, std::size_t number, MonoTime now,
+            OfflineWindResult& result) {
     for (; next_ && next_->time.mono <= now; next_ = readings_.next()) {
-      if (!judge(*next_)) {
+      if (jury.hear(number, *next_) != sensing::SensorJury::Verdict::kBelieved) {
         ++result.withheld;
       } else if (estimator.accept(number, *next_)) {
         ++result.readings;
@@ -99,14 +98,7 @@ class OfflineSource {
   }
 
  private:
-  /// Is it believed?
-  bool judge(const wind::WindReading& reading) {
-    return !is_judged_ || reading.quality == wind::ReadingQuality::kSimulated || judge_.judge(reading);
-  }
-
   PlayedReadings readings_;
-  bool is_judged_;
-  wind::judging::ReadingJudge judge_;
   std::optional<wind::WindReading> next_;
 };
 
@@ -119,12 +111,14 @@ Result<OfflineWindResult, Failure> run_offline(std::span<drivers::windlog::Windl
   OfflineWindResult result;
   std::vector<OfflineSource> sources;
   for (drivers::windlog::WindlogPlayback& playback : playbacks) sources.emplace_back(playback, options);
+  sensing::SensorJury jury(std::vector(sources.size(), options.rules), options.stale_intervals);
   const auto has_more = [&] { return std::ranges::any_of(sources, &OfflineSource::has_more); };
   // The last tick is the first at or after the last reading.
   for (bool goes_on = has_more(); goes_on; ++result.states) {
     const double time_s = static_cast<double>(result.states) / options.rate_hz;
     const MonoTime now(from_seconds(time_s));
-    for (std::size_t i = 0; i < sources.size(); ++i) sources[i].feed(estimator, i, now, result);
+    for (std::size_t i = 0; i < sources.size(); ++i) sources[i].feed(estimator, jury, i, now, result);
+    jury.compare(now);
     for (const OfflineSource& source : sources) {
       if (source.failure()) return *source.failure();
     }

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "daemon/sensing/sensor_jury.hpp"
 #include "drivers/windlog/windlog_playback.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
-#include "engine/wind/judging/reading_judge.hpp"
 
 namespace yuragi::daemon::tools::offline {
 
@@ -25,8 +25,9 @@ struct OfflineWindOptions {
   std::optional<double> sensor_interval_s{};
   std::vector<OfflineGap> gaps{};
   double until_s = std::numeric_limits<double>::infinity();  ///< the last tick; nothing is read beyond it
-  /// Judges the readings as the daemon does; empty: all are believed.
-  std::optional<wind::judging::JudgeSettings> judge{};
+  /// Judges the readings of each recording, and compares several, as the daemon does; as it is, all are believed.
+  sensing::JuryRules rules{};
+  double stale_intervals = wind::blend::BlendSettings{}.stale_intervals;  ///< silent for so long: not compared
 };
 
 struct OfflineWindResult {

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "daemon/settings/sensor_config.hpp"
+#include "engine/wind/blend/source_record.hpp"
+#include "engine/wind/judging/reading_judge.hpp"
+#include "engine/wind/judging/sensor_vote.hpp"
+
+namespace yuragi::daemon::sensing {
+
+/// How the readings of one sensor are judged.
+struct JuryRules {
+  std::optional<wind::judging::JudgeSettings> judge{};  ///< empty: all are believed
+  bool is_compared = false;                             ///< with the other sensors
+  double unchanged_for_s = 0.0;                         ///< as BlendSourceSettings has it
+};
+
+/// The rules of a configured sensor, or of a recording that is processed as its readings. One whose scale is unknown is
+/// not compared.
+JuryRules jury_rules_of(const settings::SensorConfig& sensor);
+
+/// Which readings of an installation's sensors are believed: each sensor is judged by itself (ReadingJudge) and
+/// compared with the others (SensorVote). The daemon's live wind and the offline tools ask the same jury.
+/// Thread-safe: no. Realtime-safe after construction: yes.
+class SensorJury {
+ public:
+  enum class Verdict : std::uint8_t {
+    kDropped,   ///< it is impossible, or late: it counts nowhere
+    kDoubted,   ///< it is left out of the wind
+    kBelieved,  ///< it goes to the estimator
+  };
+
+  /// `stale_intervals`: as BlendSettings has it.
+  SensorJury(const std::vector<JuryRules>& sensors, double stale_intervals);
+
+  /// Judges the next reading of a sensor, calibrated, and not of the future.
+  Verdict hear(std::size_t sensor, const wind::WindReading& reading) noexcept;
+
+  /// Readings that were refused before they came here as impossible.
+  void count_impossible(std::size_t sensor, std::uint64_t readings) noexcept;
+
+  /// Compares the sensors that measure the present wind, and have no fault.
+  void compare(MonoTime now) noexcept;
+
+  /// Judges a sensor by other rules from now on; its `unchanged_for_s` stays. What is known of it stays, too.
+  void change(std::size_t sensor, const JuryRules& rules);
+
+  /// A sensor's calibration has changed. `last`: its last reading by the one before, and by the new one; none: it has
+  /// sent none.
+  void recalibrate(std::size_t sensor,
+                   const std::optional<std::pair<wind::WindReading, wind::WindReading>>& last) noexcept;
+
+  const wind::judging::ReadingJudge& judge(std::size_t sensor) const noexcept { return members_[sensor].judge; }
+  const wind::judging::SensorVote& vote() const noexcept { return vote_; }
+  wind::SourceReport report(std::size_t sensor, MonoTime now) const noexcept {
+    return members_[sensor].record.report(now, stale_intervals_);
+  }
+
+ private:
+  struct Member {
+    JuryRules rules;
+    wind::judging::ReadingJudge judge;
+    wind::blend::SourceRecord record;  ///< believed or not
+    bool is_last_believed = false;     ///< of the last reading that was judged
+  };
+
+  double stale_intervals_;
+  std::vector<Member> members_;
+  wind::judging::SensorVote vote_;
+};
+
+}  // namespace yuragi::daemon::sensing
