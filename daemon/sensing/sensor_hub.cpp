@@ -52,9 +52,14 @@ bool has(const wind::WindReading& reading, Quantity quantity) {
   return quantity == Quantity::kDirection ? reading.direction_deg.has_value() : reading.gust_m_s.has_value();
 }
 
-/// Is it compared with other sensors? One whose scale is unknown is not.
+/// Are its readings used as wind? Maxima are not.
+bool makes_wind(const settings::SensorConfig& sensor) {
+  return sensor.blend.value != wind::ReadingValue::kMaximum;
+}
+
+/// Is it compared with other sensors? One whose scale is unknown is not, nor one of maxima.
 bool is_compared(const settings::SensorConfig& sensor) {
-  return sensor.judge && sensor.is_compared && !sensor.blend.is_relative;
+  return sensor.judge && sensor.is_compared && !sensor.blend.is_relative && makes_wind(sensor);
 }
 
 /// The SiteSpectrum that a configuration expects, before any readings.
@@ -89,8 +94,10 @@ wind::blend::BlendSettings blend_settings_of(const settings::Config& config) {
   for (const settings::SensorConfig& sensor : config.sensors) settings.sources.push_back(sensor.blend);
   // After all sensors, whatever their priorities.
   if (wind.fallback) {
-    settings.sources.push_back(
-        {.priority = std::numeric_limits<int>::max(), .unchanged_for_s = wind.fallback->unchanged_for_s});
+    settings.sources.push_back({.priority = std::numeric_limits<int>::max(),
+                                .value = wind.fallback->value.value,
+                                .averaging_s = wind.fallback->value.averaging_s,
+                                .unchanged_for_s = wind.fallback->unchanged_for_s});
   }
   return settings;
 }
@@ -264,6 +271,7 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
           .is_replay = channel.config.driver->plays_recordings || channel.config.stand_in,
           .fault = channel.judge.fault(),
           .vote = vote_.vote_on(index),
+          .makes_wind = makes_wind(channel.config),
           .same_count = channel.judge.same_count(),
           .same_for_s = channel.judge.same_for_s(),
           .still_for_s = channel.judge.still_for_s(),
@@ -307,6 +315,7 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
     SensorFacts facts{.name = channel.config.name,
                       .driver = channel.config.driver->name,
                       .evidence = evidence_of(index, now),
+                      .value = value_text(channel.config.value, estimator_.taken(index)),
                       .last_raw = channel.last_raw,
                       .counts = counts_of(channel),
                       .quantities = quantities_of(index, now)};
