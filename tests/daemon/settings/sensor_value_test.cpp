@@ -7,7 +7,6 @@
 
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/recorded_sensor.hpp"
-#include "daemon/settings/reload_plan.hpp"
 #include "drivers/sensor/driver.hpp"
 
 namespace yuragi::daemon::settings {
