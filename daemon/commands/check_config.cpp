@@ -55,6 +55,7 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
     sensors.push_back({{"name", sensor.name},
                        {"driver", sensor.driver->name},
                        {"place", settings::place_text(sensor.blend)},
+                       {"value", drivers::sensor::value_text(sensor.value)},
                        {"gust_length_m", settings::gust_length_m(config.wind, sensor)},
                        {"height_m", state::json_or_null(sensor.heights.sensor_m)}});
     if (!full) continue;

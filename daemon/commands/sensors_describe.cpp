@@ -57,7 +57,9 @@ void add_sensors_describe(CLI::App& sensors) {
       "driver;\n"
       "of a parameter name, type, unit, default, left_out (what it means where it is left out), min, max, choices, "
       "help;\n"
-      "of a device name, device, confirmed_by, unconfirmed.");
+      "of a device name, device, confirmed_by, unconfirmed, value (what its speed is: value, averaging_s, source; "
+      "null: "
+      "unknown).");
   command->callback([options] { describe(*options); });
 }
 

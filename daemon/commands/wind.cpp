@@ -20,6 +20,7 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/lock_recording.hpp"
+#include "daemon/sensing/recorded_silence.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/output_file.hpp"
@@ -44,6 +45,11 @@ constexpr const char* kWindFooter =
     "Readings that the daemon would reject (spikes, a frozen value, of three or more sensors one that the others "
     "outvote)\n"
     "are left out here, too; a --config with [sensor.judge] enabled = false accepts all.\n"
+    "\n"
+    "--value sets what the recorded speeds are: mean (since the previous reading), instant (instantaneous wind) or\n"
+    "maximum (of a period; not used as wind). Default: what the driver that recorded them states; if it states "
+    "nothing,\n"
+    "instant for readings at most 30 s apart, otherwise mean.\n"
     "\n"
     "--sensor-interval simulates a slower sensor: vector means over that many seconds, given at their end. --gap "
     "leaves\n"
@@ -76,6 +82,7 @@ struct WindOptions {
   std::optional<std::string> sensor_place;
   double lead_m = 0.0;
   std::vector<std::string> also;
+  std::optional<std::string> value;  ///< one of wind::kReadingValueNames
   drivers::windlog::PlaybackOptions playback;
   std::optional<std::filesystem::path> config_file;
   std::optional<std::uint64_t> seed;
@@ -237,6 +244,21 @@ void stand_at(wind::blend::BlendSourceSettings& source, const GroundPlace& place
   source.lead_m = lead_m;
 }
 
+/// Sets what the speeds of a recording are: by the configuration or --value, otherwise by the driver that recorded
+/// them. Those of a simulated slower sensor are means.
+void set_recorded_value(wind::blend::BlendSourceSettings& source, const WindOptions& options,
+                        const settings::Config& config, const std::filesystem::path& file) {
+  settings::SensorConfig sensor = config.sensors[0];
+  set_value(sensor, options.offline.sensor_interval_s ? drivers::sensor::StatedValue{.value = wind::ReadingValue::kMean}
+                                                      : sensing::recorded_value(file, options.playback.sensor));
+  source.value = sensor.blend.value;
+  source.averaging_s = sensor.blend.averaging_s;
+  if (source.value == wind::ReadingValue::kMaximum) {
+    fmt::print(stderr, "{}: its speeds are maxima, which are not used as wind; the default wind of [wind] is used\n",
+               file.string());
+  }
+}
+
 void write_wind(const WindOptions& options, const settings::Config& config, std::FILE* out) {
   wind::blend::BlendSettings settings = sensing::blend_settings_of(config);
   settings.sources.resize(1);
@@ -245,12 +267,14 @@ void write_wind(const WindOptions& options, const settings::Config& config, std:
   if (options.sensor_place) {
     stand_at(settings.sources[0], parse_place("--sensor-place", *options.sensor_place), options.lead_m);
   }
+  set_recorded_value(settings.sources[0], options, config, options.file);
   std::vector<drivers::windlog::WindlogPlayback> playbacks;
   playbacks.push_back(drivers::windlog::WindlogPlayback::open(options.file, options.playback).value());
   if (!options.also.empty()) settings.sources[0].priority = 1;  // they are used together
   for (const std::string& text : options.also) {
     const PlacedRecording other = parse_also(text);
     stand_at(settings.sources.emplace_back(settings.sources[0]), other.place, options.lead_m);
+    set_recorded_value(settings.sources.back(), options, config, other.file);
     playbacks.push_back(drivers::windlog::WindlogPlayback::open(other.file, options.playback).value());
   }
   std::vector<GroundPlace> places;
@@ -287,6 +311,7 @@ void run_wind(WindOptions options) {
       options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
   config.sensors.resize(1);
   if (options.seed) config.seed = *options.seed;
+  if (options.value) config.sensors[0].by_name.blend.set("value", *options.value);
   options.offline.rules = sensing::jury_rules_of(config.sensors[0]);
   options.offline.stale_intervals = config.wind.stale_intervals;
 
@@ -313,9 +338,15 @@ void add_wind(CLI::App& app) {
       ->type_name("HZ")
       ->capture_default_str();
   command->add_option("--seed", options->seed, "seed of the noise; default: that of the configuration");
+  CLI::Option* const value =
+      command->add_option("--value", options->value, "what the recorded speeds are: mean, instant or maximum")
+          ->check(
+              CLI::IsMember(std::vector<std::string>(wind::kReadingValueNames.begin(), wind::kReadingValueNames.end())))
+          ->type_name("VALUE");
   command
       ->add_option("--sensor-interval", options->offline.sensor_interval_s, "simulate a sensor with this interval, s")
       ->check(CLI::Range(0.01, 3600.0))
+      ->excludes(value)
       ->type_name("T");
   command->add_option("--gap", options->gaps, "leave out the readings between two times, s")
       ->allow_extra_args(false)

@@ -21,6 +21,13 @@ std::string connecting_text(const SensorEvidence& evidence) {
   return evidence.link_detail.empty() ? "looking for the device" : std::string(evidence.link_detail);
 }
 
+/// Appended to the reason of a sensor whose readings arrive.
+std::string_view no_wind_text(const SensorEvidence& evidence) {
+  if (evidence.makes_wind) return "";
+  return "; its speeds are maxima, which are not used as wind. Set the station to send mean or instantaneous wind, or "
+         "add another sensor; without one the default wind of [wind] is used";
+}
+
 std::string live_text(const SensorEvidence& evidence) {
   std::string text = evidence.report.interval_s > 0.0
                          ? fmt::format("a reading every {}", settings::duration_text(evidence.report.interval_s))
@@ -127,7 +134,7 @@ std::string reason_of(wind::judging::SensorState state, const SensorEvidence& ev
     case wind::judging::SensorState::kConnecting:
       return connecting_text(evidence);
     case wind::judging::SensorState::kLive:
-      return live_text(evidence);
+      return live_text(evidence).append(no_wind_text(evidence));
     case wind::judging::SensorState::kStale:
       return stale_text(evidence);
     case wind::judging::SensorState::kFrozen:
@@ -139,9 +146,9 @@ std::string reason_of(wind::judging::SensorState state, const SensorEvidence& ev
     case wind::judging::SensorState::kDisconnected:
       return evidence.link_detail.empty() ? "the device was disconnected" : std::string(evidence.link_detail);
     case wind::judging::SensorState::kSimulated:
-      return "synthetic values, not measured";
+      return std::string("synthetic values, not measured").append(no_wind_text(evidence));
     case wind::judging::SensorState::kReplayed:
-      return "a recording, not the present wind";
+      return std::string("a recording, not the present wind").append(no_wind_text(evidence));
   }
   return {};
 }

@@ -52,6 +52,11 @@ bool has(const wind::WindReading& reading, Quantity quantity) {
   return quantity == Quantity::kDirection ? reading.direction_deg.has_value() : reading.gust_m_s.has_value();
 }
 
+/// Are its readings used as wind? Maxima are not.
+bool makes_wind(const settings::SensorConfig& sensor) {
+  return sensor.blend.value != wind::ReadingValue::kMaximum;
+}
+
 /// One that plays a recording does not measure the present wind, and is not compared with those that do.
 JuryRules live_rules_of(const settings::SensorConfig& sensor) {
   JuryRules rules = jury_rules_of(sensor);
@@ -97,8 +102,10 @@ wind::blend::BlendSettings blend_settings_of(const settings::Config& config) {
   for (const settings::SensorConfig& sensor : config.sensors) settings.sources.push_back(sensor.blend);
   // After all sensors, whatever their priorities.
   if (wind.fallback) {
-    settings.sources.push_back(
-        {.priority = std::numeric_limits<int>::max(), .unchanged_for_s = wind.fallback->unchanged_for_s});
+    settings.sources.push_back({.priority = std::numeric_limits<int>::max(),
+                                .value = wind.fallback->value.value,
+                                .averaging_s = wind.fallback->value.averaging_s,
+                                .unchanged_for_s = wind.fallback->unchanged_for_s});
   }
   return settings;
 }
@@ -231,6 +238,7 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
           .is_replay = channel.config.driver->plays_recordings || channel.config.stand_in,
           .fault = judge.fault(),
           .vote = vote.vote_on(index),
+          .makes_wind = makes_wind(channel.config),
           .same_count = judge.same_count(),
           .same_for_s = judge.same_for_s(),
           .still_for_s = judge.still_for_s(),
@@ -274,6 +282,7 @@ std::vector<wire::SensorStatus> SensorHub::status() const {
     SensorFacts facts{.name = channel.config.name,
                       .driver = channel.config.driver->name,
                       .evidence = evidence_of(index, now),
+                      .value = value_text(channel.config.value, estimator_.taken(index)),
                       .last_raw = channel.last_raw,
                       .counts = counts_of(channel),
                       .quantities = quantities_of(index, now)};

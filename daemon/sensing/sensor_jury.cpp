@@ -11,7 +11,8 @@ wind::judging::ReadingJudge judge_of(const JuryRules& rules) {
 
 JuryRules jury_rules_of(const settings::SensorConfig& sensor) {
   return {.judge = sensor.judge,
-          .is_compared = sensor.judge && sensor.is_compared && !sensor.blend.is_relative,
+          .is_compared = sensor.judge && sensor.is_compared && !sensor.blend.is_relative &&
+                         sensor.blend.value != wind::ReadingValue::kMaximum,
           .unchanged_for_s = sensor.blend.unchanged_for_s};
 }
 

@@ -50,6 +50,7 @@ wire::SensorStatus sensor_status(const SensorFacts& facts) {
   status.state = state_of(evidence);
   status.state_reason = reason_of(status.state, evidence);
   status.quantities = facts.quantities;
+  status.value = facts.value;
   return status;
 }
 

@@ -681,7 +681,7 @@ void Service::Io::log_summary() const {
 }
 
 Service::Service(const settings::Config& config, const ServiceOptions& options)
-    : io_(std::make_unique<Io>(sensing::with_recorded_silences(config), options)) {}
+    : io_(std::make_unique<Io>(sensing::with_recorded_sources(config), options)) {}
 Service::~Service() = default;
 void Service::run() {
   io_->run();

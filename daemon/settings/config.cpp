@@ -117,6 +117,7 @@ class ConfigReader {
     sensor.is_compared = is_compared(tables.judge);
     tables.blend = read_sensor_table(entry, kBlendKey, sensor_blend_parameters());
     sensor.blend = typed(entry, "sensor.", kBlendKey, blend_source_of(tables.blend, driver));
+    set_value(sensor, driver.stated_value != nullptr ? driver.stated_value(sensor.values) : std::nullopt);
     if (driver.unchanged_for_s != nullptr) sensor.blend.unchanged_for_s = driver.unchanged_for_s(sensor.values);
     if (sensor.heights.sensor_m && !wind.default_length_m) {
       sensor.blend.length_m = gust_length_at_height_m(*sensor.heights.sensor_m, sensor.calibration);

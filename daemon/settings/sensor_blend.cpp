@@ -1,5 +1,6 @@
 #include "daemon/settings/sensor_blend.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -12,9 +13,8 @@ constexpr std::string_view kOfDriver = "auto";
 constexpr std::string_view kRelative = "relative";
 constexpr std::string_view kAtTheEdge =
     "its gusts enter at the windward edge of the scenes, wherever the wind comes from, and cross all of them";
-constexpr std::string_view kMean = "mean";
-constexpr std::string_view kInstant = "instant";
-constexpr std::array<std::string_view, 2> kValues = {kMean, kInstant};
+constexpr std::array<std::string_view, 4> kValues = {kOfDriver, wind::kReadingValueNames[0],
+                                                     wind::kReadingValueNames[1], wind::kReadingValueNames[2]};
 constexpr std::array<std::string_view, 3> kRoles = {kOfDriver, "absolute", kRelative};
 
 const std::array kSensorBlendParameters = {
@@ -60,21 +60,25 @@ const std::array kSensorBlendParameters = {
               .max = 1000.0,
               .help = "with x or z: its gusts enter the scenes this far upwind of its position. More of the scenes has "
                       "measured gusts, but later, by lead over wind speed"},
-    Parameter{.name = "value",
-              .unit = "",
-              .default_value = std::string(kMean),
-              .help =
-                  "what the station reports: mean, the mean wind over the averaging time; instant, the instantaneous "
-                  "wind, as most USB, UDP and RS-485 stations do: short gusts that it happens to sample then do "
-                  "not count as slow ones",
-              .choices = kValues},
-    Parameter{.name = "averaging",
-              .unit = "s",
-              .default_value = 0.0,
-              .min = 0.0,
-              .max = 3600.0,
-              .help = "averaging time of each reading that is a mean; 0: the interval between readings, which is "
-                      "measured"},
+    Parameter{
+        .name = "value",
+        .unit = "",
+        .default_value = std::string(kOfDriver),
+        .help =
+            "what the station reports: mean, the mean wind over the averaging time; instant, the instantaneous wind: "
+            "short gusts that it happens to sample then do not count as slow ones; maximum, the strongest wind "
+            "of a period, which is shown but not used as wind. auto: what the driver or profile states; if "
+            "that is nothing, instant for readings at most 30 s apart, otherwise mean; `yuragi sensors watch` "
+            "shows it",
+        .choices = kValues},
+    Parameter{
+        .name = "averaging",
+        .unit = "s",
+        .default_value = 0.0,
+        .min = 0.0,
+        .max = 3600.0,
+        .help = "averaging time of each reading; above 0 the reading is a mean, unless value is set; 0: the time that "
+                "the driver or profile states, or the interval between readings, which is measured"},
     Parameter{.name = "direction_step",
               .unit = "deg",
               .default_value = 0.0,
@@ -87,6 +91,26 @@ const std::array kSensorBlendParameters = {
 
 std::span<const Parameter> sensor_blend_parameters() {
   return kSensorBlendParameters;
+}
+
+drivers::sensor::StatedValue sensor_value_of(const ParameterValues& values,
+                                             const std::optional<drivers::sensor::StatedValue>& stated) {
+  constexpr const char* kHere = "[sensor.blend]";
+  const auto name = std::ranges::find(wind::kReadingValueNames, values.text("value"));
+  const bool is_set = name != wind::kReadingValueNames.end();
+  const double averaging_s = values.number("averaging");
+  drivers::sensor::StatedValue value = stated.value_or(drivers::sensor::StatedValue{});
+  if (is_set) {
+    value.value = static_cast<wind::ReadingValue>(name - wind::kReadingValueNames.begin());
+    // The time that the driver states is of what it states.
+    if (!stated || stated->value != value.value) value.averaging_s = 0.0;
+  } else if (averaging_s > 0.0 && value.value != wind::ReadingValue::kMaximum) {
+    value.value = wind::ReadingValue::kMean;
+  }
+  if (averaging_s > 0.0) value.averaging_s = averaging_s;
+  if (value.value == wind::ReadingValue::kInstant) value.averaging_s = 0.0;
+  if (is_set || averaging_s > 0.0) value.source = kHere;
+  return value;
 }
 
 std::string place_text(const wind::blend::BlendSourceSettings& source) {
@@ -112,18 +136,15 @@ Result<wind::blend::BlendSourceSettings, ParameterError> blend_source_of(
     return ParameterError{"lead", "is counted from where the sensor stands; give x or z, too, or leave it out"};
   }
   const auto number_or_0 = [&values](std::string_view name) { return values.has(name) ? values.number(name) : 0.0; };
-  return wind::blend::BlendSourceSettings{
-      .is_relative = is_relative,
-      .priority = static_cast<int>(values.integer("priority")),
-      .weight = values.number("weight"),
-      .has_place = has_place,
-      .east_m = number_or_0("x"),
-      .south_m = number_or_0("z"),
-      .lead_m = lead_m,
-      .fits_site = !is_relative && !driver.plays_recordings,
-      .value = values.text("value") == kInstant ? wind::ReadingValue::kInstant : wind::ReadingValue::kMean,
-      .averaging_s = values.number("averaging"),
-      .direction_step_deg = values.number("direction_step")};
+  return wind::blend::BlendSourceSettings{.is_relative = is_relative,
+                                          .priority = static_cast<int>(values.integer("priority")),
+                                          .weight = values.number("weight"),
+                                          .has_place = has_place,
+                                          .east_m = number_or_0("x"),
+                                          .south_m = number_or_0("z"),
+                                          .lead_m = lead_m,
+                                          .fits_site = !is_relative && !driver.plays_recordings,
+                                          .direction_step_deg = values.number("direction_step")};
 }
 
 }  // namespace yuragi::daemon::settings

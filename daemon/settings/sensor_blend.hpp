@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
@@ -13,7 +14,13 @@ namespace yuragi::daemon::settings {
 /// The keys of [sensor.blend]: the sensor's share among several.
 std::span<const Parameter> sensor_blend_parameters();
 
-/// From the values of sensor_blend_parameters(), with the driver's defaults where they are "auto"; length_m is not set.
+/// Returns what a sensor's speed is: by the values of sensor_blend_parameters(), or if those are "auto" and 0, by what
+/// the driver states. kUnknown if nothing is stated; the blend then assumes one (wind::assumed_value). Pure.
+drivers::sensor::StatedValue sensor_value_of(const ParameterValues& values,
+                                             const std::optional<drivers::sensor::StatedValue>& stated);
+
+/// From the values of sensor_blend_parameters(), with the driver's defaults where they are "auto"; length_m, and what
+/// sensor_value_of() returns, are not set.
 /// An error (values that contradict each other) names the key.
 Result<wind::blend::BlendSourceSettings, ParameterError> blend_source_of(
     const ParameterValues& values, const drivers::sensor::DriverDescription& driver);

@@ -3,10 +3,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/settings/sensor_blend.hpp"
 #include "drivers/sensor/speed_unit.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
 
 namespace yuragi::daemon::settings {
+
+void set_value(SensorConfig& sensor, const std::optional<drivers::sensor::StatedValue>& stated) {
+  sensor.value = sensor_value_of(sensor.by_name.blend, stated);
+  sensor.blend.value = sensor.value.value;
+  sensor.blend.averaging_s = sensor.value.averaging_s;
+}
 
 const std::string& place_of(const SensorConfig& sensor) noexcept {
   return sensor.origin.empty() ? sensor.name : sensor.origin;

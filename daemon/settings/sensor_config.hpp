@@ -47,11 +47,15 @@ struct SensorConfig {
   std::optional<wind::judging::JudgeSettings> judge{};  ///< [sensor.judge]; none: every reading is believed
   bool is_compared = false;                             ///< [sensor.judge] with the other sensors
   wind::blend::BlendSourceSettings blend{};  ///< [sensor.blend]; length_m from the height, 0 if that is unknown
+  drivers::sensor::StatedValue value{};      ///< what its speed is, with the source; also in `blend`
 
   SensorTables by_name{};  ///< from which the members above were made
 
   std::optional<StandIn> stand_in{};  ///< in place of its device, which is not opened; none: the device
 };
+
+/// Sets `value`, and its copy in `blend`, to sensor_value_of() with what the driver states.
+void set_value(SensorConfig& sensor, const std::optional<drivers::sensor::StatedValue>& stated);
 
 /// Its origin, or its name if it is in no file: how a message about it begins.
 const std::string& place_of(const SensorConfig& sensor) noexcept;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/sensor/stated_value.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/base/result.hpp"
 
@@ -17,6 +18,7 @@ struct FallbackConfig {
   std::string origin{};  ///< `file:line:column` of its key; empty: it is in no file
   /// What was recorded spoke on change only (recorded_unchanged_for_s()); 0: it did not, or this is not known yet.
   double unchanged_for_s = 0.0;
+  drivers::sensor::StatedValue value{};  ///< what the recorded speeds are (recorded_value())
 };
 
 /// The least integral length that is assumed.

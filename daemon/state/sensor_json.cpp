@@ -58,6 +58,7 @@ ordered_json json_of_sensor(const wire::SensorStatus& sensor) {
           {"driver", sensor.driver},
           {"state", name_of(sensor.state)},
           {"state_reason", sensor.state_reason},
+          {"value", sensor.value},
           {"link", name_of(sensor.link)},
           {"link_detail", sensor.detail},
           {"speed_m_s", json_or_null(sensor.speed_m_s)},

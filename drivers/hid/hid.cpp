@@ -106,6 +106,17 @@ std::vector<sensor::FoundDevice> find_hid() {
   return found;
 }
 
+/// Those whose reports tell an average from a gust. Source: drivers/SOURCES.md S2.1 to S2.3.
+std::optional<sensor::StatedValue> hid_value(const ParameterValues& values) {
+  const std::string& station = values.text("station");
+  std::string_view source;
+  if (station == "wmr100") source = "average, by weewx's wmr100.py";
+  if (station == "wmr300") source = "average, by weewx's wmr300.py";
+  if (station == "fineoffset") source = "average, by weewx's fousb.py";
+  if (source.empty()) return std::nullopt;
+  return sensor::StatedValue{.value = wind::ReadingValue::kMean, .source = std::string(source)};
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kHidDriver;
@@ -116,6 +127,7 @@ const sensor::DriverDescription kHidDriver{.name = "hid",
                                            .parameters = kHidParameters,
                                            .open = open_hid,
                                            .find = find_hid,
-                                           .selection = hid_selection};
+                                           .selection = hid_selection,
+                                           .stated_value = hid_value};
 
 }  // namespace yuragi::drivers::hid

@@ -98,6 +98,12 @@ const sensor::DriverDescription kUmbDriver{
           return sensor::selection_at(umb_settings_of(values).address,
                                       {{.key = "class", .value = std::to_string(values.integer("class"))},
                                        {.key = "id", .value = std::to_string(values.integer("id"))}});
+        },
+    .stated_value =
+        [](const ParameterValues&) {
+          // Channel 401, each second's value; 400, "actual", of a VENTUS, which has a new one four times a second.
+          return std::optional(sensor::StatedValue{.value = wind::ReadingValue::kInstant,
+                                                   .source = "Lufft WS manual 6.8: channels 400, 401"});
         }};
 
 }  // namespace yuragi::drivers::lufft

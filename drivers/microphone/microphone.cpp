@@ -220,6 +220,12 @@ std::vector<sensor::FoundDevice> find_plugged_microphones() {
   return find_microphones(microphone_worker_program());
 }
 
+/// The power of the sound is averaged over the window.
+std::optional<sensor::StatedValue> microphone_value(const ParameterValues& values) {
+  return sensor::StatedValue{
+      .value = wind::ReadingValue::kMean, .averaging_s = values.number("window"), .source = "the driver's window"};
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kMicrophoneDriver;
@@ -229,6 +235,7 @@ const sensor::DriverDescription kMicrophoneDriver{.name = "microphone",
                                                   .open = open_microphone,
                                                   .find = find_plugged_microphones,
                                                   .selection = microphone_selection,
+                                                  .stated_value = microphone_value,
                                                   .is_relative = true};
 
 }  // namespace yuragi::drivers::microphone

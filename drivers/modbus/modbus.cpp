@@ -213,7 +213,8 @@ std::vector<sensor::KnownDevice> known_modbus_devices() {
   for (const std::string& name : modbus_profile_names("")) {
     try {
       const ModbusProfile profile = load_modbus_profile(name, "");
-      sensor::KnownDevice device = {.name = name, .device = profile.name, .unconfirmed = profile.unconfirmed};
+      sensor::KnownDevice device = {
+          .name = name, .device = profile.name, .unconfirmed = profile.unconfirmed, .value = profile.value};
       for (const ProfileEvidence evidence : profile.confirmed_by) {
         device.confirmed_by.push_back(kProfileEvidenceNames.at(static_cast<std::size_t>(evidence)));
       }
@@ -228,6 +229,15 @@ std::vector<sensor::KnownDevice> known_modbus_devices() {
 /// Any serial port may have a Modbus line behind it: `yuragi sensors probe modbus` finds out.
 std::vector<sensor::FoundDevice> find_modbus() {
   return sensor::find_behind_serial_ports("transport = \"rtu\"\n");
+}
+
+/// What the profile states.
+std::optional<sensor::StatedValue> modbus_value(const ParameterValues& values) {
+  try {
+    return profile_of(values).value;
+  } catch (const std::runtime_error&) {
+    return std::nullopt;  // open() says why
+  }
 }
 
 sensor::PromisedQuantities modbus_promises(const ParameterValues& values) {
@@ -247,6 +257,7 @@ const sensor::DriverDescription kModbusDriver{
     .claims = modbus_claims,
     .selection = modbus_selection,
     .known_devices = known_modbus_devices,
-    .promises = modbus_promises};
+    .promises = modbus_promises,
+    .stated_value = modbus_value};
 
 }  // namespace yuragi::drivers::modbus

@@ -234,6 +234,26 @@ decode::modbus::ModbusQuantity read_speed(TableReader reader, std::int64_t addre
   return speed;
 }
 
+/// Reads what the speed is: three keys that belong together.
+std::optional<sensor::StatedValue> read_value(TableReader& speed) {
+  if (!speed.has("value")) {
+    for (const char* key : {"averaging_s", "value_source"}) {
+      if (speed.has(key)) speed.fail(key, "is given without value; allowed only beside value");
+    }
+    return std::nullopt;
+  }
+  constexpr double kLongestAveraging_s = 3600.0;
+  sensor::StatedValue stated;
+  stated.value = static_cast<wind::ReadingValue>(speed.choice("value", wind::kReadingValueNames));
+  stated.averaging_s = speed.number("averaging_s", 0.0, kLongestAveraging_s, 0.0);
+  if (stated.value == wind::ReadingValue::kInstant && stated.averaging_s > 0.0) {
+    speed.fail("averaging_s", "is above 0, but an instantaneous value has no averaging time; allowed: none");
+  }
+  stated.source = speed.text("value_source");
+  if (stated.source.empty()) speed.fail("value_source", "is empty; allowed: the document that states the value");
+  return stated;
+}
+
 decode::modbus::ModbusQuantity read_direction(TableReader reader, std::int64_t address_base) {
   decode::modbus::ModbusQuantity direction = read_quantity(reader, address_base);
   direction.unit = decode::modbus::QuantityUnit::kDegrees;
@@ -322,7 +342,9 @@ ModbusProfile parse_modbus_profile(std::string_view text, std::string_view file)
   // as it is has base 0.
   static constexpr std::int64_t kBases[] = {0, 1, 30001, 40001};
   const std::int64_t address_base = reader.whole_among("address_base", kBases, 0);
-  profile.speed = read_speed(reader.table("speed", true), address_base);
+  TableReader speed = reader.table("speed", true);
+  profile.value = read_value(speed);
+  profile.speed = read_speed(std::move(speed), address_base);
   const bool has_direction = reader.has("direction");
   TableReader direction = reader.table("direction", false);
   if (has_direction) profile.direction = read_direction(std::move(direction), address_base);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "drivers/decode/modbus/modbus_quantity.hpp"
+#include "drivers/sensor/stated_value.hpp"
 #include "engine/base/time.hpp"
 #include "engine/wind/station_quantities.hpp"
 
@@ -54,6 +55,7 @@ struct ModbusProfile {
   double north_offset_deg = 0.0;  ///< added to the direction: the device's mark points there instead of to north
 
   decode::modbus::ModbusQuantity speed;
+  std::optional<sensor::StatedValue> value;  ///< what the speed is; nullopt: unknown
   std::optional<decode::modbus::ModbusQuantity> direction;
   std::optional<decode::modbus::ModbusQuantity> gust;  ///< the device's own gust: its strongest recent speed
   /// The wind force that the device itself makes of its speed, in Beaufort: not read in service, but probing judges the

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,7 @@
 #include "drivers/sensor/found_device.hpp"
 #include "drivers/sensor/network_search.hpp"
 #include "drivers/sensor/sensor.hpp"
+#include "drivers/sensor/stated_value.hpp"
 #include "drivers/sensor/value_selection.hpp"
 #include "engine/base/parameter.hpp"
 
@@ -27,7 +29,8 @@ struct KnownDevice {
   std::string name;    ///< in a configuration
   std::string device;  ///< for people
   std::vector<std::string_view> confirmed_by = {};
-  std::string unconfirmed = {};  ///< what nobody confirms; empty: nothing
+  std::string unconfirmed = {};           ///< what nobody confirms; empty: nothing
+  std::optional<StatedValue> value = {};  ///< what its speed is; nullopt: unknown
 };
 
 /// What a device measures besides the speed, by its data sheet.
@@ -64,6 +67,9 @@ struct DriverDescription {
   /// What the readings of a sensor of these values should have, of values that open() takes: if it does not come, that
   /// is a fault. nullptr: only what has come is expected.
   PromisedQuantities (*promises)(const ParameterValues& values) = nullptr;
+  /// Returns what the speed of a sensor of these values is, as documented by the maker or the protocol; nullptr, or
+  /// nullopt, if that is unknown. Does not touch the device. Does not throw, even for values that open() refuses.
+  std::optional<StatedValue> (*stated_value)(const ParameterValues& values) = nullptr;
   /// What a person sets at the device itself: lines of text; empty: nothing.
   std::string_view device_setup = {};
   /// It plays a recording: never to be taken for the live wind.

@@ -76,6 +76,11 @@ const sensor::DriverDescription kSyntheticDriver{
     .parameters = kSyntheticParameters,
     .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
       return std::make_unique<SyntheticSensor>(values);
-    }};
+    },
+    .stated_value =
+        [](const ParameterValues&) {
+          return std::optional(
+              sensor::StatedValue{.value = wind::ReadingValue::kInstant, .source = "drivers/synthetic"});
+        }};
 
 }  // namespace yuragi::drivers::synthetic

@@ -179,6 +179,13 @@ sensor::ValueSelection nmea_selection(const ParameterValues& values) {
                                         {.key = "xdr_id", .value = std::to_string(settings.xdr_first_id)}});
 }
 
+/// A WXT's "Sm" is the mean of its averaging time. Of the other formats it depends on the device. Source:
+/// drivers/SOURCES.md S4.7.
+std::optional<sensor::StatedValue> nmea_value(const ParameterValues& values) {
+  if (values.text("format") != "wxt") return std::nullopt;
+  return sensor::StatedValue{.value = wind::ReadingValue::kMean, .source = "Vaisala M211840EN: Sm"};
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kNmeaDriver;
@@ -196,6 +203,7 @@ const sensor::DriverDescription kNmeaDriver{
                                                   "\nbaud = 4800  # or 9600, 19200: as the anemometer is set");
         },
     .claims = byte_port_claims,
-    .selection = nmea_selection};
+    .selection = nmea_selection,
+    .stated_value = nmea_value};
 
 }  // namespace yuragi::drivers::text

@@ -212,6 +212,11 @@ std::vector<sensor::FoundDevice> find_usb() {
   return found;
 }
 
+/// Pulses are counted from one reading to the next.
+std::optional<sensor::StatedValue> usb_value(const ParameterValues& /*values*/) {
+  return sensor::StatedValue{.value = wind::ReadingValue::kMean, .source = "pulses are counted over the interval"};
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kUsbDriver;
@@ -221,6 +226,7 @@ const sensor::DriverDescription kUsbDriver{
     .parameters = kUsbParameters,
     .open = open_usb,
     .find = find_usb,
-    .selection = usb_selection};
+    .selection = usb_selection,
+    .stated_value = usb_value};
 
 }  // namespace yuragi::drivers::usb

@@ -160,9 +160,10 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
   return is_within(to.age_s, 0.0, kMaxDuration_s) && is_within(to.interval_s, 0.0, kMaxDuration_s) &&
          read_text(from.name(), to.name) && read_text(from.driver(), to.driver) &&
          read_text(from.detail(), to.detail) && read_text(from.state_reason(), to.state_reason) &&
-         read(from.speed_m_s(), to.speed_m_s) && read(from.direction_deg(), to.direction_deg) &&
-         read(from.gust_m_s(), to.gust_m_s) && read(from.raw_speed_m_s(), to.raw_speed_m_s) &&
-         read(from.raw_direction_deg(), to.raw_direction_deg) && read_quantities(from, to);
+         read_text(from.value(), to.value) && read(from.speed_m_s(), to.speed_m_s) &&
+         read(from.direction_deg(), to.direction_deg) && read(from.gust_m_s(), to.gust_m_s) &&
+         read(from.raw_speed_m_s(), to.raw_speed_m_s) && read(from.raw_direction_deg(), to.raw_direction_deg) &&
+         read_quantities(from, to);
 }
 
 /// A server that does not know of it sends none: then nothing is at work.

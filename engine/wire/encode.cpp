@@ -143,6 +143,7 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   std::vector<flatbuffers::Offset<fb::QuantityStatus>> quantities;
   for (const QuantityStatus& quantity : sensor.quantities) quantities.push_back(add_quantity(builder, quantity));
   const auto quantity_list = builder.CreateVector(quantities);
+  const auto value = add_text(builder, sensor.value);
 
   fb::SensorBuilder table(builder);
   table.add_name(name);
@@ -166,6 +167,7 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   if (sensor.raw_speed_m_s) table.add_raw_speed_m_s(*sensor.raw_speed_m_s);
   if (sensor.raw_direction_deg) table.add_raw_direction_deg(*sensor.raw_direction_deg);
   table.add_quantities(quantity_list);
+  table.add_value(value);
   return table.Finish();
 }
 

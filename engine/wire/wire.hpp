@@ -154,6 +154,7 @@ struct SensorStatus {
   std::optional<double> raw_speed_m_s;  ///< the last reading before calibration
   std::optional<double> raw_direction_deg;
   std::vector<QuantityStatus> quantities = {};  ///< those that it has sent, or that its profile promises
+  std::string value = {};  ///< what its speed is, with the source, for a person: "instantaneous (assumed)"
 };
 
 /// What makes the wind that moves the scenes another than the real one (engine/wind/shaping/wind_shaping.hpp).

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "daemon/sensing/recorded_silence.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
 
@@ -35,7 +36,9 @@ Result<void, Failure> make_recorded_frames(const std::filesystem::path& recordin
   if (!opened) return opened.error();
   drivers::windlog::WindlogPlayback& playback = *opened;
   const std::shared_ptr<const wind::turbulence::GustNoise> noise = sensing::make_gust_noise(config);
-  wind::blend::BlendedEstimator estimator = sensing::make_estimator(config, noise, grid.reach_m());
+  settings::Config of_recording = config;
+  set_value(of_recording.sensors.at(0), sensing::recorded_value(recording, playback_options.sensor));
+  wind::blend::BlendedEstimator estimator = sensing::make_estimator(of_recording, noise, grid.reach_m());
   wind::ground::WindTapes tapes;
   wind::ground::GroundWind ground;
   const wind::field::GroundWindField field(ground, *noise);

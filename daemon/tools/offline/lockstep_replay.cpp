@@ -125,6 +125,7 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
   one_source.wind.fallback.reset();
   one_source.sensors[0].blend.unchanged_for_s =
       sensing::recorded_unchanged_for_s(recording, options.playback.sensor) / options.rate;
+  set_value(one_source.sensors[0], sensing::recorded_value(recording, options.playback.sensor));
   wind::blend::BlendedEstimator estimator = sensing::make_estimator(one_source, gusts, animation.reach_m());
   wind::shaping::WindShaping shaping(config.shaping.settings, gusts);
   sensing::SensorJury jury({sensing::jury_rules_of(one_source.sensors[0])}, one_source.wind.stale_intervals);

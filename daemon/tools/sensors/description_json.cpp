@@ -30,6 +30,14 @@ std::string_view type_of(const Parameter& parameter) {
   return kNames.at(parameter.default_value.index());
 }
 
+/// Null if unknown.
+ordered_json value_json(const std::optional<drivers::sensor::StatedValue>& stated) {
+  if (!stated || stated->value == wind::ReadingValue::kUnknown) return nullptr;
+  return {{"value", wind::kReadingValueNames.at(static_cast<std::size_t>(stated->value))},
+          {"averaging_s", stated->averaging_s > 0.0 ? ordered_json(stated->averaging_s) : ordered_json(nullptr)},
+          {"source", stated->source}};
+}
+
 ordered_json known_devices_json(const drivers::sensor::DriverDescription& driver) {
   ordered_json all = ordered_json::array();
   if (driver.known_devices == nullptr) return all;
@@ -37,7 +45,8 @@ ordered_json known_devices_json(const drivers::sensor::DriverDescription& driver
     all.push_back({{"name", device.name},
                    {"device", device.device},
                    {"confirmed_by", device.confirmed_by},
-                   {"unconfirmed", text_or_null(device.unconfirmed)}});
+                   {"unconfirmed", text_or_null(device.unconfirmed)},
+                   {"value", value_json(device.value)}});
   }
   return all;
 }

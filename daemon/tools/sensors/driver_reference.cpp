@@ -27,10 +27,35 @@ std::string known_device_text(const std::vector<drivers::sensor::KnownDevice>& d
   for (const drivers::sensor::KnownDevice& device : devices) {
     fmt::format_to(std::back_inserter(text), "  {}\n      {}; confirmed by: {}\n", device.name, device.device,
                    confirmed_by(device));
+    if (device.value) fmt::format_to(std::back_inserter(text), "      speed: {}\n", value_text(*device.value));
     if (!device.unconfirmed.empty())
       fmt::format_to(std::back_inserter(text), "      unconfirmed: {}\n", device.unconfirmed);
   }
   return text;
+}
+
+/// Returns what a driver states of its speed: by default, and for each choice of a key that changes it. Empty if it
+/// states nothing, and for a driver that knows devices by name: they are listed with it.
+std::vector<std::string> value_texts(const drivers::sensor::DriverDescription& driver) {
+  std::vector<std::string> texts;
+  if (driver.stated_value == nullptr || driver.known_devices != nullptr) return texts;
+  auto values = ParameterValues::resolve(driver.parameters, {});
+  if (!values) return texts;
+  const auto text_of = [&](const ParameterValues& of) {
+    const auto stated = driver.stated_value(of);
+    return stated ? value_text(*stated) : std::string();
+  };
+  const std::string by_default = text_of(*values);
+  if (!by_default.empty()) texts.push_back(by_default);
+  for (const Parameter& parameter : driver.parameters) {
+    for (const std::string_view choice : parameter.choices) {
+      ParameterValues of_choice = *values;
+      of_choice.set(parameter.name, std::string(choice));
+      const std::string text = text_of(of_choice);
+      if (text != by_default) texts.push_back(fmt::format("{} = \"{}\": {}", parameter.name, choice, text));
+    }
+  }
+  return texts;
 }
 
 }  // namespace
@@ -63,6 +88,7 @@ std::string describe_driver(const drivers::sensor::DriverDescription& driver) {
   if (driver.find_in_network != nullptr)
     text += "\n`yuragi sensors list --network` searches the local network for its devices.\n";
   if (!driver.parameters.empty()) text += "\nIts keys:\n" + parameter_text(driver.parameters);
+  for (const std::string& value : value_texts(driver)) text += fmt::format("\nSpeed: {}\n", value);
   if (driver.known_devices != nullptr)
     text += "\nThe devices that it knows by name:\n" + known_device_text(driver.known_devices());
   if (!driver.device_setup.empty()) text += fmt::format("\nAt the device:\n{}", driver.device_setup);
@@ -81,11 +107,13 @@ std::string driver_reference(std::span<const drivers::sensor::DriverDescription*
       fmt::format_to(out, "| `{}` | {} | {} |\n", parameter.name, cell(describe_allowed(parameter)),
                      cell(parameter.help));
     }
+    for (const std::string& value : value_texts(*driver)) fmt::format_to(out, "\nSpeed: {}\n", cell(value));
     if (!driver->device_setup.empty()) fmt::format_to(out, "\nAt the device:\n\n```\n{}```\n", driver->device_setup);
     if (driver->known_devices == nullptr) continue;
-    fmt::format_to(out, "\n| name | device | confirmed by | unconfirmed |\n| --- | --- | --- | --- |\n");
+    fmt::format_to(out, "\n| name | device | speed | confirmed by | unconfirmed |\n| --- | --- | --- | --- | --- |\n");
     for (const drivers::sensor::KnownDevice& device : driver->known_devices()) {
-      fmt::format_to(out, "| `{}` | {} | {} | {} |\n", device.name, cell(device.device), confirmed_by(device),
+      fmt::format_to(out, "| `{}` | {} | {} | {} | {} |\n", device.name, cell(device.device),
+                     device.value ? cell(value_text(*device.value)) : "", confirmed_by(device),
                      cell(device.unconfirmed));
     }
   }

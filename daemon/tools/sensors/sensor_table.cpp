@@ -145,6 +145,7 @@ std::string sensor_table(const wire::Sensors& sensors) {
     if (!sensor.state_reason.empty()) {
       table += wrapped(fmt::format("{}: {}", name_of(sensor.state), sensor.state_reason));
     }
+    if (!sensor.value.empty()) table += wrapped("speed: " + sensor.value);
     for (const wire::QuantityStatus& quantity : sensor.quantities) {
       if (quantity.is_missing) table += wrapped(fmt::format("no {}: {}", name_of(quantity.quantity), quantity.reason));
     }

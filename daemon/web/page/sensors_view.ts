@@ -31,7 +31,8 @@ function reading_text(sensor: Sensor): string {
 
 function reason_text(sensor: Sensor): string {
   const missing = sensor.quantities.filter((quantity) => quantity.is_missing);
-  return [sensor.state_reason, ...missing.map((quantity) => `No ${quantity.name}: ${quantity.reason}`)].join(". ");
+  const speed = sensor.value === "" ? [] : [`Speed: ${sensor.value}`];
+  return [sensor.state_reason, ...speed, ...missing.map((quantity) => `No ${quantity.name}: ${quantity.reason}`)].join(". ");
 }
 
 export class SensorsView {

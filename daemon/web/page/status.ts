@@ -19,6 +19,7 @@ export interface Sensor {
   driver: string;
   state: string;
   state_reason: string;
+  value: string;
   quantities: Quantity[];
   speed_m_s: number | null;
   direction_deg: number | null;

@@ -23,7 +23,7 @@ struct BlendSourceSettings {
   double lead_m = 0.0;     ///< its pen is placed so far upwind: more of the wind is known, but later
   double length_m = 0.0;   ///< integral length scale before anything is measured; 0: the blend's length
   bool fits_site = false;  ///< its readings are live and of this site: they update the site's spectrum
-  ReadingValue value = ReadingValue::kMean;
+  ReadingValue value = ReadingValue::kMean;  ///< readings of kMaximum are not accepted
   double averaging_s = 0.0;         ///< a reading that is a mean is one over so long; 0: over the interval, which is
                                     ///< measured
   double direction_step_deg = 0.0;  ///< resolution of its vane; 0: detected

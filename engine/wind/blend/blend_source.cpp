@@ -22,6 +22,8 @@ constexpr double kTrustRate_rad_s = 1.0;
 /// The slow mean of the speed, by which turbulence is measured.
 constexpr double kSpeedMemory_s = 60.0;
 constexpr double kFitEvery_s = 1.0;
+/// What is assumed of a station changes only with an interval that is so many times beyond the limit.
+constexpr double kBeyondLimit = 1.2;
 
 /// A configured length of a source weighs more than the climate's intensity, which is not specific to the site: means
 /// over times that are longer than a gust determine only the product of the variance and the time scale, so that the
@@ -76,6 +78,7 @@ BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& 
                          const turbulence::GustNoise& noise)
     : scale(blend.fit_memory_s),
       settings_(settings),
+      taken_(settings.value == ReadingValue::kUnknown ? assumed_value(kUnknownInterval_s) : settings.value),
       mean_memory_s_(blend.mean_memory_s),
       noise_(&noise),
       record_(settings.unchanged_for_s),
@@ -87,10 +90,12 @@ BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& 
       across_(turbulence::gust_variances(noise, turbulence::kAcrossPerAlong * blend.climate.turbulence_intensity,
                                          turbulence_prior(blend, settings).length_m)),
       site_(blend.site),
-      site_fit_(turbulence_prior(blend, settings), blend.fit_memory_s) {}
+      site_fit_(turbulence_prior(blend, settings), blend.fit_memory_s) {
+  if (settings.value == ReadingValue::kUnknown) measured_.take_as(taken_);
+}
 
 bool BlendSource::accept(const WindReading& reading, const Around& around) noexcept {
-  if (!is_plausible(reading)) return false;
+  if (settings_.value == ReadingValue::kMaximum || !is_plausible(reading)) return false;
   const bool is_first = !record_.has_reading();
   const double gap_s = is_first ? 0.0 : seconds(reading.time.mono - record_.last()->time.mono);
   if (gap_s < 0.0) return false;  // older than the last reading
@@ -138,7 +143,7 @@ double BlendSource::expected_interval_s() const noexcept {
 }
 
 double BlendSource::averaging_s() const noexcept {
-  if (settings_.value == ReadingValue::kInstant) return 0.0;
+  if (taken_ == ReadingValue::kInstant) return 0.0;
   return settings_.averaging_s > 0.0 ? settings_.averaging_s : expected_interval_s();
 }
 
@@ -150,10 +155,22 @@ double BlendSource::trust_at(double frequency_hz) const noexcept {
   return full_trust_at(frequency_hz, slowness_s()) * unfolded_.at(frequency_hz);
 }
 
+/// Sets what is assumed of the readings, by their interval. Weights follow slewed, and the turbulence with its next
+/// fit.
+void BlendSource::set_taken() noexcept {
+  const ReadingValue assumed = assumed_value(interval_s_);
+  const double nearer_s = taken_ == ReadingValue::kInstant ? interval_s_ / kBeyondLimit : interval_s_ * kBeyondLimit;
+  if (assumed == taken_ || assumed_value(nearer_s) == taken_) return;
+  taken_ = assumed;
+  measured_.take_as(assumed);
+  if (assumed == ReadingValue::kMean) unfolded_ = {};
+}
+
 /// When it has changed.
 void BlendSource::set_interval() noexcept {
   if (expected_interval_s() == interval_s_) return;
   interval_s_ = expected_interval_s();
+  if (settings_.value == ReadingValue::kUnknown) set_taken();
   set_full_trust();
   passed_[0] = 1.0;
   for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
@@ -164,7 +181,7 @@ void BlendSource::set_interval() noexcept {
 
 /// Called when the interval has changed, or the fitted turbulence, which sets the trust in instantaneous samples.
 void BlendSource::set_full_trust() noexcept {
-  if (settings_.value == ReadingValue::kInstant) unfolded_.set(interval_s_, turbulence_.time_scale_s);
+  if (taken_ == ReadingValue::kInstant) unfolded_.set(interval_s_, turbulence_.time_scale_s);
   full_trust_ = full_trust_of(slowness_s(), unfolded_);
 }
 
@@ -186,7 +203,7 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
   measured_.fit(interval_s, speed_m_s);
   turbulence_ = measured_.along().turbulence();
-  if (settings_.value == ReadingValue::kInstant) set_full_trust();
+  if (taken_ == ReadingValue::kInstant) set_full_trust();
   const auto strengths = [&](const turbulence::TurbulenceFit& fit) {
     const turbulence::Turbulence turbulence = fit.turbulence();
     turbulence::GustVariances variances =

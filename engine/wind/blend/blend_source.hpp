@@ -45,11 +45,14 @@ class BlendSource {
     double advection_m_s = 1.0;      ///< how fast gusts pass
   };
 
-  /// Takes a reading; false for one that is impossible or older than what is known.
+  /// Takes a reading; false for one that is impossible, a maximum, or older than what is known.
   bool accept(const WindReading& reading, const Around& around) noexcept;
 
   /// Advances to `now`. Precondition: it has sent a reading.
   void step(MonoTime now, double dt_s, const turbulence::OctaveFollower::Parts& parts) noexcept;
+
+  /// What its readings are taken as; never kUnknown.
+  ReadingValue taken() const noexcept { return taken_; }
 
   const SourceRecord& record() const noexcept { return record_; }
   bool has_vane() const noexcept { return direction_.has_vane(); }
@@ -70,7 +73,7 @@ class BlendSource {
   SourceResponse passed_of(double frequency_hz) const noexcept;
   /// The power that is folded onto this frequency, over the wind's own there (W40): 0 of means.
   double folded_over_own(double frequency_hz) const noexcept {
-    return settings_.value == ReadingValue::kInstant ? 1.0 / unfolded_.at(frequency_hz) - 1.0 : 0.0;
+    return taken_ == ReadingValue::kInstant ? 1.0 / unfolded_.at(frequency_hz) - 1.0 : 0.0;
   }
   /// The weight of a wave of this frequency while readings are on time (W18, W40).
   double trust_at(double frequency_hz) const noexcept;
@@ -87,11 +90,13 @@ class BlendSource {
   double averaging_s() const noexcept;
   double slowness_s() const noexcept;
   void set_interval() noexcept;
+  void set_taken() noexcept;
   void set_full_trust() noexcept;
   void measure(WindVector ahead, double mean_of_s) noexcept;
   void fit(double interval_s, double advection_m_s) noexcept;
 
   BlendSourceSettings settings_;
+  ReadingValue taken_;  ///< not kUnknown
   double mean_memory_s_;
   const turbulence::GustNoise* noise_;
 

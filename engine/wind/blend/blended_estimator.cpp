@@ -95,6 +95,10 @@ bool BlendedEstimator::accept(std::size_t index, const WindReading& reading) noe
                                           .advection_m_s = std::max(advection_m_s_, kLeastAdvection_m_s)});
 }
 
+ReadingValue BlendedEstimator::taken(std::size_t source) const noexcept {
+  return source < sources_.size() ? sources_[source].taken() : ReadingValue::kUnknown;
+}
+
 bool BlendedEstimator::is_direction_live(std::size_t besides) const noexcept {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     if (i == besides || !choice_.is_chosen(i) || choice_.weight(i) < 0.5 * kLeastShare) continue;

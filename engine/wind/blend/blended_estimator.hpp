@@ -78,6 +78,9 @@ class BlendedEstimator {
   /// How `source` does, as of the last advance(). One that is not there is silent.
   SourceReport report(std::size_t source) const noexcept;
 
+  /// Returns what the readings of `source` are taken as: its configured value, or the assumed one if that is unknown.
+  ReadingValue taken(std::size_t source) const noexcept;
+
   /// Does another source than `besides` measure the direction of the wind that is shown? As of the last advance().
   bool is_direction_live(std::size_t besides) const noexcept;
 

@@ -36,7 +36,7 @@ constexpr double kLeastIntensity = 1e-4;
 TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value, WindComponent component)
     : prior_(prior), memory_s_(memory_s), value_(value), component_(component) {
   make_haar_table();  // now, not on the way
-  if (value_ == ReadingValue::kInstant) make_sampled_haar_table();
+  if (value_ == ReadingValue::kInstant || value_ == ReadingValue::kUnknown) make_sampled_haar_table();
   prior_.intensity = std::max(prior.intensity, kLeastIntensity);
   turbulence_ = {prior_.intensity, 8.0};
 }

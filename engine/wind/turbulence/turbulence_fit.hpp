@@ -48,6 +48,10 @@ class TurbulenceFit {
   /// What has been added fades: so much time has gone by.
   void forget(double dt_s) noexcept;
 
+  /// Sets what the readings are taken as from the next fit on: kMean or kInstant. Precondition: it was constructed with
+  /// that or with kUnknown.
+  void take_as(ReadingValue value) noexcept { value_ = value; }
+
   /// Fits anew, for readings every `interval_s` (above 0), means over that or instantaneous, in a wind of mean
   /// speed `speed_m_s` (above 0).
   void fit(double interval_s, double speed_m_s) noexcept;

@@ -27,6 +27,11 @@ class WindTurbulence {
   /// `prior`: along the wind; across it, the intensity is kAcrossPerAlong of it.
   WindTurbulence(const TurbulencePrior& prior, double memory_s, ReadingValue value = ReadingValue::kMean);
 
+  /// TurbulenceFit::take_as() of both.
+  void take_as(ReadingValue value) noexcept {
+    along_.take_as(value);
+    across_.take_as(value);
+  }
   /// So much time has gone by.
   void forget(double dt_s) noexcept;
   /// After a gap: what comes next is not compared with what was.

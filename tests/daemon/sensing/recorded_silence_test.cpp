@@ -53,20 +53,21 @@ class RecordedSilence : public ::testing::Test {
 
 TEST_F(RecordedSilence, IsNoGapWhereTheSourceSpokeOnChange) {
   EXPECT_GT(stale_steps(config()), 2000) << "what is not known of a recording";
-  EXPECT_EQ(stale_steps(with_recorded_silences(config())), 0);
+  EXPECT_EQ(stale_steps(with_recorded_sources(config())), 0);
 }
 
 TEST_F(RecordedSilence, IsThatOfTheRecordingAtItsRate) {
-  EXPECT_EQ(with_recorded_silences(config()).sensors[0].blend.unchanged_for_s, 3600.0);
-  EXPECT_EQ(with_recorded_silences(config("4.0")).sensors[0].blend.unchanged_for_s, 900.0);
+  EXPECT_EQ(with_recorded_sources(config()).sensors[0].blend.unchanged_for_s, 3600.0);
+  EXPECT_EQ(with_recorded_sources(config("4.0")).sensors[0].blend.unchanged_for_s, 900.0);
   EXPECT_EQ(recorded_unchanged_for_s(file_, "home"), 3600.0);
   EXPECT_EQ(recorded_unchanged_for_s(file_, "*"), 0.0);
   EXPECT_EQ(recorded_unchanged_for_s(file_, "away"), 0.0);
   EXPECT_EQ(recorded_unchanged_for_s(folder_ / "none.windlog", ""), 0.0);
 
+  EXPECT_EQ(recorded_value(file_, "home"), std::nullopt) << "MQTT does not say what is published";
   settings::Config with_fallback = settings::default_config();
   with_fallback.wind.fallback = {.recording = file_, .after_s = 5.0};
-  EXPECT_EQ(blend_settings_of(with_recorded_silences(with_fallback)).sources.back().unchanged_for_s, 3600.0);
+  EXPECT_EQ(blend_settings_of(with_recorded_sources(with_fallback)).sources.back().unchanged_for_s, 3600.0);
 }
 
 }  // namespace

@@ -151,6 +151,31 @@ class SensorJudgementOfThree : public SensorJudgement {
   SensorJudgementOfThree() : SensorJudgement(3) {}
 };
 
+// A sensor of maxima is read, judged, shown and recorded, but not used as wind.
+TEST_F(SensorJudgementOfTwo, AMaximumIsShownAndMakesNoWind) {
+  config_.sensors[0].value = {.value = wind::ReadingValue::kMaximum, .averaging_s = 60.0, .source = "its manual"};
+  config_.sensors[0].blend.value = wind::ReadingValue::kMaximum;
+  start();
+  go_on(600, [&] { publish(0, breeze(12.0)); });
+  EXPECT_EQ(state(0), wind::judging::SensorState::kLive);
+  EXPECT_EQ(recorded_, 600);
+  EXPECT_EQ(hub_->status()[0].value, "maximum over 60 s (its manual)");
+  EXPECT_GT(*hub_->status()[0].speed_m_s, 9.0);
+  EXPECT_THAT(reason(0), HasSubstr("its speeds are maxima, which are not used as wind. Set the station to send"));
+  EXPECT_FALSE(hub_->is_any_live()) << "a recording may stand in for it";
+  EXPECT_EQ(hub_->wind().source, wind::WindSource::kDefault);
+
+  // Beside another sensor it neither makes the wind nor outvotes it.
+  go_on(600, [&] {
+    publish(0, breeze(12.0));
+    publish(1, breeze(5.0));
+  });
+  EXPECT_EQ(state(1), wind::judging::SensorState::kLive);
+  EXPECT_EQ(hub_->status()[1].value, "instantaneous (assumed)");
+  EXPECT_NEAR(speed_of(hub_->wind().wind), 5.0, 2.0);
+  EXPECT_EQ(lines_of_log_with("outvoted"), 0);
+}
+
 TEST_F(SensorJudgement, AFrozenSensorLosesTheWindWithoutAJumpAndGetsItBackWhenItMoves) {
   start();
   go_on(120, [&] { publish(0, breeze()); });

@@ -14,6 +14,7 @@
 namespace yuragi::drivers::modbus {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -52,6 +53,28 @@ TEST(ModbusProfile, OfTheRenkePairIsWhatItsRegisterMapSays) {
   EXPECT_EQ(profile.direction->slave, 2);
   EXPECT_EQ(profile.direction->address, 1);
   EXPECT_EQ(*decode::modbus::decode_direction_deg(*profile.direction, std::vector<std::uint16_t>{360}), 0.0);
+}
+
+TEST(ModbusProfile, StatesWhatItsSpeedIsWithTheSource) {
+  EXPECT_EQ(parse_modbus_profile(minimal(), "").value, std::nullopt);
+  const auto of = [](const std::string& lines) {
+    return parse_modbus_profile(minimal("", lines), "device.toml").value;
+  };
+  EXPECT_EQ(of("value = \"instant\"\nvalue_source = \"z p. 1\"\n"),
+            (sensor::StatedValue{.value = wind::ReadingValue::kInstant, .source = "z p. 1"}));
+  EXPECT_EQ(of("value = \"maximum\"\naveraging_s = 60\nvalue_source = \"z p. 1\"\n"),
+            (sensor::StatedValue{.value = wind::ReadingValue::kMaximum, .averaging_s = 60.0, .source = "z p. 1"}));
+
+  EXPECT_THAT(error_of(minimal("", "value = \"median\"\nvalue_source = \"z\"\n")),
+              AllOf(StartsWith("device.toml:"), HasSubstr("speed.value: is \"median\"; allowed: one of \"mean\"")));
+  EXPECT_THAT(error_of(minimal("", "value = \"mean\"\n")), HasSubstr("speed.value_source: is missing"));
+  EXPECT_THAT(error_of(minimal("", "value = \"mean\"\nvalue_source = \"\"\n")), HasSubstr("value_source: is empty"));
+  EXPECT_THAT(error_of(minimal("", "averaging_s = 3\n")), HasSubstr("speed.averaging_s: is given without value"));
+  EXPECT_THAT(error_of(minimal("", "value = \"instant\"\naveraging_s = 3\nvalue_source = \"z\"\n")),
+              HasSubstr("speed.averaging_s: is above 0"));
+  EXPECT_THAT(
+      error_of(minimal("", "[gust]\nslave = 1\naddress = 1\ntype = \"u16\"\nunit = \"m/s\"\nvalue = \"mean\"\n")),
+      HasSubstr("gust.value: is not known here"));
 }
 
 TEST(ModbusProfile, OfTheCupAloneHasNoDirection) {

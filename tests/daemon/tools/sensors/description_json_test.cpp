@@ -54,6 +54,9 @@ TEST(DescriptionJson, HasEachKeyOfEachDriverAndNoSecret) {
   ASSERT_NE(wm80, devices.end());
   EXPECT_EQ((*wm80)["confirmed_by"], nlohmann::ordered_json::array({"maker"}));
   EXPECT_THAT((*wm80)["unconfirmed"].get<std::string>(), testing::HasSubstr("slave id"));
+  EXPECT_EQ((*wm80)["value"]["value"], "instant");
+  EXPECT_TRUE((*wm80)["value"]["averaging_s"].is_null());
+  EXPECT_THAT((*wm80)["value"]["source"].get<std::string>(), testing::HasSubstr("M212995EN"));
   EXPECT_TRUE(json[0]["known_devices"].is_array());
   const Parameter parameter{.name = "height", .unit = "m", .default_value = 2.0, .min = 0.0, .help = "how high"};
   const auto one = parameters_json(std::span(&parameter, 1))[0];

@@ -1,5 +1,7 @@
 #include "daemon/tools/sensors/device_list.hpp"
 
+#include <array>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -111,14 +113,39 @@ TEST(DriverReference, SaysOfEachDeviceThatADriverKnowsWhoConfirmsItAndWhatNobody
       .name = "knowing", .summary = "", .parameters = {}, .open = nullptr, .known_devices = [] {
         return std::vector<drivers::sensor::KnownDevice>{
             {.name = "a-1", .device = "A 1", .confirmed_by = {"maker", "decoder"}},
-            {.name = "b-2", .device = "B 2", .unconfirmed = "the id | all"}};
+            {.name = "b-2",
+             .device = "B 2",
+             .unconfirmed = "the id | all",
+             .value = drivers::sensor::StatedValue{
+                 .value = wind::ReadingValue::kMean, .averaging_s = 3.0, .source = "B p. 1"}}};
       }};
   const std::string text = describe_driver(driver);
   EXPECT_THAT(text, HasSubstr("  a-1\n      A 1; confirmed by: maker, decoder\n  b-2\n"));
-  EXPECT_THAT(text, HasSubstr("      B 2; confirmed by: nobody\n      unconfirmed: the id | all\n"));
+  EXPECT_THAT(
+      text,
+      HasSubstr(
+          "      B 2; confirmed by: nobody\n      speed: mean over 3 s (B p. 1)\n      unconfirmed: the id | all\n"));
   const std::vector<const drivers::sensor::DriverDescription*> drivers = {&driver};
-  EXPECT_THAT(driver_reference(drivers), HasSubstr("| `a-1` | A 1 | maker, decoder |  |\n"));
-  EXPECT_THAT(driver_reference(drivers), HasSubstr("| `b-2` | B 2 | nobody | the id \\| all |\n"));
+  EXPECT_THAT(driver_reference(drivers), HasSubstr("| `a-1` | A 1 |  | maker, decoder |  |\n"));
+  EXPECT_THAT(driver_reference(drivers),
+              HasSubstr("| `b-2` | B 2 | mean over 3 s (B p. 1) | nobody | the id \\| all |\n"));
+}
+
+TEST(DriverReference, SaysWhatTheSpeedIsAndOfWhichChoices) {
+  static constexpr std::array<std::string_view, 2> kModes = {"fast", "slow"};
+  static const std::array kParameters = {
+      Parameter{.name = "mode", .unit = "", .default_value = std::string("fast"), .help = "how", .choices = kModes}};
+  const drivers::sensor::DriverDescription driver{
+      .name = "moody",
+      .summary = "",
+      .parameters = kParameters,
+      .open = nullptr,
+      .stated_value = [](const ParameterValues& values) -> std::optional<drivers::sensor::StatedValue> {
+        if (values.text("mode") == "fast") return std::nullopt;
+        return drivers::sensor::StatedValue{.value = wind::ReadingValue::kMean, .averaging_s = 10.0, .source = "p. 1"};
+      }};
+  EXPECT_THAT(describe_driver(driver), HasSubstr("Speed: mode = \"slow\": mean over 10 s (p. 1)\n"));
+  EXPECT_THAT(describe_driver(driver), Not(HasSubstr("\"fast\": ")));
 }
 
 TEST(DriverReference, SaysWhichDevicesCanBeSearchedForInTheNetwork) {

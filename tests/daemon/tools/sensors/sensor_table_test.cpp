@@ -20,6 +20,7 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   live.health = wind::SourceHealth::kLive;
   live.state = wind::judging::SensorState::kLive;
   live.state_reason = "a reading every 0.5 s";
+  live.value = "instantaneous (assumed)";
   live.detail = "answers at 10.0.0.5:502";
   live.speed_m_s = 8.6;
   live.direction_deg = 90.0;
@@ -49,6 +50,7 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   EXPECT_THAT(table, HasSubstr("timeout 3, exception 1"));
   EXPECT_THAT(table, HasSubstr("connected: answers at 10.0.0.5:502"));
   EXPECT_THAT(table, HasSubstr("live: a reading every 0.5 s"));
+  EXPECT_THAT(table, HasSubstr("speed: instantaneous (assumed)"));
   EXPECT_THAT(table, HasSubstr("connecting")) << "a sensor that never spoke shows what its link does";
 }
 

@@ -320,6 +320,63 @@ TEST(BlendedSources, TheDelayIsThatOfAveragingHoldAndBands) {
   EXPECT_NEAR(blend_group_delay_s(0.01, 1.0, 0.0), 0.86, 0.01) << "a reading of the moment";
 }
 
+// How strong gusts are is no wind.
+TEST(BlendedSources, OneOfMaximaMakesNoWind) {
+  BlendRun run(2, without_noise({{.priority = 1, .value = ReadingValue::kMaximum}, {.priority = 2}}));
+  run.read_for(60.0, 1.0, 12.0, 270.0, 0);
+  EXPECT_EQ(run.report(0).health, SourceHealth::kSilent);
+  EXPECT_NEAR(speed_of(run.state().wind), 4.0, 1e-6) << "the climate's";
+  EXPECT_EQ(run.state().live_weight, 0.0);
+  for (int second = 0; second < 60; ++second) {
+    EXPECT_FALSE(run.read(12.0, 270.0, 0));
+    EXPECT_TRUE(run.read(6.0, 270.0, 1));
+    run.run_for(1.0);
+  }
+  EXPECT_NEAR(speed_of(run.state().wind), 6.0, 0.1);
+}
+
+TEST(BlendedSources, WhatNobodySaysIsAssumedByTheInterval) {
+  BlendRun run(
+      3, without_noise(
+             {{.value = ReadingValue::kUnknown}, {.value = ReadingValue::kUnknown}, {.value = ReadingValue::kMean}}));
+  for (int second = 0; second < 1200; ++second) {
+    if (second % 14 == 0) run.read(5.0 + 0.01 * second, 180.0, 0);
+    if (second % 60 == 0) run.read(5.0 + 0.01 * second, 180.0, 1);
+    run.run_for(1.0);
+  }
+  EXPECT_EQ(run.estimator().taken(0), ReadingValue::kInstant);
+  EXPECT_EQ(run.estimator().taken(1), ReadingValue::kMean);
+  EXPECT_EQ(run.estimator().taken(2), ReadingValue::kMean);
+
+  // One whose interval wavers about the limit stays what it is.
+  BlendRun wavering(1, without_noise({{.value = ReadingValue::kUnknown}}));
+  for (int i = 0; i < 60; ++i)
+    wavering.read_for(27.0 + static_cast<double>(i / 15 % 2) * 6.0, 33.0, 5.0 + 0.01 * i, 180.0);
+  EXPECT_EQ(wavering.estimator().taken(0), ReadingValue::kInstant);
+}
+
+// One of which nobody says what it is is taken as what is assumed, bit for bit.
+TEST(BlendedSources, WhatIsAssumedIsTakenAsIfItWereStated) {
+  for (const auto& [interval_s, value] : {std::pair{14, ReadingValue::kInstant}, {60, ReadingValue::kMean}}) {
+    BlendSettings assumed = BlendRun::usual(3, 0.3);
+    BlendSettings stated = assumed;
+    assumed.sources = {{.value = ReadingValue::kUnknown}};
+    stated.sources = {{.value = value}};
+    BlendRun first(1, assumed);
+    BlendRun second(1, stated);
+    for (int i = 0; i < 40; ++i) {
+      const double speed_m_s = 6.0 + 2.0 * std::sin(1.7 * i);
+      first.read_for(interval_s, interval_s, speed_m_s, 180.0);
+      second.read_for(interval_s, interval_s, speed_m_s, 180.0);
+      // A mean of a minute is taken as instantaneous until its interval is known.
+      if (value == ReadingValue::kInstant) {
+        EXPECT_EQ(speed_of(first.state().wind - second.state().wind), 0.0) << i;
+      }
+    }
+    EXPECT_LT(speed_of(first.state().wind - second.state().wind), 0.2) << interval_s;
+  }
+}
+
 // A slow wave of the wind, as readings of the moment, comes out of the estimator as much later as is stated.
 TEST(BlendedSources, AWaveIsAsMuchLaterAsStated) {
   constexpr double kWave_hz = 0.05;
