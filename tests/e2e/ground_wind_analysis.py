@@ -71,13 +71,17 @@ def most_lag_of(distance_m, window):
     return int(np.ceil(RATE_HZ * (2.0 * distance_m / window.speed_m_s + 1.0)))
 
 
-def peak(correlation):
-    """Lag, s, and height of the largest correlation; a parabola through it and its neighbours."""
+def peak(correlation, about_s=None):
+    """Lag, s, and height of the largest correlation; a parabola through it and its neighbours. `about_s`: it is looked for from
+    0.4 to 1.8 times this lag, as far away from it a correlation of few gusts can be as large by chance."""
     middle = len(correlation) // 2
-    top = int(np.clip(np.argmax(correlation), 1, len(correlation) - 2))
+    first, last = 1, len(correlation) - 2
+    if about_s is not None:
+        first, last = (int(np.clip(middle + round(part * about_s * RATE_HZ), first, last)) for part in (0.4, 1.8))
+    top = first + int(np.argmax(correlation[first : last + 1]))
     before, at, after = correlation[top - 1 : top + 2]
     curve = before - 2 * at + after
-    shift = 0.5 * (before - after) / curve if curve < 0 else 0.0
+    shift = float(np.clip(0.5 * (before - after) / curve, -0.5, 0.5)) if curve < 0 else 0.0
     return (top - middle + shift) / RATE_HZ, at - 0.25 * (before - after) * shift
 
 

@@ -261,7 +261,7 @@ def report_meadows(report, bench, found):
     for name, least, most in ((STEADY, 0.95, 1.06), (GUSTY, 0.80, 1.10)):
         for size in MEADOWS_M:
             for d in PAIRS_M[size]:
-                travel = [np.mean([gw.peak(found[name, t, size]["pair", i, d])[0] * window.speed_m_s / d
+                travel = [np.mean([gw.peak(found[name, t, size]["pair", i, d], d / window.speed_m_s)[0] * window.speed_m_s / d
                                    for i, window in enumerate(steady[name])]) for t in INTERVALS_S]
                 report.add(f"travel over {d} m at the speed of the wind, {short[name]}, {size} m", travel, least, most)
     for d, size, least in ((6.5, 7, 0.88), (20, 60, 0.8), (60, 60, 0.55)):

@@ -31,7 +31,7 @@ FROM = ("--from", "20")
 WALL = "viewer/wall/pictures"
 
 # What no shader draws: plots of figures. The README that shows one has its command.
-PLOTS = ("engine/wind/blend.png", "engine/wind/field.png", "engine/wind/ground.png")
+PLOTS = ("engine/wind/blend.png", "engine/wind/field.png", "engine/wind/ground.png", "engine/wind/station.png")
 
 
 class Drawing:
