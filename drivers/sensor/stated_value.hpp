@@ -10,7 +10,7 @@ namespace yuragi::drivers::sensor {
 struct StatedValue {
   wind::ReadingValue value = wind::ReadingValue::kUnknown;
   double averaging_s = 0.0;  ///< period of a mean or maximum; 0: the interval between readings, or unknown
-  std::string source;        ///< the document that states it, for people
+  std::string source = {};   ///< the document that states it, for people
 
   bool operator==(const StatedValue&) const = default;
 };

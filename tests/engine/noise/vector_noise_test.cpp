@@ -67,8 +67,8 @@ TEST(VectorNoise, LacksPowerAlongItsWaves) {
     z.forward();
     for (std::size_t i = 1; i < x.spectrum().size(); ++i) {
       const auto wave_x = static_cast<double>(i % x.row_modes());
-      const auto row = static_cast<double>(i / x.row_modes());
-      const double wave_z = row > 32.0 ? row - 64.0 : row;
+      const std::size_t row = i / x.row_modes();
+      const double wave_z = static_cast<double>(row) - (row > 32 ? 64.0 : 0.0);
       const double length = std::hypot(wave_x, wave_z);
       along += std::norm((wave_x * x.spectrum()[i] + wave_z * z.spectrum()[i]) / length);
       all += std::norm(x.spectrum()[i]) + std::norm(z.spectrum()[i]);
