@@ -64,6 +64,7 @@ void SensorVote::advance(MonoTime now) noexcept {
       weigh(voter.outvoted_s, voter.is_outvoted, sign * step_s, settings_.patience_s);
     }
     const bool is_open = is_compared && !majority && std::ranges::any_of(voters_, differs_from);
+    voter.agrees = is_compared && (majority ? agree(voter.mean_m_s, *majority) : !is_open);
     weigh(voter.disputed_s, voter.is_disputed, is_open ? step_s : -step_s, settings_.patience_s);
   }
 }

@@ -53,6 +53,10 @@ class SensorVote {
 
   Vote vote_on(std::size_t sensor) const noexcept;
 
+  /// Is it compared at the moment, and does it agree with the majority, or, without one, with all? Unlike vote_on()
+  /// without patience.
+  bool agrees(std::size_t sensor) const noexcept { return voters_[sensor].agrees; }
+
   /// Its mean speed, and the median of those of the others that can be compared; nothing where there is none.
   double mean_m_s(std::size_t sensor) const noexcept { return voters_[sensor].mean_m_s; }
   std::optional<double> others_m_s(std::size_t sensor) const noexcept { return voters_[sensor].others_m_s; }
@@ -67,6 +71,7 @@ class SensorVote {
     double outvoted_s = 0.0;  ///< time of contradiction, less time of agreement
     double disputed_s = 0.0;
     bool is_outvoted = false;
+    bool agrees = false;
     bool is_disputed = false;
   };
 

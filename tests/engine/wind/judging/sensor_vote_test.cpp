@@ -44,6 +44,8 @@ TEST(SensorVote, OneOfThreeThatDiffersForLongIsOutvotedAndHeardAgainWhenItAgrees
   Assembly roofs(3);
   roofs.minutes(13, {5.0, 5.5, 25.0});
   EXPECT_EQ(roofs.on(2), Vote::kNone) << "it may be a gust that the others do not feel";
+  EXPECT_FALSE(roofs.vote().agrees(2)) << "but it does not agree now";
+  EXPECT_TRUE(roofs.vote().agrees(0));
   roofs.minutes(4, {5.0, 5.5, 25.0});
   EXPECT_EQ(roofs.on(2), Vote::kOutvoted);
   EXPECT_EQ(roofs.on(0), Vote::kNone);
