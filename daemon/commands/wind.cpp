@@ -314,6 +314,7 @@ void run_wind(WindOptions options) {
   if (options.value) config.sensors[0].by_name.blend.set("value", *options.value);
   options.offline.rules = sensing::jury_rules_of(config.sensors[0]);
   options.offline.stale_intervals = config.wind.stale_intervals;
+  options.offline.has_relative_gains = config.wind.has_relative_gains;
 
   if (options.output == "-") return write_wind(options, config, stdout);
   const auto lock = lock_output(options.output);

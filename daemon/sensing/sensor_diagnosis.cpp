@@ -41,6 +41,11 @@ std::string live_text(const SensorEvidence& evidence) {
         "; but its mean of 5 min is {:.1f} m/s, that of the other sensors {:.1f} m/s. Check each sensor, and correct "
         "[sensor.calibration] of the wrong one",
         evidence.mean_m_s, *evidence.others_m_s);
+  } else if (evidence.is_levelled_at_most) {
+    text += fmt::format(
+        "; it reads {:.2f} times the group or even {}, and is levelled no further. Check its place, and correct "
+        "[sensor.calibration]",
+        evidence.reads_times_group, evidence.reads_times_group > 1.0 ? "more" : "less");
   }
   return text;
 }

@@ -32,6 +32,8 @@ struct SensorEvidence {
   double bad_share = 0.0;
   double mean_m_s = 0.0;  ///< mean over some minutes; likewise others_m_s
   std::optional<double> others_m_s{};
+  double reads_times_group = 1.0;  ///< SensorJury::reads_times_group()
+  bool is_levelled_at_most = false;
 };
 
 /// What stands in for a direction that does not come.

@@ -67,7 +67,7 @@ JuryRules live_rules_of(const settings::SensorConfig& sensor) {
 SensorJury make_jury(const settings::Config& config) {
   std::vector<JuryRules> rules;
   for (const settings::SensorConfig& sensor : config.sensors) rules.push_back(live_rules_of(sensor));
-  return {rules, config.wind.stale_intervals};
+  return {rules, config.wind.stale_intervals, config.wind.has_relative_gains};
 }
 
 /// The SiteSpectrum that a configuration expects, before any readings.
@@ -215,7 +215,7 @@ void SensorHub::take(std::size_t index, const wind::WindReading& raw) {
       ++channel.not_believed;
       break;
     case SensorJury::Verdict::kBelieved:
-      estimator_.accept(index, reading);
+      estimator_.accept(index, jury_.levelled(index, reading));
       break;
   }
 }
@@ -244,7 +244,9 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
           .still_for_s = judge.still_for_s(),
           .bad_share = judge.bad_share(),
           .mean_m_s = vote.mean_m_s(index),
-          .others_m_s = vote.others_m_s(index)};
+          .others_m_s = vote.others_m_s(index),
+          .reads_times_group = jury_.reads_times_group(index),
+          .is_levelled_at_most = jury_.is_levelled_at_most(index)};
 }
 
 /// Logs changes of the link's state, and what a connected sensor says anew of it, but not each failed attempt.
@@ -271,6 +273,24 @@ void SensorHub::log_state(std::size_t index, MonoTime now) {
               reason_of(state, evidence), name_of(before), passed_over_text(channel.state_gate),
               count_text(channel.readings, "reading"), count_text(channel.runner->frame_count(), "frame"),
               count_text(channel.runner->reconnect_count(), "reconnect"));
+}
+
+wind::judging::LearntByName SensorHub::relative_gains() const {
+  wind::judging::LearntByName all;
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    const wind::judging::GroupGains::Learnt& learnt = jury_.gains().learnt()[index];
+    if (is_known(learnt)) all.emplace(channels_[index].config.name, learnt);
+  }
+  return all;
+}
+
+bool SensorHub::restore_relative_gains(const wind::judging::LearntByName& learnt) {
+  std::vector<wind::judging::GroupGains::Learnt> all(channels_.size());
+  for (std::size_t index = 0; index < channels_.size(); ++index) {
+    const auto found = learnt.find(channels_[index].config.name);
+    if (found != learnt.end()) all[index] = found->second;
+  }
+  return jury_.restore_gains(all);
 }
 
 std::vector<wire::SensorStatus> SensorHub::status() const {

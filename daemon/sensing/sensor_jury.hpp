@@ -3,11 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "daemon/settings/sensor_config.hpp"
 #include "engine/wind/blend/source_record.hpp"
+#include "engine/wind/judging/group_gains.hpp"
 #include "engine/wind/judging/reading_judge.hpp"
 #include "engine/wind/judging/sensor_vote.hpp"
 
@@ -25,7 +27,8 @@ struct JuryRules {
 JuryRules jury_rules_of(const settings::SensorConfig& sensor);
 
 /// Which readings of an installation's sensors are believed: each sensor is judged by itself (ReadingJudge) and
-/// compared with the others (SensorVote). The daemon's live wind and the offline tools ask the same jury.
+/// compared with the others (SensorVote). Those that are compared are levelled to their common mean, too (GroupGains).
+/// The daemon's live wind and the offline tools ask the same jury.
 /// Thread-safe: no. Realtime-safe after construction: yes.
 class SensorJury {
  public:
@@ -35,43 +38,64 @@ class SensorJury {
     kBelieved,  ///< it goes to the estimator
   };
 
-  /// `stale_intervals`: as BlendSettings has it.
-  SensorJury(const std::vector<JuryRules>& sensors, double stale_intervals);
+  /// `stale_intervals`: as BlendSettings has it. `is_levelling`: false: each sensor reads as it says.
+  SensorJury(const std::vector<JuryRules>& sensors, double stale_intervals, bool is_levelling);
 
   /// Judges the next reading of a sensor, calibrated, and not of the future.
   Verdict hear(std::size_t sensor, const wind::WindReading& reading) noexcept;
 
+  /// The reading that hear() has just been given, levelled: what goes to the estimator. The same bits where nothing was
+  /// learnt. What is said again is levelled as it was the first time.
+  wind::WindReading levelled(std::size_t sensor, wind::WindReading reading) const noexcept;
+
   /// Readings that were refused before they came here as impossible.
   void count_impossible(std::size_t sensor, std::uint64_t readings) noexcept;
 
-  /// Compares the sensors that measure the present wind, and have no fault.
+  /// Compares the sensors that measure the present wind, and have no fault, and learns how they differ.
   void compare(MonoTime now) noexcept;
 
   /// Judges a sensor by other rules from now on; its `unchanged_for_s` stays. What is known of it stays, too.
   void change(std::size_t sensor, const JuryRules& rules);
 
   /// A sensor's calibration has changed. `last`: its last reading by the one before, and by the new one; none: it has
-  /// sent none.
+  /// sent none. How it differs from the others is learnt anew.
   void recalibrate(std::size_t sensor,
                    const std::optional<std::pair<wind::WindReading, wind::WindReading>>& last) noexcept;
 
   const wind::judging::ReadingJudge& judge(std::size_t sensor) const noexcept { return members_[sensor].judge; }
   const wind::judging::SensorVote& vote() const noexcept { return vote_; }
+  const wind::judging::GroupGains& gains() const noexcept { return gains_; }
+  /// Goes on from what was learnt before, one for each sensor (GroupGains::restore()). What was learnt of one that is
+  /// not compared any more is left out; where nothing is levelled, all.
+  bool restore_gains(std::span<const wind::judging::GroupGains::Learnt> learnt);
+  /// How many times the group's wind it reads; 1: it is not levelled.
+  double reads_times_group(std::size_t sensor) const noexcept;
+  /// Does it read perhaps even more, or less? It is levelled no further.
+  bool is_levelled_at_most(std::size_t sensor) const noexcept {
+    return is_levelled(sensor) && gains_.is_at_bound(sensor);
+  }
+
   wind::SourceReport report(std::size_t sensor, MonoTime now) const noexcept {
     return members_[sensor].record.report(now, stale_intervals_);
   }
 
  private:
+  bool is_levelled(std::size_t sensor) const noexcept { return is_levelling_ && members_[sensor].rules.is_compared; }
+
   struct Member {
     JuryRules rules;
     wind::judging::ReadingJudge judge;
     wind::blend::SourceRecord record;  ///< believed or not
     bool is_last_believed = false;     ///< of the last reading that was judged
+    double gain = 1.0;                 ///< of the last reading that was not said before
   };
 
   double stale_intervals_;
   std::vector<Member> members_;
   wind::judging::SensorVote vote_;
+  bool is_levelling_;
+  wind::judging::GroupGains gains_;
+  std::vector<wind::judging::GroupGains::Member> group_;  ///< room for what gains_ is told
 };
 
 }  // namespace yuragi::daemon::sensing

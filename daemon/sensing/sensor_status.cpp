@@ -51,6 +51,7 @@ wire::SensorStatus sensor_status(const SensorFacts& facts) {
   status.state_reason = reason_of(status.state, evidence);
   status.quantities = facts.quantities;
   status.value = facts.value;
+  status.reads_times_group = evidence.reads_times_group;
   return status;
 }
 

@@ -113,7 +113,9 @@ class Service::Io {
         parameters_(reload_, animation_ ? &director_ : nullptr, config.stream.control,
                     static_cast<std::uint64_t>(started_.utc.time_since_epoch().count())) {
     if (animation_) {
-      shaper_.keep_site_file(hub_.site());
+      shaper_.keep_site_file(hub_.site(),
+                             {.learnt = [this] { return hub_.relative_gains(); },
+                              .restore = [this](const auto& learnt) { return hub_.restore_relative_gains(learnt); }});
       loop_ = std::make_unique<animation::AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
       recent_tick_lateness_.emplace(loop_->counters().lateness);
       scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);

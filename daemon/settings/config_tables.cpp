@@ -201,6 +201,12 @@ const std::array kWindParameters = {
               .min = 0.0,
               .max = 3600.0,
               .help = "a stale sensor is used again after it has sent readings for this long; twice as long each time"},
+    Parameter{.name = "relative_gains",
+              .unit = "",
+              .default_value = true,
+              .help = "several sensors that differ by a constant factor, up to 1.5, are levelled to their common mean: "
+                      "a sheltered and an exposed one, too, and what each reads times the group is shown. Learnt in "
+                      "hours of wind, kept in site_file of [shaping]; false: each reads as it says"},
     Parameter{.name = "fallback_recording",
               .unit = "",
               .default_value = std::string{},

@@ -56,6 +56,7 @@ constexpr std::array kKeyRules = {
     KeyRule{"wind", "handover", kTakesRestart},
     KeyRule{"wind", "stale_intervals", kTakesRestart},
     KeyRule{"wind", "return_after", kTakesRestart},
+    KeyRule{"wind", "relative_gains", kTakesRestart},
     KeyRule{"wind", "fallback_recording", kTakesRestart},
     KeyRule{"wind", "fallback_after", kTakesRestart},
 

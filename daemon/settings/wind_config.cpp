@@ -24,7 +24,8 @@ Result<WindConfig, ParameterError> wind_config_of(const ParameterValues& values)
                   .is_evolving = values.flag("evolving"),
                   .handover_s = values.number("handover"),
                   .stale_intervals = values.number("stale_intervals"),
-                  .return_after_s = values.number("return_after")};
+                  .return_after_s = values.number("return_after"),
+                  .has_relative_gains = values.flag("relative_gains")};
   if (const double length_m = values.number("default_length"); length_m > 0.0) {
     wind.default_length_m = std::max(length_m, kShortestGusts_m);
   }

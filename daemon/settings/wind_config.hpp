@@ -36,6 +36,7 @@ struct WindConfig {
   double handover_s = 0.0;                    ///< BlendSettings::handover_s
   double stale_intervals = 0.0;               ///< BlendSettings::stale_intervals
   double return_after_s = 0.0;                ///< BlendSettings::return_after_s
+  bool has_relative_gains = true;             ///< sensors that are compared are levelled (GroupGains)
   std::optional<FallbackConfig> fallback{};   ///< none: the default wind while every sensor is silent
 
   /// Integral length of the default wind's gusts, m: default_length_m, or 57, as over open land at a height of 10 m.

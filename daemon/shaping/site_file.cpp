@@ -1,9 +1,13 @@
 #include "daemon/shaping/site_file.hpp"
 
 #include <chrono>
+#include <cmath>
+#include <cstddef>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -17,14 +21,27 @@ namespace {
 constexpr const char* kTimesKey = "seconds_at_each_speed";
 constexpr const char* kOctavesKnownKey = "seconds_of_each_octave_of_gusts";
 constexpr const char* kOctavesKey = "decibels_of_each_octave_of_gusts";
+constexpr const char* kGainsKey = "relative_gains";
+constexpr const char* kReadsKey = "reads";
+constexpr const char* kSecondsKey = "seconds";
+/// More sensors than any installation has.
+constexpr std::size_t kMostSensors = 256;
 /// Many times the size of a valid file: a larger one is refused.
 constexpr std::streamsize kLongestSiteFile = 64L * 1024;
+
+nlohmann::json json_of_gains(const wind::judging::LearntByName& gains) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const auto& [name, learnt] : gains)
+    json[name] = {{kReadsKey, std::exp(learnt.deviation)}, {kSecondsKey, learnt.learnt_s}};
+  return json;
+}
 
 /// The failure has an empty text where there was none.
 Failure write_site_file(const std::filesystem::path& file, const SiteMemory& memory) {
   try {
-    const nlohmann::json json = {
+    nlohmann::json json = {
         {kTimesKey, memory.times_s}, {kOctavesKnownKey, memory.octaves_known_s}, {kOctavesKey, memory.octaves_db}};
+    if (!memory.gains.empty()) json[kGainsKey] = json_of_gains(memory.gains);
     const auto written = settings::write_whole(file, json_text(json) + '\n');
     return written ? Failure{} : written.error();
   } catch (const std::exception& error) {
@@ -44,6 +61,42 @@ bool read_numbers(const nlohmann::json& json, const char* key, std::vector<doubl
   return true;
 }
 
+/// Counts the names of sensors while the file is parsed: the parser keeps the last of two that are the same.
+class NameCount {
+ public:
+  bool operator()(int depth, nlohmann::json::parse_event_t event, const nlohmann::json& parsed) {
+    if (event != nlohmann::json::parse_event_t::key) return true;
+    if (depth == 1) is_in_gains_ = parsed == kGainsKey;
+    if (depth == 2 && is_in_gains_) ++count_;
+    return true;
+  }
+  std::size_t count() const { return count_; }
+
+ private:
+  bool is_in_gains_ = false;
+  std::size_t count_ = 0;
+};
+
+/// Takes the gains. Returns what is wrong with them; empty: nothing.
+std::string read_gains(const nlohmann::json& json, std::size_t names, wind::judging::LearntByName& gains) {
+  if (!json.is_object()) return "is no object";
+  if (names != json.size()) return "names a sensor twice";
+  if (names > kMostSensors) return fmt::format("names {} sensors", names);
+  wind::judging::LearntByName all;
+  for (const auto& [name, learnt] : json.items()) {
+    const auto is_number = [&learnt = learnt](const char* key) {
+      return learnt.contains(key) && learnt[key].is_number();
+    };
+    if (!learnt.is_object() || !is_number(kReadsKey) || !is_number(kSecondsKey))
+      return "has something else than numbers";
+    const auto reads = learnt[kReadsKey].get<double>();
+    if (!(reads > 0.0)) return "has a sensor that reads 0 or less";
+    all[name] = {.deviation = std::log(reads), .learnt_s = learnt[kSecondsKey].get<double>()};
+  }
+  gains = std::move(all);
+  return {};
+}
+
 }  // namespace
 
 Result<SiteMemory, Failure> SiteFile::read() const {
@@ -54,13 +107,15 @@ Result<SiteMemory, Failure> SiteFile::read() const {
   text.resize(static_cast<std::size_t>(in.gcount()));
 
   const Failure none{file_.string() + ": is not a memory of a site's wind"};
-  const auto json = nlohmann::json::parse(text, nullptr, false);
+  NameCount names;
+  const auto json = nlohmann::json::parse(text, std::ref(names), false);
   if (!json.is_object() || !json.contains(kTimesKey)) return none;
   SiteMemory memory;
   const bool is_read = read_numbers(json, kTimesKey, memory.times_s) &&
                        read_numbers(json, kOctavesKnownKey, memory.octaves_known_s) &&
                        read_numbers(json, kOctavesKey, memory.octaves_db);
   if (!is_read) return none;
+  if (json.contains(kGainsKey)) memory.gains_refusal = read_gains(json[kGainsKey], names.count(), memory.gains);
   return memory;
 }
 

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <future>
+#include <string>
 #include <vector>
 
 #include "engine/base/result.hpp"
+#include "engine/wind/judging/group_gains.hpp"
 
 namespace yuragi::daemon::shaping {
 
@@ -13,6 +15,9 @@ struct SiteMemory {
   std::vector<double> times_s;  ///< SpeedMemory::times_s: of its wind
   /// SiteSpectrum::known_s and learnt_db: of its gusts. Empty in files of older versions.
   std::vector<double> octaves_known_s, octaves_db;
+  /// How its sensors differ. Empty in files of older versions.
+  wind::judging::LearntByName gains{};
+  std::string gains_refusal{};  ///< why those of the file are not read; empty: they are
 };
 
 /// Keeps a SiteMemory in a small JSON file.
@@ -22,7 +27,8 @@ class SiteFile {
 
   const std::filesystem::path& path() const noexcept { return file_; }
 
-  /// Reads the file. Checks only that the values are numbers.
+  /// Reads the file. Checks only that the values are numbers. The gains of sensors are left out where they are wrong:
+  /// the site's wind is worth more than they are.
   Result<SiteMemory, Failure> read() const;
 
   /// Renames a file that cannot be read as one, so that save() does not overwrite it: FILE.unreadable, or, if there is

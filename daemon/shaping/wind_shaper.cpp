@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "daemon/settings/duration_text.hpp"
+#include "engine/base/count_text.hpp"
 
 namespace yuragi::daemon::shaping {
 namespace {
@@ -40,8 +41,9 @@ WindShaper::~WindShaper() {
   log_site_file();
 }
 
-void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts) {
+void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts, KeptGains gains) {
   gusts_ = std::move(gusts);
+  gains_ = std::move(gains);
   const bool has_gain = shaping_.settings().site.median_m_s > 0.0;
   if (site_path_.empty()) {
     if (!has_gain) return;
@@ -70,6 +72,18 @@ void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> 
   if (gusts_ && gusts_->restore(memory->octaves_known_s, memory->octaves_db)) {
     spdlog::info("shaping: {} holds {} of the site's gusts", site_path_.string(),
                  settings::duration_text(std::ranges::max(gusts_->known_s())));
+  }
+  restore_gains(*memory);
+}
+
+void WindShaper::restore_gains(const SiteMemory& memory) {
+  if (!gains_.restore) return;
+  std::string refusal = memory.gains_refusal;
+  if (refusal.empty() && !gains_.restore(memory.gains)) refusal = "has what cannot have been learnt";
+  if (!refusal.empty()) {
+    spdlog::warn("shaping: {}: relative_gains {}; how the sensors differ is learnt anew", site_path_.string(), refusal);
+  } else if (!memory.gains.empty()) {
+    spdlog::info("shaping: {} holds how {} differ", site_path_.string(), count_text(memory.gains.size(), "sensor"));
   }
 }
 
@@ -147,6 +161,7 @@ void WindShaper::save_site() {
     memory.octaves_known_s.assign(gusts_->known_s().begin(), gusts_->known_s().end());
     memory.octaves_db.assign(gusts_->learnt_db().begin(), gusts_->learnt_db().end());
   }
+  if (gains_.learnt) memory.gains = gains_.learnt();
   site_file_->save(std::move(memory));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -13,6 +14,13 @@
 
 namespace yuragi::daemon::shaping {
 
+/// The gains of a site's sensors, which the site file keeps beside its wind. Empty functions: they are not kept.
+struct KeptGains {
+  std::function<wind::judging::LearntByName()> learnt;
+  /// False: they cannot have been learnt.
+  std::function<bool(const wind::judging::LearntByName&)> restore;
+};
+
 /// WindShaping with opening hours, a site file that keeps what was learnt over a restart, and a log line where an
 /// effect begins or ends. Belongs to the I/O thread.
 class WindShaper {
@@ -25,8 +33,9 @@ class WindShaper {
 
   /// Reads [shaping] site_file, and writes it from now on, once an hour and at the end. To be called before the first
   /// shape(). Does nothing where no file is configured, or where a sensor plays a recording, which may be of another
-  /// site. `gusts`: the spectrum that is kept in the file too; null: not kept.
-  void keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts = {});
+  /// site. `gusts`: the spectrum that is kept in the file too; null: not kept. What
+  /// `gains` calls must live as long as this.
+  void keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts = {}, KeptGains gains = {});
 
   /// Shapes by other settings and opening hours from now on: what was learnt of the site stays, and nothing jumps
   /// (WindShaping::change). The site file stays as it was.
@@ -43,6 +52,7 @@ class WindShaper {
   void look_at_hours(MonoTime now, UtcTime utc);
   void log_changes();
   void log_ceiling(const wind::shaping::WindShapingReport& report, MonoTime now);
+  void restore_gains(const SiteMemory& memory);
   void save_site();
   void log_site_file();
   OpeningNews opening() const;
@@ -51,6 +61,7 @@ class WindShaper {
   settings::OpeningHours hours_;
   std::optional<SiteFile> site_file_;
   std::shared_ptr<wind::turbulence::SiteSpectrum> gusts_;
+  KeptGains gains_;
   std::filesystem::path site_path_;  ///< of the site file; empty: none
 
   bool is_open_ = true;

@@ -59,6 +59,7 @@ ordered_json json_of_sensor(const wire::SensorStatus& sensor) {
           {"state", name_of(sensor.state)},
           {"state_reason", sensor.state_reason},
           {"value", sensor.value},
+          {"reads_times_group", sensor.reads_times_group},
           {"link", name_of(sensor.link)},
           {"link_detail", sensor.detail},
           {"speed_m_s", json_or_null(sensor.speed_m_s)},

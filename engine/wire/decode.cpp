@@ -148,6 +148,7 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
   to.frames = from.frames();
   to.reconnects = from.reconnects();
   to.replayed = from.replayed();
+  to.reads_times_group = from.reads_times_group();
   to.state = static_cast<wind::judging::SensorState>(from.state());
   const std::size_t reasons = from.refused() == nullptr ? 0 : from.refused()->size();
   if (reasons > kMaxRefusalReasons) return false;
@@ -157,7 +158,9 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
     refusals = counter->count();
     if (!read_text(counter->reason(), reason)) return false;
   }
-  return is_within(to.age_s, 0.0, kMaxDuration_s) && is_within(to.interval_s, 0.0, kMaxDuration_s) &&
+  constexpr double kMaxTimesGroup = 1e3;
+  return is_within(to.reads_times_group, 1.0 / kMaxTimesGroup, kMaxTimesGroup) &&
+         is_within(to.age_s, 0.0, kMaxDuration_s) && is_within(to.interval_s, 0.0, kMaxDuration_s) &&
          read_text(from.name(), to.name) && read_text(from.driver(), to.driver) &&
          read_text(from.detail(), to.detail) && read_text(from.state_reason(), to.state_reason) &&
          read_text(from.value(), to.value) && read(from.speed_m_s(), to.speed_m_s) &&

@@ -168,6 +168,7 @@ flatbuffers::Offset<fb::Sensor> add_sensor(Builder& builder, const SensorStatus&
   if (sensor.raw_direction_deg) table.add_raw_direction_deg(*sensor.raw_direction_deg);
   table.add_quantities(quantity_list);
   table.add_value(value);
+  table.add_reads_times_group(sensor.reads_times_group);
   return table.Finish();
 }
 

@@ -154,7 +154,8 @@ struct SensorStatus {
   std::optional<double> raw_speed_m_s;  ///< the last reading before calibration
   std::optional<double> raw_direction_deg;
   std::vector<QuantityStatus> quantities = {};  ///< those that it has sent, or that its profile promises
-  std::string value = {};  ///< what its speed is, with the source, for a person: "instantaneous (assumed)"
+  std::string value = {};          ///< what its speed is, with the source, for a person: "instantaneous (assumed)"
+  double reads_times_group = 1.0;  ///< the wind of the sensors together; levelled by it. 1: not known, or not levelled
 };
 
 /// What makes the wind that moves the scenes another than the real one (engine/wind/shaping/wind_shaping.hpp).

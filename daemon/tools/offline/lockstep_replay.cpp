@@ -128,7 +128,8 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
   set_value(one_source.sensors[0], sensing::recorded_value(recording, options.playback.sensor));
   wind::blend::BlendedEstimator estimator = sensing::make_estimator(one_source, gusts, animation.reach_m());
   wind::shaping::WindShaping shaping(config.shaping.settings, gusts);
-  sensing::SensorJury jury({sensing::jury_rules_of(one_source.sensors[0])}, one_source.wind.stale_intervals);
+  sensing::SensorJury jury({sensing::jury_rules_of(one_source.sensors[0])}, one_source.wind.stale_intervals,
+                           one_source.wind.has_relative_gains);
 
   Ticks ticks(animation, config.animation.rate_hz, options.lead_s, progress, use);
   while (ticks.is_leading_in() || (!player.is_finished() && !(duration_s > 0.0 && ticks.now_s() >= duration_s))) {

@@ -91,7 +91,7 @@ class OfflineSource {
     for (; next_ && next_->time.mono <= now; next_ = readings_.next()) {
       if (jury.hear(number, *next_) != sensing::SensorJury::Verdict::kBelieved) {
         ++result.withheld;
-      } else if (estimator.accept(number, *next_)) {
+      } else if (estimator.accept(number, jury.levelled(number, *next_))) {
         ++result.readings;
       }
     }
@@ -111,7 +111,8 @@ Result<OfflineWindResult, Failure> run_offline(std::span<drivers::windlog::Windl
   OfflineWindResult result;
   std::vector<OfflineSource> sources;
   for (drivers::windlog::WindlogPlayback& playback : playbacks) sources.emplace_back(playback, options);
-  sensing::SensorJury jury(std::vector(sources.size(), options.rules), options.stale_intervals);
+  sensing::SensorJury jury(std::vector(sources.size(), options.rules), options.stale_intervals,
+                           options.has_relative_gains);
   const auto has_more = [&] { return std::ranges::any_of(sources, &OfflineSource::has_more); };
   // The last tick is the first at or after the last reading.
   for (bool goes_on = has_more(); goes_on; ++result.states) {

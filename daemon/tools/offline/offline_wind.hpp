@@ -28,6 +28,7 @@ struct OfflineWindOptions {
   /// Judges the readings of each recording, and compares several, as the daemon does; as it is, all are believed.
   sensing::JuryRules rules{};
   double stale_intervals = wind::blend::BlendSettings{}.stale_intervals;  ///< silent for so long: not compared
+  bool has_relative_gains = true;  ///< those that are compared are levelled to their common mean
 };
 
 struct OfflineWindResult {

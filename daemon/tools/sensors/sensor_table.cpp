@@ -102,6 +102,9 @@ std::string recorder_text(const wire::Sensors& sensors) {
   return text;
 }
 
+/// From here on it is shown how many times the group's wind a sensor reads. The page has the same.
+constexpr double kShownTimesGroup = 1.03;
+
 /// `text` under a row: indented, broken between words.
 std::string wrapped(std::string_view text) {
   constexpr std::size_t kWidth = 100;
@@ -146,6 +149,9 @@ std::string sensor_table(const wire::Sensors& sensors) {
       table += wrapped(fmt::format("{}: {}", name_of(sensor.state), sensor.state_reason));
     }
     if (!sensor.value.empty()) table += wrapped("speed: " + sensor.value);
+    if (std::abs(std::log(sensor.reads_times_group)) >= std::log(kShownTimesGroup)) {
+      table += wrapped(fmt::format("reads {:.2f} times the group", sensor.reads_times_group));
+    }
     for (const wire::QuantityStatus& quantity : sensor.quantities) {
       if (quantity.is_missing) table += wrapped(fmt::format("no {}: {}", name_of(quantity.quantity), quantity.reason));
     }

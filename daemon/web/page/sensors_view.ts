@@ -29,10 +29,15 @@ function reading_text(sensor: Sensor): string {
   return is_believed(sensor) ? wind : "Last: " + wind;
 }
 
+/** From here on it is shown, as `yuragi sensors watch` does. */
+const SHOWN_TIMES_GROUP = 1.03;
+
 function reason_text(sensor: Sensor): string {
   const missing = sensor.quantities.filter((quantity) => quantity.is_missing);
   const speed = sensor.value === "" ? [] : [`Speed: ${sensor.value}`];
-  return [sensor.state_reason, ...speed, ...missing.map((quantity) => `No ${quantity.name}: ${quantity.reason}`)].join(". ");
+  const times = sensor.reads_times_group;
+  const group = Math.abs(Math.log(times)) < Math.log(SHOWN_TIMES_GROUP) ? [] : [`Reads ${times.toFixed(2)} times the group`];
+  return [sensor.state_reason, ...speed, ...group, ...missing.map((quantity) => `No ${quantity.name}: ${quantity.reason}`)].join(". ");
 }
 
 export class SensorsView {

@@ -20,6 +20,7 @@ export interface Sensor {
   state: string;
   state_reason: string;
   value: string;
+  reads_times_group: number;
   quantities: Quantity[];
   speed_m_s: number | null;
   direction_deg: number | null;

@@ -481,6 +481,69 @@ TEST_F(SensorJudgementOfTwo, TwoThatDifferAreReportedOnceAndBothBelieved) {
   EXPECT_EQ(lines_of_log_with("Check each sensor"), 2) << log_.str();
 }
 
+TEST_F(SensorJudgementOfTwo, TwoThatDifferByAFactorAreLevelledAndARestartGoesOn) {
+  start();
+  const auto both_speak = [&] {
+    publish(0, breeze(7.5));
+    publish(1, breeze(5.0));
+  };
+  go_on(250, both_speak);
+  EXPECT_EQ(hub_->status()[0].reads_times_group, 1.0) << "a mean of five minutes comes first";
+  EXPECT_TRUE(hub_->relative_gains().empty());
+  go_on(50 * 60, both_speak);
+  EXPECT_NEAR(hub_->status()[0].reads_times_group, std::sqrt(1.5), 0.04);
+  EXPECT_NEAR(hub_->status()[1].reads_times_group, 1.0 / std::sqrt(1.5), 0.04);
+  EXPECT_NEAR(*hub_->status()[0].speed_m_s, 7.5, 1.5) << "what it says is shown";
+
+  const wind::judging::LearntByName learnt = hub_->relative_gains();
+  controls_.resize(2 * config_.sensors.size());
+  SensorHub next(config_, clock_, make_gust_noise(config_), {}, 0.0, SensorThread::kOfCaller);
+  ASSERT_TRUE(next.restore_relative_gains(learnt));
+  EXPECT_NEAR(next.status()[0].reads_times_group, hub_->status()[0].reads_times_group, 1e-9);
+  EXPECT_FALSE(next.restore_relative_gains({{"spoken0", {.deviation = 3.0, .learnt_s = 60.0}}}));
+}
+
+TEST_F(SensorJudgementOfTwo, EachReadsAsItSaysWhereGainsAreOff) {
+  config_.wind.has_relative_gains = false;
+  start();
+  go_on(1200, [&] {
+    publish(0, breeze(7.5));
+    publish(1, breeze(5.0));
+  });
+  EXPECT_EQ(hub_->status()[0].reads_times_group, 1.0);
+  EXPECT_TRUE(hub_->relative_gains().empty());
+}
+
+// The estimator knows what is said again, and what is held, by its bits.
+TEST(SensorJury, WhatIsSaidAgainIsLevelledAsTheFirstTime) {
+  const JuryRules rules{.judge = wind::judging::JudgeSettings{}, .is_compared = true};
+  SensorJury jury({rules, rules}, 5.0, true);
+  const auto reading_at = [](double time_s, double speed_m_s) {
+    wind::WindReading reading;
+    reading.time.mono = MonoTime(from_seconds(time_s));
+    reading.speed_m_s = speed_m_s;
+    reading.gust_m_s = 1.5 * speed_m_s;
+    return reading;
+  };
+  const wind::WindReading untouched = reading_at(999.0, 5.5);
+  jury.hear(0, untouched);
+  EXPECT_TRUE(says_the_same(jury.levelled(0, untouched), untouched)) << "nothing is known";
+  using Learnt = wind::judging::GroupGains::Learnt;
+  ASSERT_TRUE(jury.restore_gains(std::vector<Learnt>{{0.2, 3600.0}, {-0.2, 3600.0}}));
+  const wind::WindReading first = reading_at(1000.0, 6.0);
+  jury.hear(0, first);
+  const wind::WindReading levelled = jury.levelled(0, first);
+  EXPECT_NEAR(levelled.speed_m_s, 6.0 * std::exp(-0.2), 1e-12);
+  EXPECT_NEAR(*levelled.gust_m_s, 9.0 * std::exp(-0.2), 1e-12);
+  ASSERT_TRUE(jury.restore_gains(std::vector<Learnt>{{0.1, 3600.0}, {-0.1, 3600.0}}));
+  const wind::WindReading again = reading_at(1001.0, 6.0);
+  jury.hear(0, again);
+  EXPECT_TRUE(says_the_same(jury.levelled(0, again), levelled));
+  const wind::WindReading next = reading_at(1002.0, 6.1);
+  jury.hear(0, next);
+  EXPECT_NEAR(jury.levelled(0, next).speed_m_s, 6.1 * std::exp(-0.1), 1e-12);
+}
+
 TEST_F(SensorJudgementOfTwo, ACupThatStandsStillWhereTheOtherHasWindIsSeized) {
   config_.sensors[0].judge->seized_s = 900.0;
   start();

@@ -712,6 +712,7 @@ gustiness = 0.4
 evolving = false
 handover = 4
 stale_intervals = 6
+relative_gains = false
 fallback_recording = "good-day.windlog"
 fallback_after = 90
 [shaping]
@@ -742,10 +743,12 @@ fade = 30
   EXPECT_FALSE(config.wind.is_evolving);
   EXPECT_EQ(config.wind.handover_s, 4.0);
   EXPECT_EQ(config.wind.stale_intervals, 6.0);
+  EXPECT_FALSE(config.wind.has_relative_gains);
+  EXPECT_TRUE(default_config().wind.has_relative_gains);
   ASSERT_TRUE(config.wind.fallback);
   EXPECT_EQ(config.wind.fallback->recording, "good-day.windlog");
   EXPECT_EQ(config.wind.fallback->after_s, 90.0);
-  EXPECT_EQ(config.wind.fallback->origin, "wall.toml:15:22");
+  EXPECT_EQ(config.wind.fallback->origin, "wall.toml:16:22");
   EXPECT_FALSE(default_config().wind.fallback);
   EXPECT_FALSE(default_config().wind.default_length_m);
 

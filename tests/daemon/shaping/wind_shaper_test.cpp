@@ -289,6 +289,66 @@ TEST_F(SiteFileTest, AFileFromBeforeGustsWereLearntIsStillRead) {
   EXPECT_EQ(gusts->octaves_db(), wind::turbulence::SiteSpectrum::Decibels{});
 }
 
+/// Two sensors, and the sum of what the site file gives back.
+struct KeptPair {
+  wind::judging::GroupGains gains{2};
+  KeptGains kept() {
+    return {.learnt =
+                [this] {
+                  return wind::judging::LearntByName{{"roof", gains.learnt()[0]}, {"yard", gains.learnt()[1]}};
+                },
+            .restore =
+                [this](const wind::judging::LearntByName& learnt) {
+                  std::vector<wind::judging::GroupGains::Learnt> all(2);
+                  if (learnt.contains("roof")) all[0] = learnt.at("roof");
+                  if (learnt.contains("yard")) all[1] = learnt.at("yard");
+                  return gains.restore(all);
+                }};
+  }
+};
+
+TEST_F(SiteFileTest, HowTheSensorsDifferIsRememberedOverARestart) {
+  KeptPair before;
+  ASSERT_TRUE(before.gains.restore(std::vector<wind::judging::GroupGains::Learnt>{{0.2, 7200.0}, {-0.2, 7200.0}}));
+  {
+    ShaperBench wall(with_file());
+    wall.shaper.keep_site_file({}, before.kept());
+    wall.after(2.0);
+  }
+  const CapturedLog log;
+  KeptPair after;
+  ShaperBench wall(with_file());
+  wall.shaper.keep_site_file({}, after.kept());
+  EXPECT_NEAR(after.gains.gain(0), before.gains.gain(0), 1e-9);
+  EXPECT_NEAR(after.gains.gain(1), before.gains.gain(1), 1e-9);
+  EXPECT_EQ(after.gains.learnt()[0].learnt_s, 7200.0);
+  EXPECT_EQ(log.count("holds how 2 sensors differ"), 1);
+}
+
+TEST_F(SiteFileTest, WrongGainsAreToldAndTheRestOfTheFileIsUsed) {
+  std::string times;
+  for (std::size_t bin = 0; bin < wind::shaping::SpeedMemory::kBins; ++bin) times += bin == 0 ? "0" : ",100";
+  std::string many;
+  for (int i = 0; i < 1000; ++i) many += (i == 0 ? "\"" : ",\"") + std::to_string(i) + R"(":{"reads":1,"seconds":1})";
+  const std::string good = R"("yard":{"reads":0.9,"seconds":60})";
+  for (const std::string& wrong :
+       {std::string("3"), std::string("[]"), std::string("null"), std::string(R"({"roof":1.2})"),
+        std::string(R"({"roof":{"reads":null,"seconds":60}})"), std::string(R"({"roof":{"reads":1.2}})"),
+        "{" + good + R"(,"roof":{"reads":1e9,"seconds":60}})", "{" + good + R"(,"roof":{"reads":0,"seconds":60}})",
+        "{" + good + R"(,"roof":{"reads":-1.2,"seconds":60}})", "{" + good + R"(,"roof":{"reads":1.2,"seconds":-1}})",
+        "{" + good + R"(,"roof":{"reads":"1.2","seconds":60}})", "{" + good + "," + good + "}", "{" + many + "}"}) {
+    std::ofstream(file_) << "{\"seconds_at_each_speed\": [" << times << "], \"relative_gains\": " << wrong << "}";
+    const CapturedLog log;
+    KeptPair pair;
+    ShaperBench wall(with_file());
+    wall.shaper.keep_site_file({}, pair.kept());
+    EXPECT_EQ(log.count("how the sensors differ is learnt anew"), 1) << wrong;
+    EXPECT_EQ(log.count("of the site's wind"), 1) << wrong;
+    EXPECT_EQ(pair.gains.gain(0), 1.0) << wrong;
+    EXPECT_EQ(pair.gains.gain(1), 1.0) << wrong;
+  }
+}
+
 TEST_F(SiteFileTest, AFileOfAnotherKindIsToldAndBegunAnew) {
   for (const char* wrong : {"", "{", "[]", "{\"seconds_at_each_speed\": 3}", "{\"seconds_at_each_speed\": [1, \"x\"]}",
                             "{\"seconds_at_each_speed\": [1, 2]}", "{\"seconds_at_each_speed\": [-1e999]}"}) {

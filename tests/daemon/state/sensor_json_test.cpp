@@ -11,6 +11,7 @@ TEST(SensorJson, HasNumbersAsNumbersAndNullWhereNothingIsKnown) {
   sensor.name = "roof \"north\"";
   sensor.state = wind::judging::SensorState::kStale;
   sensor.speed_m_s = 8.5;
+  sensor.reads_times_group = 1.25;
   sensor.refused = {{"timeout", 3}};
   wire::Sensors sensors;
   sensors.sensors = {sensor};
@@ -25,6 +26,7 @@ TEST(SensorJson, HasNumbersAsNumbersAndNullWhereNothingIsKnown) {
   EXPECT_EQ(first["name"], "roof \"north\"");
   EXPECT_EQ(first["state"], "stale");
   EXPECT_EQ(first["speed_m_s"], 8.5);
+  EXPECT_EQ(first["reads_times_group"], 1.25);
   EXPECT_TRUE(first["direction_deg"].is_null());
   EXPECT_TRUE(first["age_s"].is_null()) << "it has no reading";
   EXPECT_TRUE(first["interval_s"].is_null());

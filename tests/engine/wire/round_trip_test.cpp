@@ -376,6 +376,8 @@ TEST(WireRoundTrip, SensorsComeBackAndAMissingValueStaysMissing) {
   EXPECT_EQ(gauge.state, wind::judging::SensorState::kFrozen);
   EXPECT_EQ(gauge.state_reason, "the same 3.42 m/s 61 times");
   EXPECT_EQ(gauge.value, "mean over 3 s (its manual)");
+  EXPECT_EQ(gauge.reads_times_group, 1.25);
+  EXPECT_EQ(sensors.sensors[1].reads_times_group, 1.0) << "not known";
   EXPECT_EQ(sensors.sensors[1].state, wind::judging::SensorState::kConnecting);
   EXPECT_FALSE(sensors.sensors[1].replayed);
   EXPECT_EQ(gauge.raw_speed_m_s, 0.5);

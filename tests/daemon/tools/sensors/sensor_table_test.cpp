@@ -21,6 +21,7 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   live.state = wind::judging::SensorState::kLive;
   live.state_reason = "a reading every 0.5 s";
   live.value = "instantaneous (assumed)";
+  live.reads_times_group = 1.21;
   live.detail = "answers at 10.0.0.5:502";
   live.speed_m_s = 8.6;
   live.direction_deg = 90.0;
@@ -51,6 +52,8 @@ TEST(SensorTable, ShowsWindStateValuesAndRefusals) {
   EXPECT_THAT(table, HasSubstr("connected: answers at 10.0.0.5:502"));
   EXPECT_THAT(table, HasSubstr("live: a reading every 0.5 s"));
   EXPECT_THAT(table, HasSubstr("speed: instantaneous (assumed)"));
+  EXPECT_THAT(table, HasSubstr("reads 1.21 times the group"));
+  EXPECT_EQ(table.find("times the group", table.find("mast")), std::string::npos) << "nothing is known";
   EXPECT_THAT(table, HasSubstr("connecting")) << "a sensor that never spoke shows what its link does";
 }
 
