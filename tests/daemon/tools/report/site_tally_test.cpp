@@ -35,9 +35,10 @@ TEST(SiteTally, LearnsTheOctavesThatASensorIsQuickEnoughFor) {
   const auto second = learnt_from(1.0);
   ASSERT_TRUE(second);
   EXPECT_EQ(second->octaves_db.size(), 4U);
-  // Both see the same wind, which falls with the square of the frequency, steeper than von Karman's.
+  // Both see the same wind, which falls with the square of the frequency, steeper than von Karman's, and is the same
+  // across as along, which von Karman's is not.
   for (std::size_t octave = 0; octave < 4; ++octave) {
-    EXPECT_NEAR(second->octaves_db[octave], quick->octaves_db[octave], 1.5) << octave;
+    EXPECT_NEAR(second->octaves_db[octave], quick->octaves_db[octave], 1.7) << octave;
   }
   EXPECT_LT(quick->octaves_db[5], quick->octaves_db[0]);
   EXPECT_FALSE(learnt_from(2.0));
