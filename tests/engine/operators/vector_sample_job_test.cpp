@@ -1,5 +1,3 @@
-#include "engine/operators/sample_job.hpp"
-
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/philox.hpp"
+#include "engine/operators/sample_job.hpp"
 #include "tests/support/bits.hpp"
 #include "tests/support/each_simd_row.hpp"
 
