@@ -34,11 +34,6 @@ std::string option_of(std::string name) {
   return "--" + name;
 }
 
-const drivers::sensor::DriverDescription& driver_named(std::string_view name) {
-  return **std::ranges::find(drivers::sensor::driver_table(), name,
-                             [](const drivers::sensor::DriverDescription* driver) { return driver->name; });
-}
-
 const Parameter& parameter_named(const drivers::sensor::DriverDescription& driver, std::string_view name) {
   return *std::ranges::find(driver.parameters, name, &Parameter::name);
 }
@@ -103,7 +98,7 @@ void DecodeCommandOptions::set_text() {
   ParameterValues::Map given = given_for_text_;
   given["transport"] = std::string("file");
   given["file"] = std::string("-");
-  const auto values = ParameterValues::resolve(driver_named("nmea").parameters, given);
+  const auto values = ParameterValues::resolve(drivers::sensor::find_driver("nmea")->parameters, given);
   if (!values) {
     const auto* const option = std::ranges::find(kTextOptions, values.error().name, &TextOption::parameter);
     const std::string name = option == kTextOptions.end() ? values.error().name : std::string(option->option);
@@ -137,7 +132,7 @@ void DecodeCommandOptions::set_marine() {
   ParameterValues::Map given = given_for_marine_;
   given["transport"] = std::string("file");
   given["file"] = std::string("-");
-  const auto values = ParameterValues::resolve(driver_named("nmea2000").parameters, given);
+  const auto values = ParameterValues::resolve(drivers::sensor::find_driver("nmea2000")->parameters, given);
   if (!values) {
     throw ExitError(kExitUsage, fmt::format("{}: {}", option_of(values.error().name), values.error().message));
   }
@@ -160,8 +155,8 @@ void DecodeCommandOptions::add_parameter(CLI::App& command, const Parameter& par
 
 void DecodeCommandOptions::add_text_options(CLI::App& command) {
   for (const TextOption& each : kTextOptions) {
-    add_parameter(command, parameter_named(driver_named("nmea"), each.parameter), std::string(each.option),
-                  given_for_text_, std::string(each.formats));
+    add_parameter(command, parameter_named(*drivers::sensor::find_driver("nmea"), each.parameter),
+                  std::string(each.option), given_for_text_, std::string(each.formats));
   }
   limit(command.add_option("--node", decoder.node, "accept only the messages of this one")->option_text("A..Z"),
         "gill");
@@ -177,8 +172,8 @@ void DecodeCommandOptions::add_line_options(CLI::App& command) {
 }
 
 void DecodeCommandOptions::add_marine_options(CLI::App& command) {
-  add_parameter(command, parameter_named(driver_named("nmea2000"), "angle_unit"), "--angle-unit", given_for_marine_,
-                "nmea2000");
+  add_parameter(command, parameter_named(*drivers::sensor::find_driver("nmea2000"), "angle_unit"), "--angle-unit",
+                given_for_marine_, "nmea2000");
 }
 
 void DecodeCommandOptions::add_station_options(CLI::App& command) {
@@ -204,7 +199,7 @@ void DecodeCommandOptions::add_counter_options(CLI::App& command) {
 
   // The cup's and the vane's, with the driver's limits and defaults.
   const auto of_driver = [](std::string_view name) -> const Parameter& {
-    return parameter_named(driver_named("usb"), name);
+    return parameter_named(*drivers::sensor::find_driver("usb"), name);
   };
   const auto add_cup = [&](const char* name, double& value, const Parameter& parameter, const char* type) {
     value = std::get<double>(parameter.default_value);

@@ -63,18 +63,15 @@ double parse_rate(const std::string& text) {
 
 /// The one sensor of a replay: the windlog driver on this file.
 settings::SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
-  for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table()) {
-    if (driver->name != "windlog") continue;
-    const ParameterValues::Map given{{"file", options.file.string()},    {"rate", rate},
-                                     {"loop", options.playback.loop},    {"start", options.playback.start},
-                                     {"seam", options.seam_s},           {"same_time_of_day", options.at_time_of_day},
-                                     {"utc_offset", options.utc_offset}, {"paused", options.is_paused},
-                                     {"sensor", options.playback.sensor}};
-    auto values = ParameterValues::resolve(driver->parameters, given);
-    if (!values) throw ExitError(kExitUsage, values.error().name + ": " + values.error().message);
-    return settings::default_sensor(options.file.stem().string(), *driver, *values);
-  }
-  throw std::logic_error("no windlog driver");
+  const drivers::sensor::DriverDescription& windlog = *drivers::sensor::find_driver("windlog");
+  const ParameterValues::Map given{{"file", options.file.string()},    {"rate", rate},
+                                   {"loop", options.playback.loop},    {"start", options.playback.start},
+                                   {"seam", options.seam_s},           {"same_time_of_day", options.at_time_of_day},
+                                   {"utc_offset", options.utc_offset}, {"paused", options.is_paused},
+                                   {"sensor", options.playback.sensor}};
+  auto values = ParameterValues::resolve(windlog.parameters, given);
+  if (!values) throw ExitError(kExitUsage, values.error().name + ": " + values.error().message);
+  return settings::default_sensor(options.file.stem().string(), windlog, *values);
 }
 
 /// The whole installation as the recording holds it. Logs what is not as it was.

@@ -20,10 +20,11 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/lock_recording.hpp"
-#include "daemon/sensing/recorded_silence.hpp"
+#include "daemon/sensing/recorded_source.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/settings/config.hpp"
 #include "daemon/settings/output_file.hpp"
+#include "daemon/settings/sensor_blend.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/recording_parts.hpp"
@@ -248,12 +249,13 @@ void stand_at(wind::blend::BlendSourceSettings& source, const GroundPlace& place
 /// them. Those of a simulated slower sensor are means.
 void set_recorded_value(wind::blend::BlendSourceSettings& source, const WindOptions& options,
                         const settings::Config& config, const std::filesystem::path& file) {
-  settings::SensorConfig sensor = config.sensors[0];
-  set_value(sensor, options.offline.sensor_interval_s ? drivers::sensor::StatedValue{.value = wind::ReadingValue::kMean}
-                                                      : sensing::recorded_value(file, options.playback.sensor));
-  source.value = sensor.blend.value;
-  source.averaging_s = sensor.blend.averaging_s;
-  if (source.value == wind::ReadingValue::kMaximum) {
+  const drivers::sensor::StatedValue value = settings::sensor_value_of(
+      config.sensors[0].by_name.blend, options.offline.sensor_interval_s
+                                           ? drivers::sensor::StatedValue{.value = wind::ReadingValue::kMean}
+                                           : sensing::recorded_source(file, options.playback.sensor).value);
+  source.value = value.value;
+  source.averaging_s = value.averaging_s;
+  if (!makes_wind(source.value)) {
     fmt::print(stderr, "{}: its speeds are maxima, which are not used as wind; the default wind of [wind] is used\n",
                file.string());
   }

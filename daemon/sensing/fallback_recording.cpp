@@ -16,12 +16,10 @@ namespace {
 constexpr Nanoseconds kRetryInterval = std::chrono::minutes(1);
 
 settings::SensorConfig fallback_sensor(const settings::FallbackConfig& fallback) {
-  const auto drivers = drivers::sensor::driver_table();
-  const auto windlog = std::ranges::find_if(
-      drivers, [](const drivers::sensor::DriverDescription* driver) { return driver->name == "windlog"; });
+  const drivers::sensor::DriverDescription& windlog = *drivers::sensor::find_driver("windlog");
   const ParameterValues::Map given{{"file", fallback.recording.string()}, {"loop", true}, {"same_time_of_day", true}};
-  return settings::default_sensor("fall-back", **windlog,
-                                  ParameterValues::resolve((*windlog)->parameters, given).value(), fallback.origin);
+  return settings::default_sensor("fall-back", windlog, ParameterValues::resolve(windlog.parameters, given).value(),
+                                  fallback.origin);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct SensorEvidence {
   wind::judging::ReadingFault fault = wind::judging::ReadingFault::kNone;  ///< the judge's finding
   wind::judging::Vote vote = wind::judging::Vote::kNone;  ///< the result of comparing it with other sensors
 
-  bool makes_wind = true;  ///< false: its speeds are maxima (wind::ReadingValue::kMaximum)
+  bool makes_wind = true;  ///< wind::makes_wind() of what its speeds are
 
   // Figures for reason_of().
   std::size_t same_count = 0;

@@ -52,11 +52,6 @@ bool has(const wind::WindReading& reading, Quantity quantity) {
   return quantity == Quantity::kDirection ? reading.direction_deg.has_value() : reading.gust_m_s.has_value();
 }
 
-/// Are its readings used as wind? Maxima are not.
-bool makes_wind(const settings::SensorConfig& sensor) {
-  return sensor.blend.value != wind::ReadingValue::kMaximum;
-}
-
 /// One that plays a recording does not measure the present wind, and is not compared with those that do.
 JuryRules live_rules_of(const settings::SensorConfig& sensor) {
   JuryRules rules = jury_rules_of(sensor);
@@ -238,7 +233,7 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
           .is_replay = channel.config.driver->plays_recordings || channel.config.stand_in,
           .fault = judge.fault(),
           .vote = vote.vote_on(index),
-          .makes_wind = makes_wind(channel.config),
+          .makes_wind = makes_wind(channel.config.blend.value),
           .same_count = judge.same_count(),
           .same_for_s = judge.same_for_s(),
           .still_for_s = judge.still_for_s(),

@@ -74,7 +74,7 @@ class SensorHub {
   /// What was learnt of how the sensors differ, by their names; only of those of which something is known.
   wind::judging::LearntByName relative_gains() const;
   /// Goes on from that of an earlier run; names that are not of this installation are left out. False, and nothing
-  /// changes, where it cannot have been learnt (GroupGains::restore()).
+  /// changes, if it cannot have been learnt (GroupGains::restore()).
   bool restore_relative_gains(const wind::judging::LearntByName& learnt);
 
   /// The status of each sensor, and of the fall-back while it plays.

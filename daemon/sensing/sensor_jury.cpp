@@ -12,10 +12,10 @@ wind::judging::ReadingJudge judge_of(const JuryRules& rules) {
 }  // namespace
 
 JuryRules jury_rules_of(const settings::SensorConfig& sensor) {
-  return {.judge = sensor.judge,
-          .is_compared = sensor.judge && sensor.is_compared && !sensor.blend.is_relative &&
-                         sensor.blend.value != wind::ReadingValue::kMaximum,
-          .unchanged_for_s = sensor.blend.unchanged_for_s};
+  return {
+      .judge = sensor.judge,
+      .is_compared = sensor.judge && sensor.is_compared && !sensor.blend.is_relative && makes_wind(sensor.blend.value),
+      .unchanged_for_s = sensor.blend.unchanged_for_s};
 }
 
 SensorJury::SensorJury(const std::vector<JuryRules>& sensors, double stale_intervals, bool is_levelling)
@@ -43,10 +43,10 @@ SensorJury::Verdict SensorJury::hear(std::size_t sensor, const wind::WindReading
   }
   const bool repeats = member.record.has_reading() && wind::says_the_same(reading, *member.record.last());
   if (!member.record.take(reading) && repeats) {
-    // A message that is said again has been judged.
+    // A repeated message has been judged.
     return member.is_last_believed ? Verdict::kBelieved : Verdict::kDoubted;
   }
-  // The estimator recognizes what is said again by its bits.
+  // The estimator recognizes a repeated reading by its bits.
   if (!repeats) member.gain = is_levelled(sensor) ? gains_.gain(sensor) : 1.0;
 
   // Simulated readings are not judged: they may be constant.

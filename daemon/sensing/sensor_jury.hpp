@@ -38,14 +38,14 @@ class SensorJury {
     kBelieved,  ///< it goes to the estimator
   };
 
-  /// `stale_intervals`: as BlendSettings has it. `is_levelling`: false: each sensor reads as it says.
+  /// `stale_intervals`: as BlendSettings has it. `is_levelling`: false: no sensor is levelled.
   SensorJury(const std::vector<JuryRules>& sensors, double stale_intervals, bool is_levelling);
 
   /// Judges the next reading of a sensor, calibrated, and not of the future.
   Verdict hear(std::size_t sensor, const wind::WindReading& reading) noexcept;
 
-  /// The reading that hear() has just been given, levelled: what goes to the estimator. The same bits where nothing was
-  /// learnt. What is said again is levelled as it was the first time.
+  /// The reading that hear() has just been given, levelled: what goes to the estimator. The same bits if nothing was
+  /// learnt. A repeated reading is levelled as it was the first time.
   wind::WindReading levelled(std::size_t sensor, wind::WindReading reading) const noexcept;
 
   /// Readings that were refused before they came here as impossible.
@@ -66,7 +66,7 @@ class SensorJury {
   const wind::judging::SensorVote& vote() const noexcept { return vote_; }
   const wind::judging::GroupGains& gains() const noexcept { return gains_; }
   /// Goes on from what was learnt before, one for each sensor (GroupGains::restore()). What was learnt of one that is
-  /// not compared any more is left out; where nothing is levelled, all.
+  /// not compared any more is left out; if nothing is levelled, all is.
   bool restore_gains(std::span<const wind::judging::GroupGains::Learnt> learnt);
   /// How many times the group's wind it reads; 1: it is not levelled.
   double reads_times_group(std::size_t sensor) const noexcept;
@@ -87,7 +87,7 @@ class SensorJury {
     wind::judging::ReadingJudge judge;
     wind::blend::SourceRecord record;  ///< believed or not
     bool is_last_believed = false;     ///< of the last reading that was judged
-    double gain = 1.0;                 ///< of the last reading that was not said before
+    double gain = 1.0;                 ///< of the last reading that was no repetition
   };
 
   double stale_intervals_;
@@ -95,7 +95,7 @@ class SensorJury {
   wind::judging::SensorVote vote_;
   bool is_levelling_;
   wind::judging::GroupGains gains_;
-  std::vector<wind::judging::GroupGains::Member> group_;  ///< room for what gains_ is told
+  std::vector<wind::judging::GroupGains::Member> group_;  ///< room for the arguments of gains_
 };
 
 }  // namespace yuragi::daemon::sensing

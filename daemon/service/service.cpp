@@ -27,7 +27,7 @@
 #include "daemon/recording/recorder.hpp"
 #include "daemon/sensing/held_clock.hpp"
 #include "daemon/sensing/player_director.hpp"
-#include "daemon/sensing/recorded_silence.hpp"
+#include "daemon/sensing/recorded_source.hpp"
 #include "daemon/sensing/recording_folders.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/service/config_check.hpp"

@@ -206,7 +206,7 @@ const std::array kWindParameters = {
               .default_value = true,
               .help = "several sensors that differ by a constant factor, up to 1.5, are levelled to their common mean: "
                       "a sheltered and an exposed one, too, and what each reads times the group is shown. Learnt in "
-                      "hours of wind, kept in site_file of [shaping]; false: each reads as it says"},
+                      "hours of wind, kept in site_file of [shaping]; false: no sensor is levelled"},
     Parameter{.name = "fallback_recording",
               .unit = "",
               .default_value = std::string{},

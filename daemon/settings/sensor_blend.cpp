@@ -104,7 +104,7 @@ drivers::sensor::StatedValue sensor_value_of(const ParameterValues& values,
     value.value = static_cast<wind::ReadingValue>(name - wind::kReadingValueNames.begin());
     // The time that the driver states is of what it states.
     if (!stated || stated->value != value.value) value.averaging_s = 0.0;
-  } else if (averaging_s > 0.0 && value.value != wind::ReadingValue::kMaximum) {
+  } else if (averaging_s > 0.0 && makes_wind(value.value)) {
     value.value = wind::ReadingValue::kMean;
   }
   if (averaging_s > 0.0) value.averaging_s = averaging_s;

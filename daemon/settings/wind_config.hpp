@@ -16,9 +16,9 @@ struct FallbackConfig {
   std::filesystem::path recording;
   double after_s = 0.0;  ///< for how long every sensor must have been silent
   std::string origin{};  ///< `file:line:column` of its key; empty: it is in no file
-  /// What was recorded spoke on change only (recorded_unchanged_for_s()); 0: it did not, or this is not known yet.
+  /// What was recorded spoke on change only (RecordedSource); 0: it did not, or this is not known yet.
   double unchanged_for_s = 0.0;
-  drivers::sensor::StatedValue value{};  ///< what the recorded speeds are (recorded_value())
+  drivers::sensor::StatedValue value{};  ///< what the recorded speeds are (RecordedSource)
 };
 
 /// The least integral length that is assumed.

@@ -27,7 +27,7 @@ class SiteFile {
 
   const std::filesystem::path& path() const noexcept { return file_; }
 
-  /// Reads the file. Checks only that the values are numbers. The gains of sensors are left out where they are wrong:
+  /// Reads the file. Checks only that the values are numbers. The gains of sensors are left out if they are wrong:
   /// the site's wind is worth more than they are.
   Result<SiteMemory, Failure> read() const;
 

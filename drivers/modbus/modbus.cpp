@@ -236,7 +236,7 @@ std::optional<sensor::StatedValue> modbus_value(const ParameterValues& values) {
   try {
     return profile_of(values).value;
   } catch (const std::runtime_error&) {
-    return std::nullopt;  // open() says why
+    return std::nullopt;  // open() fails and gives the reason
   }
 }
 

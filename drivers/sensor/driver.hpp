@@ -83,4 +83,12 @@ struct DriverDescription {
 /// Every driver (generated).
 std::span<const DriverDescription* const> driver_table();
 
+/// The driver of this name; nullptr: there is none. Thread-safe: yes.
+inline const DriverDescription* find_driver(std::string_view name) {
+  for (const DriverDescription* const driver : driver_table()) {
+    if (driver->name == name) return driver;
+  }
+  return nullptr;
+}
+
 }  // namespace yuragi::drivers::sensor

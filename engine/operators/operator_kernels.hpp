@@ -9,13 +9,18 @@
 
 namespace yuragi::operators {
 
-struct SampleKernelLayer {
-  const float* tile = nullptr;
+/// Where a layer is read: on a torus of 2^log2_size samples an edge, at place - offset.
+struct SampleKernelPlaces {
   unsigned log2_size = 0;
-  const std::uint32_t* place_x = nullptr;
-  const std::uint32_t* place_z = nullptr;
+  const std::uint32_t* x = nullptr;
+  const std::uint32_t* z = nullptr;
   std::uint32_t offset_x = 0;
   std::uint32_t offset_z = 0;
+};
+
+struct SampleKernelLayer {
+  const float* tile = nullptr;
+  SampleKernelPlaces places;
   float weight = 1.0F;
   const float* weights = nullptr;  ///< of each place, beside `weight`; null: 1
 };
@@ -34,11 +39,7 @@ struct SampleKernelArguments {
 struct VectorSampleKernelLayer {
   const float* tile_x = nullptr;
   const float* tile_z = nullptr;
-  unsigned log2_size = 0;
-  const std::uint32_t* place_x = nullptr;
-  const std::uint32_t* place_z = nullptr;
-  std::uint32_t offset_x = 0;
-  std::uint32_t offset_z = 0;
+  SampleKernelPlaces places;
   float ahead_x = 0.0F;  ///< the unit vector of `along`, on the tile's axes
   float ahead_z = 0.0F;
   float along = 1.0F;

@@ -15,6 +15,16 @@ bool is_readable(const noise::VectorTile2* tile) noexcept {
   return tile != nullptr && noise::is_readable(tile->x) && noise::is_readable(tile->z) && tile->x.size == tile->z.size;
 }
 
+/// `size`: of an edge of the layer's tile.
+template <class Layer>
+SampleKernelPlaces places_of(const Layer& layer, std::size_t size) noexcept {
+  return {.log2_size = static_cast<unsigned>(std::countr_zero(size)),
+          .x = layer.place_x.data(),
+          .z = layer.place_z.data(),
+          .offset_x = layer.offset.x,
+          .offset_z = layer.offset.z};
+}
+
 const float* data_or_null(std::span<const float> weights) noexcept {
   return weights.empty() ? nullptr : weights.data();
 }
@@ -42,11 +52,7 @@ SampleJob::Problem SampleJob::run() const noexcept {
       .count = out.size(), .scale = scale, .bias = bias, .low = low, .high = high, .out = out.data()};
   for (const NoiseLayer& layer : layers) {
     arguments.layers[arguments.layer_count++] = {.tile = layer.tile->values.data(),
-                                                 .log2_size = static_cast<unsigned>(std::countr_zero(layer.tile->size)),
-                                                 .place_x = layer.place_x.data(),
-                                                 .place_z = layer.place_z.data(),
-                                                 .offset_x = layer.offset.x,
-                                                 .offset_z = layer.offset.z,
+                                                 .places = places_of(layer, layer.tile->size),
                                                  .weight = layer.weight,
                                                  .weights = data_or_null(layer.weights)};
   }
@@ -78,20 +84,15 @@ VectorSampleJob::Problem VectorSampleJob::run() const noexcept {
   VectorSampleKernelArguments arguments{
       .count = out_along.size(), .out_along = out_along.data(), .out_across = out_across.data()};
   for (const VectorLayer& layer : layers) {
-    arguments.layers[arguments.layer_count++] = {
-        .tile_x = layer.tile->x.values.data(),
-        .tile_z = layer.tile->z.values.data(),
-        .log2_size = static_cast<unsigned>(std::countr_zero(layer.tile->x.size)),
-        .place_x = layer.place_x.data(),
-        .place_z = layer.place_z.data(),
-        .offset_x = layer.offset.x,
-        .offset_z = layer.offset.z,
-        .ahead_x = layer.ahead_x,
-        .ahead_z = layer.ahead_z,
-        .along = layer.along,
-        .across = layer.across,
-        .along_weights = data_or_null(layer.along_weights),
-        .across_weights = data_or_null(layer.across_weights)};
+    arguments.layers[arguments.layer_count++] = {.tile_x = layer.tile->x.values.data(),
+                                                 .tile_z = layer.tile->z.values.data(),
+                                                 .places = places_of(layer, layer.tile->x.size),
+                                                 .ahead_x = layer.ahead_x,
+                                                 .ahead_z = layer.ahead_z,
+                                                 .along = layer.along,
+                                                 .across = layer.across,
+                                                 .along_weights = data_or_null(layer.along_weights),
+                                                 .across_weights = data_or_null(layer.across_weights)};
   }
   kSampleRows[row.value_or(best_simd_row())].sample_vectors(arguments);
   return Problem::kNone;

@@ -88,7 +88,7 @@ struct VectorSampleJob {
   enum class Problem : std::uint8_t {
     kNone,
     kLayerCount,       ///< more than kMaxLayers
-    kTileNotReadable,  ///< none, is_readable() says no, or the two components differ in size
+    kTileNotReadable,  ///< none, not is_readable(), or the two components differ in size
     kSizesDiffer,      ///< places, weights (where there are any) and outputs
     kWeightNotFinite,
     kRowNotRunnable,

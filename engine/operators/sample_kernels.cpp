@@ -50,15 +50,14 @@ struct Pairs {
 
 /// Where kAtOnce places are on a layer's tile. Returns whether one of them is in the last column, whose east is the
 /// first.
-template <class Layer>
-[[gnu::always_inline]] inline bool find_cells(const Layer& layer, std::size_t begin, Cells& at) noexcept {
-  const std::uint32_t last = (1U << layer.log2_size) - 1U;
+[[gnu::always_inline]] inline bool find_cells(const SampleKernelPlaces& places, std::size_t begin, Cells& at) noexcept {
+  const std::uint32_t last = (1U << places.log2_size) - 1U;
   std::uint32_t wraps = 0;
   for (std::size_t i = 0; i < kAtOnce; ++i) {
-    const noise::TorusCell x = noise::torus_cell(layer.place_x[begin + i] - layer.offset_x, layer.log2_size);
-    const noise::TorusCell z = noise::torus_cell(layer.place_z[begin + i] - layer.offset_z, layer.log2_size);
-    at.north[i] = (z.first << layer.log2_size) + x.first;
-    at.south[i] = (z.second << layer.log2_size) + x.first;
+    const noise::TorusCell x = noise::torus_cell(places.x[begin + i] - places.offset_x, places.log2_size);
+    const noise::TorusCell z = noise::torus_cell(places.z[begin + i] - places.offset_z, places.log2_size);
+    at.north[i] = (z.first << places.log2_size) + x.first;
+    at.south[i] = (z.second << places.log2_size) + x.first;
     at.x_fraction[i] = x.fraction;
     at.z_fraction[i] = z.fraction;
     wraps |= x.first == last ? 1U : 0U;
@@ -102,9 +101,9 @@ template <class Layer>
 /// Adds weight * noise at kAtOnce places to `sum`.
 [[gnu::always_inline]] inline void add_layer(const SampleKernelLayer& layer, std::size_t begin, float* sum) noexcept {
   Cells at;
-  const bool wraps = find_cells(layer, begin, at);
+  const bool wraps = find_cells(layer.places, begin, at);
   Pairs pairs;
-  load_pairs(layer.tile, layer.log2_size, at, wraps, pairs);
+  load_pairs(layer.tile, layer.places.log2_size, at, wraps, pairs);
   alignas(64) float weights[kAtOnce];
   weigh(layer.weight, layer.weights, begin, weights);
   for (std::size_t i = 0; i < kAtOnce; ++i) sum[i] += weights[i] * value_at(pairs, at, i);
@@ -114,10 +113,10 @@ template <class Layer>
 [[gnu::always_inline]] inline void add_vectors(const VectorSampleKernelLayer& layer, std::size_t begin, float* along,
                                                float* across) noexcept {
   Cells at;
-  const bool wraps = find_cells(layer, begin, at);
+  const bool wraps = find_cells(layer.places, begin, at);
   Pairs pairs_x, pairs_z;
-  load_pairs(layer.tile_x, layer.log2_size, at, wraps, pairs_x);
-  load_pairs(layer.tile_z, layer.log2_size, at, wraps, pairs_z);
+  load_pairs(layer.tile_x, layer.places.log2_size, at, wraps, pairs_x);
+  load_pairs(layer.tile_z, layer.places.log2_size, at, wraps, pairs_z);
   alignas(64) float along_weights[kAtOnce], across_weights[kAtOnce];
   weigh(layer.along, layer.along_weights, begin, along_weights);
   weigh(layer.across, layer.across_weights, begin, across_weights);
@@ -155,9 +154,9 @@ template <std::size_t known_layers>
     float sum = 0.0F;
     for (std::size_t index = 0; index < layers; ++index) {
       const SampleKernelLayer& layer = in.layers[index];
-      sum += weight_at(layer.weight, layer.weights, i) * noise::read_bilinear(layer.tile, layer.log2_size,
-                                                                              layer.place_x[i] - layer.offset_x,
-                                                                              layer.place_z[i] - layer.offset_z);
+      sum += weight_at(layer.weight, layer.weights, i) *
+             noise::read_bilinear(layer.tile, layer.places.log2_size, layer.places.x[i] - layer.places.offset_x,
+                                  layer.places.z[i] - layer.places.offset_z);
     }
     in.out[i] = scaled(in, sum);
   }
@@ -192,8 +191,8 @@ void sample_vectors(const VectorSampleKernelArguments& arguments) noexcept {
     float across = 0.0F;
     for (std::size_t index = 0; index < in.layer_count; ++index) {
       const VectorSampleKernelLayer& layer = in.layers[index];
-      const noise::TorusCorners at =
-          noise::torus_corners(layer.log2_size, layer.place_x[i] - layer.offset_x, layer.place_z[i] - layer.offset_z);
+      const noise::TorusCorners at = noise::torus_corners(
+          layer.places.log2_size, layer.places.x[i] - layer.places.offset_x, layer.places.z[i] - layer.places.offset_z);
       const float x = noise::read_corners(layer.tile_x, at);
       const float z = noise::read_corners(layer.tile_z, at);
       along += weight_at(layer.along, layer.along_weights, i) * (layer.ahead_x * x + layer.ahead_z * z);

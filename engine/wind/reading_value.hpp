@@ -14,6 +14,11 @@ enum class ReadingValue : std::uint8_t {
   kUnknown,  ///< not documented: assumed_value() of the interval is assumed
 };
 
+/// Are such readings used as wind? Maxima are not.
+constexpr bool makes_wind(ReadingValue value) noexcept {
+  return value != ReadingValue::kMaximum;
+}
+
 /// The names of those that can be stated, in their order.
 inline constexpr std::array<std::string_view, 3> kReadingValueNames = {"mean", "instant", "maximum"};
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -10,9 +9,7 @@ namespace yuragi {
 
 /// The driver of that name, as the daemon finds it.
 inline const drivers::sensor::DriverDescription& driver_named(std::string_view name) {
-  for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table()) {
-    if (driver->name == name) return *driver;
-  }
+  if (const auto* const driver = drivers::sensor::find_driver(name)) return *driver;
   throw std::logic_error("no driver named " + std::string(name));
 }
 

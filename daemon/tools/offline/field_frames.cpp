@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/sensing/recorded_silence.hpp"
+#include "daemon/sensing/recorded_source.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
 
@@ -37,7 +37,7 @@ Result<void, Failure> make_recorded_frames(const std::filesystem::path& recordin
   drivers::windlog::WindlogPlayback& playback = *opened;
   const std::shared_ptr<const wind::turbulence::GustNoise> noise = sensing::make_gust_noise(config);
   settings::Config of_recording = config;
-  set_value(of_recording.sensors.at(0), sensing::recorded_value(recording, playback_options.sensor));
+  set_value(of_recording.sensors.at(0), sensing::recorded_source(recording, playback_options.sensor).value);
   wind::blend::BlendedEstimator estimator = sensing::make_estimator(of_recording, noise, grid.reach_m());
   wind::ground::WindTapes tapes;
   wind::ground::GroundWind ground;
@@ -46,7 +46,7 @@ Result<void, Failure> make_recorded_frames(const std::filesystem::path& recordin
   // Several ticks per frame. A frame is that of the first tick at its time or after it.
   OfflineWindOptions offline;
   offline.rate_hz = frames.rate_hz * std::ceil(kLeastTickRate_hz / frames.rate_hz);
-  offline.rules = sensing::jury_rules_of(config.sensors[0]);
+  offline.rules = sensing::jury_rules_of(of_recording.sensors[0]);
   const double tick_s = 1.0 / offline.rate_hz;
   offline.until_s = frames.time_s(frames.count - 1) + tick_s;
   std::vector<float> values(static_cast<std::size_t>(field.dims()) * grid.size());

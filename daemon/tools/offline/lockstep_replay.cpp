@@ -6,7 +6,7 @@
 #include "daemon/animation/animation.hpp"
 #include "daemon/sensing/held_clock.hpp"
 #include "daemon/sensing/player_director.hpp"
-#include "daemon/sensing/recorded_silence.hpp"
+#include "daemon/sensing/recorded_source.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/sensing/sensor_jury.hpp"
 #include "daemon/shaping/wind_shaper.hpp"
@@ -123,9 +123,9 @@ Result<LockstepResult, Failure> replay_in_lockstep(const settings::Config& confi
   settings::Config one_source = config;
   one_source.sensors.resize(1);
   one_source.wind.fallback.reset();
-  one_source.sensors[0].blend.unchanged_for_s =
-      sensing::recorded_unchanged_for_s(recording, options.playback.sensor) / options.rate;
-  set_value(one_source.sensors[0], sensing::recorded_value(recording, options.playback.sensor));
+  const settings::RecordedSource recorded = sensing::recorded_source(recording, options.playback.sensor);
+  one_source.sensors[0].blend.unchanged_for_s = recorded.unchanged_for_s / options.rate;
+  set_value(one_source.sensors[0], recorded.value);
   wind::blend::BlendedEstimator estimator = sensing::make_estimator(one_source, gusts, animation.reach_m());
   wind::shaping::WindShaping shaping(config.shaping.settings, gusts);
   sensing::SensorJury jury({sensing::jury_rules_of(one_source.sensors[0])}, one_source.wind.stale_intervals,

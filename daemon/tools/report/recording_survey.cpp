@@ -19,7 +19,7 @@ class Surveyor {
   explicit Surveyor(const drivers::windlog::LoggedSensor& sensor)
       : survey_{.name = sensor.name,
                 .driver = sensor.driver,
-                .unchanged_for_s = settings::recorded_unchanged_for_s(sensor.driver, sensor.options)},
+                .unchanged_for_s = settings::recorded_source(sensor.driver, sensor.options).unchanged_for_s},
         record_(survey_.unchanged_for_s) {}
 
   void add(Nanoseconds log_time, wind::WindReading reading) {

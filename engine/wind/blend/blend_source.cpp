@@ -95,7 +95,7 @@ BlendSource::BlendSource(const BlendSettings& blend, const BlendSourceSettings& 
 }
 
 bool BlendSource::accept(const WindReading& reading, const Around& around) noexcept {
-  if (settings_.value == ReadingValue::kMaximum || !is_plausible(reading)) return false;
+  if (!makes_wind(settings_.value) || !is_plausible(reading)) return false;
   const bool is_first = !record_.has_reading();
   const double gap_s = is_first ? 0.0 : seconds(reading.time.mono - record_.last()->time.mono);
   if (gap_s < 0.0) return false;  // older than the last reading

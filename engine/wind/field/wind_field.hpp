@@ -60,7 +60,9 @@ struct FieldGrid {
   std::size_t size() const noexcept { return count_x * count_y * count_z; }
   /// From the middle to the farthest sample, along the ground.
   double reach_m() const noexcept {
-    return spacing_m * std::hypot(static_cast<double>(count_x / 2), static_cast<double>(count_z / 2));
+    const std::size_t half_x = count_x / 2;
+    const std::size_t half_z = count_z / 2;
+    return spacing_m * std::hypot(static_cast<double>(half_x), static_cast<double>(half_z));
   }
   WindPlace place(std::size_t i, std::size_t j, std::size_t k) const noexcept;
 };

@@ -43,9 +43,9 @@ class GroupGains {
   /// Learns about once a second from two members or more. `members`: one for each sensor.
   void advance(MonoTime now, std::span<const Member> members) noexcept;
 
-  /// What a sensor's speeds are multiplied by; exactly 1 where nothing was learnt.
+  /// What a sensor's speeds are multiplied by; exactly 1 if nothing was learnt.
   double gain(std::size_t sensor) const noexcept { return gains_[sensor]; }
-  /// How many times the group's wind it reads; exactly 1 where nothing was learnt.
+  /// How many times the group's wind it reads; exactly 1 if nothing was learnt.
   double reads_times_group(std::size_t sensor) const noexcept;
   /// Is what was learnt the most that is levelled? It may read even more, or less.
   bool is_at_bound(std::size_t sensor) const noexcept;
@@ -57,7 +57,7 @@ class GroupGains {
   void relearn(std::size_t sensor) noexcept { learnt_[sensor].learnt_s = 0.0; }
 
   /// Goes on from what an earlier run learnt: one for each sensor; all 0: nothing is known of it. The mean of the known
-  /// is made 0: a sensor may have gone for good. False, and nothing changes, where a value is not finite, or a
+  /// is made 0: a sensor may have gone for good. False, and nothing changes, if a value is not finite, or a
   /// deviation is out of bounds, before or after that.
   bool restore(std::span<const Learnt> learnt);
 

@@ -4,7 +4,7 @@
 
 namespace yuragi::wind::turbulence {
 
-// Integrals of von Karman's spectra (von_karman.hpp), of u where no component is told. Thread-safe; realtime-safe after
+// Integrals of von Karman's spectra (von_karman.hpp), of u if no component is given. Thread-safe; realtime-safe after
 // make_haar_table().
 
 /// The part of von Karman's variance of u between two frequencies (the upper may be infinite).

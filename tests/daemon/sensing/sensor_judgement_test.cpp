@@ -493,7 +493,7 @@ TEST_F(SensorJudgementOfTwo, TwoThatDifferByAFactorAreLevelledAndARestartGoesOn)
   go_on(50 * 60, both_speak);
   EXPECT_NEAR(hub_->status()[0].reads_times_group, std::sqrt(1.5), 0.04);
   EXPECT_NEAR(hub_->status()[1].reads_times_group, 1.0 / std::sqrt(1.5), 0.04);
-  EXPECT_NEAR(*hub_->status()[0].speed_m_s, 7.5, 1.5) << "what it says is shown";
+  EXPECT_NEAR(*hub_->status()[0].speed_m_s, 7.5, 1.5) << "its readings are shown";
 
   const wind::judging::LearntByName learnt = hub_->relative_gains();
   controls_.resize(2 * config_.sensors.size());

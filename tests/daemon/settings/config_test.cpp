@@ -3,6 +3,7 @@
 #include <array>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -90,7 +91,7 @@ TEST(Config, RefusesNamesWithControlCharactersAtTheirPlace) {
         "[[alert]]\ncommand = \"true\"\n", "[[output]]\nrefreshes = 2\n"}) {
     for (const std::string hurt : {"\\u001b[2J", "\\n", "\\u007f", "\\u0085", "\\u202E", "\\u2066"}) {
       EXPECT_THAT(
-          mistakes_of(entry + "name = \"a" + hurt + "\"\n"),
+          mistakes_of(fmt::format("{}name = \"a{}\"\n", entry, hurt)),
           MatchesRegex("wall.toml:3:8: [a-z]+.name: \"a\\?+(\\[2J)?\" has a control character in it; type it anew"))
           << entry << hurt;
     }
@@ -437,14 +438,14 @@ TEST(Config, WhatWasRecordedOfASensorSaysWhetherItSpokeOnChange) {
   const std::string sensor =
       "[[sensor]]\ndriver = \"mqtt\"\ntopic = \"wind\"\nsilence = 43200\npassword_env = \"SECRET\"\n";
   const auto recorded = [](const Config& config) {
-    return recorded_unchanged_for_s(config.sensors[0].driver->name, to_toml(config.sensors[0].values));
+    return recorded_source(config.sensors[0].driver->name, to_toml(config.sensors[0].values)).unchanged_for_s;
   };
   EXPECT_EQ(recorded(parse_config(sensor + "on_change = true\n", "wall.toml")), 43200.0);
   EXPECT_EQ(recorded(parse_config(sensor, "wall.toml")), 0.0);
-  EXPECT_EQ(recorded_unchanged_for_s("mqtt", "on_change = true\nsilence = 60.0\nof_later = 1\n"), 0.0);
-  EXPECT_EQ(recorded_unchanged_for_s("mqtt", "on_change ="), 0.0);
-  EXPECT_EQ(recorded_unchanged_for_s("synthetic", "speed = 5"), 0.0);
-  EXPECT_EQ(recorded_unchanged_for_s("a driver of later", "on_change = true"), 0.0);
+  EXPECT_EQ(recorded_source("mqtt", "on_change = true\nsilence = 60.0\nof_later = 1\n").unchanged_for_s, 0.0);
+  EXPECT_EQ(recorded_source("mqtt", "on_change =").unchanged_for_s, 0.0);
+  EXPECT_EQ(recorded_source("synthetic", "speed = 5").unchanged_for_s, 0.0);
+  EXPECT_EQ(recorded_source("a driver of later", "on_change = true").unchanged_for_s, 0.0);
 }
 
 TEST(Config, ASensorHasItsPartAmongSeveral) {
@@ -650,7 +651,7 @@ TEST(Config, TwoSensorsThatReadTheSameAreNotOpened) {
 class SecretExposure : public testing::Test {
  protected:
   std::string write(const std::string& name, const std::string& text, mode_t mode) {
-    const std::string file = folder_ / name;
+    std::string file = folder_ / name;
     std::ofstream(file) << text;
     EXPECT_EQ(chmod(file.c_str(), mode), 0);
     return file;
@@ -674,8 +675,8 @@ TEST_F(SecretExposure, IsToldOfAConfigurationThatOthersCanRead) {
   const std::string file = folder_ / "wall.toml";
   for (const mode_t open : {0644U, 0604U, 0666U}) {
     EXPECT_THAT(warnings_of("password = \"hunter2\"\n", open),
-                ElementsAre(file + ":1:1: sensor.password: everybody on this machine can read " + file +
-                            "; chmod 640 " + file));
+                ElementsAre(fmt::format(
+                    "{0}:1:1: sensor.password: everybody on this machine can read {0}; chmod 640 {0}", file)));
   }
   for (const mode_t closed : {0640U, 0600U, 0660U})
     EXPECT_THAT(warnings_of("password = \"hunter2\"\n", closed), IsEmpty());

@@ -104,12 +104,12 @@ TEST(SensorValue, IsShownAsAssumedIfItIsUnknown) {
 }
 
 TEST(SensorValue, OfARecordingIsThatOfTheDriverThatRecorded) {
-  const auto stated = recorded_value("microphone", "window = 4.0\n");
+  const auto stated = recorded_source("microphone", "window = 4.0\n").value;
   ASSERT_TRUE(stated);
   EXPECT_EQ(stated->averaging_s, 4.0);
-  EXPECT_EQ(recorded_value("mqtt", "topic = \"wind\"\n"), std::nullopt);
-  EXPECT_EQ(recorded_value("microphone", "window ="), std::nullopt);
-  EXPECT_EQ(recorded_value("a driver of later", ""), std::nullopt);
+  EXPECT_EQ(recorded_source("mqtt", "topic = \"wind\"\n").value, std::nullopt);
+  EXPECT_EQ(recorded_source("microphone", "window =").value, std::nullopt);
+  EXPECT_EQ(recorded_source("a driver of later", "").value, std::nullopt);
 }
 
 }  // namespace

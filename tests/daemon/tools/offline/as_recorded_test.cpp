@@ -45,7 +45,8 @@ class AsRecorded : public ::testing::Test {
 // A recording that version 0.2.0 wrote, of 1120 s from kFridayNoon on with the winds of three_winds(4.0), but for one
 // spike of "mast" and six times the wind for "yard", which is outvoted in the end; it closes at 14:18. This hash is of
 // every later version, too; it changed when WindTurbulence began to keep running sums, which round otherwise, when
-// the waves over a meadow began to run as fast as its height says, and when "mast" and "roof" began to be levelled.
+// the waves over a meadow began to run at the speed that follows from its height, and when "mast" and "roof" began to
+// be levelled.
 TEST(KeptInstallation, IsReplayedWithTheSamePosesInEveryVersion) {
   const auto kept = std::filesystem::path(__FILE__).parent_path() / "as_recorded.windlog";
   const LockstepResult first = replay(kept);

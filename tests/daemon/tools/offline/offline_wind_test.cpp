@@ -40,6 +40,7 @@ class SeveralRecorded : public ::testing::Test {
   /// The mean speeds of the wind that the recorded sensors make together.
   Means wind_of(const std::vector<std::string>& sensors, const settings::Config& config) const {
     std::vector<drivers::windlog::WindlogPlayback> playbacks;
+    playbacks.reserve(sensors.size());
     for (const std::string& sensor : sensors) {
       playbacks.push_back(drivers::windlog::WindlogPlayback::open(file_, {.sensor = sensor}).value());
     }
@@ -142,7 +143,7 @@ class TwoPlaces : public ::testing::Test {
 
 TEST_F(TwoPlaces, AreLevelledWithinAnHourWithoutAStep) {
   const Outcome as_read = run(false);
-  EXPECT_GT(as_read.east_m_s, 1.2 * as_read.west_m_s) << "each reads as it says";
+  EXPECT_GT(as_read.east_m_s, 1.2 * as_read.west_m_s) << "no sensor is levelled";
   const Outcome levelled = run(true);
   EXPECT_NEAR(levelled.east_m_s / levelled.west_m_s, 1.0, 0.1);
   EXPECT_NEAR(std::sqrt(levelled.east_m_s * levelled.west_m_s), std::sqrt(7.2 * 4.8), 0.3) << "their common mean";

@@ -1,5 +1,5 @@
 // A recording of a source that speaks on change only, played in place of a sensor: its pauses are no silence.
-#include "daemon/sensing/recorded_silence.hpp"
+#include "daemon/sensing/recorded_source.hpp"
 
 #include <gtest/gtest.h>
 
@@ -59,12 +59,12 @@ TEST_F(RecordedSilence, IsNoGapWhereTheSourceSpokeOnChange) {
 TEST_F(RecordedSilence, IsThatOfTheRecordingAtItsRate) {
   EXPECT_EQ(with_recorded_sources(config()).sensors[0].blend.unchanged_for_s, 3600.0);
   EXPECT_EQ(with_recorded_sources(config("4.0")).sensors[0].blend.unchanged_for_s, 900.0);
-  EXPECT_EQ(recorded_unchanged_for_s(file_, "home"), 3600.0);
-  EXPECT_EQ(recorded_unchanged_for_s(file_, "*"), 0.0);
-  EXPECT_EQ(recorded_unchanged_for_s(file_, "away"), 0.0);
-  EXPECT_EQ(recorded_unchanged_for_s(folder_ / "none.windlog", ""), 0.0);
+  EXPECT_EQ(recorded_source(file_, "home").unchanged_for_s, 3600.0);
+  EXPECT_EQ(recorded_source(file_, "*").unchanged_for_s, 0.0);
+  EXPECT_EQ(recorded_source(file_, "away").unchanged_for_s, 0.0);
+  EXPECT_EQ(recorded_source(folder_ / "none.windlog", "").unchanged_for_s, 0.0);
 
-  EXPECT_EQ(recorded_value(file_, "home"), std::nullopt) << "MQTT does not say what is published";
+  EXPECT_EQ(recorded_source(file_, "home").value, std::nullopt) << "MQTT does not state what is published";
   settings::Config with_fallback = settings::default_config();
   with_fallback.wind.fallback = {.recording = file_, .after_s = 5.0};
   EXPECT_EQ(blend_settings_of(with_recorded_sources(with_fallback)).sources.back().unchanged_for_s, 3600.0);

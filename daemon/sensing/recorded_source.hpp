@@ -1,20 +1,16 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string_view>
 
 #include "daemon/settings/config.hpp"
+#include "daemon/settings/recorded_sensor.hpp"
 
 namespace yuragi::daemon::sensing {
 
-/// settings::recorded_unchanged_for_s() of a sensor of a recording, in log time: by its name, or the one with the first
-/// reading where it is empty. 0 for "*", all sensors as one, and for what cannot be read. Reads the file.
-double recorded_unchanged_for_s(const std::filesystem::path& recording, std::string_view sensor);
-
-/// settings::recorded_value() of the same sensor.
-std::optional<drivers::sensor::StatedValue> recorded_value(const std::filesystem::path& recording,
-                                                           std::string_view sensor);
+/// settings::recorded_source() of a sensor of a recording: by its name, or if that is empty of the one with the first
+/// reading. Times are in log time. Empty for "*", all sensors as one, and for what cannot be read. Reads the file.
+settings::RecordedSource recorded_source(const std::filesystem::path& recording, std::string_view sensor);
 
 /// The configuration, in which each sensor that plays a recording, and the fall-back recording, may be silent for as
 /// long as what was recorded might, at the rate at which it is played: the silence of a source that spoke on change
