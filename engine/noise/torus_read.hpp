@@ -53,4 +53,45 @@ struct TorusCorners {
   return read_corners(values, torus_corners(log2_size, phase_x, phase_z));
 }
 
+/// The samples of a tile around a place.
+struct TorusSamples {
+  float north_west, north_east, south_west, south_east;
+};
+
+[[gnu::always_inline]] inline TorusSamples samples_at(const float* values, const TorusCorners& at) noexcept {
+  return {values[at.north_west], values[at.north_east], values[at.south_west], values[at.south_east]};
+}
+
+[[gnu::always_inline]] inline TorusSamples mixed(const TorusSamples& a, float a_part, const TorusSamples& b,
+                                                 float b_part) noexcept {
+  return {a_part * a.north_west + b_part * b.north_west, a_part * a.north_east + b_part * b.north_east,
+          a_part * a.south_west + b_part * b.south_west, a_part * a.south_east + b_part * b.south_east};
+}
+
+/// A noise vector at a place: its part along a unit vector, its part to the left of that (from x to -z), and by how
+/// much the first rises along the unit vector, per distance of two samples.
+struct VectorReading {
+  float along, across, rise;
+};
+
+[[gnu::always_inline]] inline VectorReading read_vector(const TorusSamples& x, const TorusSamples& z, float fraction_x,
+                                                        float fraction_z, float ahead_x, float ahead_z) noexcept {
+  struct Slope {
+    float value, along_x, along_z;
+  };
+  const auto slope = [=](const TorusSamples& at) {
+    const float north_rise = at.north_east - at.north_west;
+    const float south_rise = at.south_east - at.south_west;
+    const float north = at.north_west + fraction_x * north_rise;
+    const float south = at.south_west + fraction_x * south_rise;
+    const float along_z = south - north;
+    return Slope{north + fraction_z * along_z, between(north_rise, south_rise, fraction_z), along_z};
+  };
+  const Slope of_x = slope(x);
+  const Slope of_z = slope(z);
+  return {ahead_x * of_x.value + ahead_z * of_z.value, ahead_z * of_x.value - ahead_x * of_z.value,
+          ahead_x * ahead_x * of_x.along_x + ahead_x * ahead_z * (of_x.along_z + of_z.along_x) +
+              ahead_z * ahead_z * of_z.along_z};
+}
+
 }  // namespace yuragi::noise

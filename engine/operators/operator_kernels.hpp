@@ -39,6 +39,10 @@ struct SampleKernelArguments {
 struct VectorSampleKernelLayer {
   const float* tile_x = nullptr;
   const float* tile_z = nullptr;
+  const float* quarter_x = nullptr;  ///< null: the tile alone
+  const float* quarter_z = nullptr;
+  float cosine = 1.0F;  ///< of the tile
+  float sine = 0.0F;    ///< of `quarter`
   SampleKernelPlaces places;
   float ahead_x = 0.0F;  ///< the unit vector of `along`, on the tile's axes
   float ahead_z = 0.0F;
@@ -46,6 +50,9 @@ struct VectorSampleKernelLayer {
   float across = 1.0F;
   const float* along_weights = nullptr;  ///< of each place, beside `along`; null: 1
   const float* across_weights = nullptr;
+  float strength = 1.0F;
+  float strength_per_fall = 0.0F;
+  float samples_per_m = 0.0F;
 };
 
 struct VectorSampleKernelArguments {

@@ -59,9 +59,16 @@ struct SampleJob {
 };
 
 /// A shifted noise vector, and the places at which it is read: as a NoiseLayer. `ahead`: a unit vector on the tile's
-/// axes; a vector is weighed by its part along that one and its part to the left of it (from x to -z).
+/// axes; a vector is weighed by its part along that one and its part to the left of it (from x to -z). Where it turns
+/// (noise::VectorNoise2), it is cosine * tile + sine * quarter.
+///
+/// How strong a layer is at a place may depend on the layers before it: strength + strength_per_fall_s * F, F being the
+/// sum of what they fall ahead there, -d(along)/d(ahead), m/s a metre. Of a field that is carried ahead, F is how fast
+/// the wind rises at a place that it passes. A layer adds to F if its samples_per_m is not 0.
 struct VectorLayer {
   const noise::VectorTile2* tile = nullptr;
+  const noise::VectorTile2* quarter = nullptr;  ///< as large as `tile`; null: the tile alone
+  float cosine = 1.0F, sine = 0.0F;
   std::span<const std::uint32_t> place_x;
   std::span<const std::uint32_t> place_z;
   noise::TorusPhase offset = {};
@@ -69,6 +76,8 @@ struct VectorLayer {
   float along = 1.0F, across = 1.0F;
   std::span<const float> along_weights = {};  ///< of each place, beside `along`; empty: 1
   std::span<const float> across_weights = {};
+  float strength = 1.0F, strength_per_fall_s = 0.0F;
+  float samples_per_m = 0.0F;
 };
 
 /// The sampling operator for noise vectors: adds up layers at many places, out_along = sum of along * noise(place -
@@ -88,7 +97,7 @@ struct VectorSampleJob {
   enum class Problem : std::uint8_t {
     kNone,
     kLayerCount,       ///< more than kMaxLayers
-    kTileNotReadable,  ///< none, not is_readable(), or the two components differ in size
+    kTileNotReadable,  ///< none, not is_readable(), or the components differ in size
     kSizesDiffer,      ///< places, weights (where there are any) and outputs
     kWeightNotFinite,
     kRowNotRunnable,

@@ -109,22 +109,58 @@ struct Pairs {
   for (std::size_t i = 0; i < kAtOnce; ++i) sum[i] += weights[i] * value_at(pairs, at, i);
 }
 
-/// The same of a vector, along the layer's direction and to the left of it.
+/// The samples around kAtOnce places of a layer's two components, those of `quarter` mixed in.
+struct VectorPairs {
+  Pairs x, z, quarter_x, quarter_z;
+};
+
+[[gnu::always_inline]] inline noise::TorusSamples samples_of(const Pairs& pairs, std::size_t i) noexcept {
+  return {western(pairs.north[i]), eastern(pairs.north[i]), western(pairs.south[i]), eastern(pairs.south[i])};
+}
+
+/// What is summed up at a place over the layers: the two components, and by how much `along` falls ahead, 1/s.
+struct VectorSum {
+  float along, across, fall;
+};
+
+[[gnu::always_inline]] inline VectorSum plus_layer(const VectorSum& sum, const VectorSampleKernelLayer& layer,
+                                                   const noise::VectorReading& read, float along_weight,
+                                                   float across_weight) noexcept {
+  const float strength = layer.strength + layer.strength_per_fall * sum.fall;
+  return {sum.along + strength * (along_weight * read.along), sum.across + strength * (across_weight * read.across),
+          sum.fall - layer.samples_per_m * (along_weight * read.rise)};
+}
+
+/// Adds a layer at kAtOnce places. `has_quarter`: layer.quarter_x is not null.
+template <bool has_quarter>
 [[gnu::always_inline]] inline void add_vectors(const VectorSampleKernelLayer& layer, std::size_t begin, float* along,
-                                               float* across) noexcept {
+                                               float* across, float* fall) noexcept {
   Cells at;
   const bool wraps = find_cells(layer.places, begin, at);
-  Pairs pairs_x, pairs_z;
-  load_pairs(layer.tile_x, layer.places.log2_size, at, wraps, pairs_x);
-  load_pairs(layer.tile_z, layer.places.log2_size, at, wraps, pairs_z);
+  const unsigned log2_size = layer.places.log2_size;
+  VectorPairs pairs;
+  load_pairs(layer.tile_x, log2_size, at, wraps, pairs.x);
+  load_pairs(layer.tile_z, log2_size, at, wraps, pairs.z);
+  if constexpr (has_quarter) {
+    load_pairs(layer.quarter_x, log2_size, at, wraps, pairs.quarter_x);
+    load_pairs(layer.quarter_z, log2_size, at, wraps, pairs.quarter_z);
+  }
   alignas(64) float along_weights[kAtOnce], across_weights[kAtOnce];
   weigh(layer.along, layer.along_weights, begin, along_weights);
   weigh(layer.across, layer.across_weights, begin, across_weights);
   for (std::size_t i = 0; i < kAtOnce; ++i) {
-    const float x = value_at(pairs_x, at, i);
-    const float z = value_at(pairs_z, at, i);
-    along[i] += along_weights[i] * (layer.ahead_x * x + layer.ahead_z * z);
-    across[i] += across_weights[i] * (layer.ahead_z * x - layer.ahead_x * z);
+    noise::TorusSamples x = samples_of(pairs.x, i);
+    noise::TorusSamples z = samples_of(pairs.z, i);
+    if constexpr (has_quarter) {
+      x = noise::mixed(x, layer.cosine, samples_of(pairs.quarter_x, i), layer.sine);
+      z = noise::mixed(z, layer.cosine, samples_of(pairs.quarter_z, i), layer.sine);
+    }
+    const noise::VectorReading read =
+        noise::read_vector(x, z, at.x_fraction[i], at.z_fraction[i], layer.ahead_x, layer.ahead_z);
+    const VectorSum sum = plus_layer({along[i], across[i], fall[i]}, layer, read, along_weights[i], across_weights[i]);
+    along[i] = sum.along;
+    across[i] = sum.across;
+    fall[i] = sum.fall;
   }
 }
 
@@ -174,32 +210,49 @@ void sample(const SampleKernelArguments& arguments) noexcept {
   }
 }
 
+/// The same at one place.
+[[gnu::always_inline]] inline VectorSum plus_vector(const VectorSum& sum, const VectorSampleKernelLayer& layer,
+                                                    std::size_t place) noexcept {
+  const noise::TorusCorners at =
+      noise::torus_corners(layer.places.log2_size, layer.places.x[place] - layer.places.offset_x,
+                           layer.places.z[place] - layer.places.offset_z);
+  noise::TorusSamples x = noise::samples_at(layer.tile_x, at);
+  noise::TorusSamples z = noise::samples_at(layer.tile_z, at);
+  if (layer.quarter_x != nullptr) {
+    x = noise::mixed(x, layer.cosine, noise::samples_at(layer.quarter_x, at), layer.sine);
+    z = noise::mixed(z, layer.cosine, noise::samples_at(layer.quarter_z, at), layer.sine);
+  }
+  const noise::VectorReading read =
+      noise::read_vector(x, z, at.fraction_x, at.fraction_z, layer.ahead_x, layer.ahead_z);
+  return plus_layer(sum, layer, read, weight_at(layer.along, layer.along_weights, place),
+                    weight_at(layer.across, layer.across_weights, place));
+}
+
 void sample_vectors(const VectorSampleKernelArguments& arguments) noexcept {
   const VectorSampleKernelArguments in = arguments;  // as above
   std::size_t i = 0;
   for (; i + kAtOnce <= in.count; i += kAtOnce) {
     alignas(64) float along[kAtOnce] = {};
     alignas(64) float across[kAtOnce] = {};
-    for (std::size_t layer = 0; layer < in.layer_count; ++layer) add_vectors(in.layers[layer], i, along, across);
+    alignas(64) float fall[kAtOnce] = {};
+    for (std::size_t index = 0; index < in.layer_count; ++index) {
+      const VectorSampleKernelLayer& layer = in.layers[index];
+      if (layer.quarter_x != nullptr) {
+        add_vectors<true>(layer, i, along, across, fall);
+      } else {
+        add_vectors<false>(layer, i, along, across, fall);
+      }
+    }
     for (std::size_t lane = 0; lane < kAtOnce; ++lane) {
       in.out_along[i + lane] = along[lane];
       in.out_across[i + lane] = across[lane];
     }
   }
   for (; i < in.count; ++i) {
-    float along = 0.0F;
-    float across = 0.0F;
-    for (std::size_t index = 0; index < in.layer_count; ++index) {
-      const VectorSampleKernelLayer& layer = in.layers[index];
-      const noise::TorusCorners at = noise::torus_corners(
-          layer.places.log2_size, layer.places.x[i] - layer.places.offset_x, layer.places.z[i] - layer.places.offset_z);
-      const float x = noise::read_corners(layer.tile_x, at);
-      const float z = noise::read_corners(layer.tile_z, at);
-      along += weight_at(layer.along, layer.along_weights, i) * (layer.ahead_x * x + layer.ahead_z * z);
-      across += weight_at(layer.across, layer.across_weights, i) * (layer.ahead_z * x - layer.ahead_x * z);
-    }
-    in.out_along[i] = along;
-    in.out_across[i] = across;
+    VectorSum sum = {};
+    for (std::size_t index = 0; index < in.layer_count; ++index) sum = plus_vector(sum, in.layers[index], i);
+    in.out_along[i] = sum.along;
+    in.out_across[i] = sum.across;
   }
 }
 

@@ -50,10 +50,10 @@ constexpr std::array<DelayPlace, 4> kDelayPlaces = {{{"middle, 7 m", 3.5 * std::
                                                      {"far corner, 60 m", 60.0 * std::numbers::sqrt2}}};
 constexpr double kDelayReach_m = 30.0 * std::numbers::sqrt2;
 /// Beyond the way over the wind's speed, what is left of a wave lags by a part of it between these: what is lost is
-/// lost by the bands' causal low passes. Slow waves lag most; and of a slow sensor, whose quick bands are late and
-/// little trusted, what is left may even be a little early.
-constexpr double kLeastLag = -0.02;
-constexpr double kMostLag = 0.3;
+/// lost by the bands' causal low passes, and all waves are read sooner by what they lag together. Slow waves lag most,
+/// and quick ones are a little early.
+constexpr double kLeastLag = -0.03;
+constexpr double kMostLag = 0.25;
 /// Where less is left of a wave than this part, it is noise that moves the place.
 constexpr double kLeastKept = 0.5;
 
@@ -191,6 +191,7 @@ class Passage {
       for (Tone& tone : tones_) tone.add(time_s, known.v_m_s, bend_rad, places_m_s);
     }
     coherence_ = estimator.stroke().coherence;
+    octave_hz_ = estimator.stroke().octave_hz;
   }
 
   double interval_s() const { return interval_s_; }
@@ -213,7 +214,31 @@ class Passage {
       return carried(frequency_hz, interval_s_, kDelayPlaces.at(place).way_m, coherence_) /
              wind::turbulence::OctaveFollower::Response(frequency_hz).weighted(trusted(interval_s_));
     };
-    return group_delay_s(since_edge(pairs_[pair].low_hz), since_edge(pairs_[pair].high_hz), pairs_[pair]);
+    return group_delay_s(since_edge(pairs_[pair].low_hz), since_edge(pairs_[pair].high_hz), pairs_[pair]) -
+           read_sooner_s(place);
+  }
+  /// By how much sooner the tape is read at a place: the time by which what comes there, of gusts of von Karman's
+  /// spectrum, is most like what was measured.
+  double read_sooner_s(std::size_t place) const {
+    constexpr double kStep_s = 0.001;
+    const double way_m = kDelayPlaces.at(place).way_m;
+    double best_s = 0.0;
+    double most = 0.0;
+    for (int step = 0; step * kStep_s < 0.5 * crossing_s(place); ++step) {
+      double alike = 0.0;
+      for (std::size_t i = 0; i < wind::ground::kTileOctaveCount; ++i) {
+        const auto frequency_hz = static_cast<double>(octave_hz_[i]);
+        const double length = frequency_hz * coherence_.length_m / coherence_.speed_m_s;
+        const Complex left = carried(frequency_hz, interval_s_, way_m, coherence_) *
+                             std::conj(carried(frequency_hz, interval_s_, 0.0, coherence_));
+        alike += length / std::pow(1.0 + 70.8 * length * length, 5.0 / 6.0) *
+                 std::real(left * ahead_by(step * kStep_s, frequency_hz));
+      }
+      if (alike <= most) continue;
+      most = alike;
+      best_s = step * kStep_s;
+    }
+    return best_s;
   }
   /// The part of a wave that is left at a place.
   double kept(std::size_t pair, std::size_t place) const {
@@ -254,6 +279,7 @@ class Passage {
   std::vector<Pair> pairs_;
   std::vector<Tone> tones_;
   wind::ground::GustCoherence coherence_;  // at the end
+  wind::ground::OctaveLanes octave_hz_{};
 };
 
 /// Over the ground: way over speed, and a little for what is lost.

@@ -40,6 +40,14 @@ class StrokeRun {
     stroke_.coherence.speed_m_s = std::max(speed_m_s, 0.3);
   }
 
+  /// Of all sensors this band is taken alone: what is lost on the way delays nothing.
+  void take_only(std::size_t band) {
+    for (wind::ground::WindPen& pen : stroke_.pens) {
+      pen.weights.fill(0.0);
+      pen.weights[1 + band] = 1.0;
+    }
+  }
+
   using Set = std::function<void(std::size_t pen, wind::ground::WindSample& now)>;
 
   /// One tick; `set` says what pens measure now.

@@ -80,6 +80,7 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
   ground_.gusts.ahead = wind_from(1.0, settings.climate.mean_direction_deg);
   ground_.gusts.carried = noise_->begin(settings.climate.seed);
   ground_.gusts.gustiness = static_cast<float>(settings.gustiness);
+  ground_.gusts.fronts = turbulence::kFronts;
   stroke_.pen_count = pens_.size();
   stroke_.coherence.longest_wave_m =
       2.0 * std::numbers::pi /

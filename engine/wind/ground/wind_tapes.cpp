@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <type_traits>
 
 #include "engine/base/kernel.hpp"
@@ -19,6 +20,10 @@ constexpr double kTapeEnd_m = 16.0;
 constexpr double kNearby_m = 1.0;
 
 constexpr KernelRows<TapeKernels> kTapeRows = YURAGI_KERNEL_ROWS(tape_kernels);
+
+/// A row's lateness changes by no more than this each time that the row is renewed, every half second: less than a
+/// tick.
+constexpr double kLatenessStep_s = 0.01;
 
 /// Places are processed so many at a time.
 constexpr std::size_t kPlacesAtOnce = 32;
@@ -45,32 +50,57 @@ void weaken(std::array<std::array<float, lanes>, most>& weights, const std::arra
 /// OctaveFollower::Response at the frequency of each octave, band by band, so that all octaves are summed at once.
 class OctaveResponses {
  public:
-  explicit OctaveResponses(const OctaveLanes& octave_hz) noexcept {
+  using Weights = std::array<double, turbulence::OctaveFollower::kBands + 1>;
+
+  OctaveResponses(const OctaveLanes& octave_hz, const GustCoherence& coherence) noexcept {
     for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
       const turbulence::OctaveFollower::Response response(static_cast<double>(octave_hz[i]));
       for (std::size_t band = 0; band < response.real.size(); ++band) {
         real_[band][i] = response.real[band];
         imaginary_[band][i] = response.imaginary[band];
       }
+      turn_rad_s_[i] = 2.0 * std::numbers::pi * static_cast<double>(octave_hz[i]);
+      const double length = static_cast<double>(octave_hz[i]) * coherence.length_m / coherence.speed_m_s;
+      usual_power_[i] = length / std::pow(1.0 + 70.8 * length * length, 5.0 / 6.0);
     }
   }
 
-  /// Of each octave what the bands pass together, each with its weight, as a part of its power.
   using Octaves = std::array<double, kTileOctaveCount>;
-  Octaves power(const std::array<double, turbulence::OctaveFollower::kBands + 1>& weights) const noexcept {
-    Octaves real{};
-    Octaves imaginary{};
+  /// Of each octave what the bands pass together, each with its weight.
+  struct Passed {
+    Octaves real{}, imaginary{};
+    double power(std::size_t i) const noexcept { return real[i] * real[i] + imaginary[i] * imaginary[i]; }
+  };
+  Passed passed(const Weights& weights) const noexcept {
+    Passed sum;
     for (std::size_t band = 0; band < weights.size(); ++band) {
-      for (std::size_t i = 0; i < kTileOctaveCount; ++i) real[i] += weights[band] * real_[band][i];
-      for (std::size_t i = 0; i < kTileOctaveCount; ++i) imaginary[i] += weights[band] * imaginary_[band][i];
+      for (std::size_t i = 0; i < kTileOctaveCount; ++i) sum.real[i] += weights[band] * real_[band][i];
+      for (std::size_t i = 0; i < kTileOctaveCount; ++i) sum.imaginary[i] += weights[band] * imaginary_[band][i];
     }
-    Octaves power;
-    for (std::size_t i = 0; i < kTileOctaveCount; ++i) power[i] = real[i] * real[i] + imaginary[i] * imaginary[i];
-    return power;
+    return sum;
+  }
+
+  /// By how much `left` is later than `all`: where their correlation, sum of S |A| cos(w t - a) over the octaves, is
+  /// largest, A = left conj(all) = |A| exp(-j a), S von Karman's power (W5). Goes there from `late_s`, in Newton's
+  /// steps with the curvature of small angles, which are never too long.
+  double later_s(double late_s, const Passed& left, const Passed& all) const noexcept {
+    double slope = 0.0;
+    double curvature = 0.0;
+    for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
+      const double real = left.real[i] * all.real[i] + left.imaginary[i] * all.imaginary[i];
+      const double imaginary = left.real[i] * all.imaginary[i] - left.imaginary[i] * all.real[i];
+      const double cosine = std::cos(turn_rad_s_[i] * late_s);
+      const double sine = std::sin(turn_rad_s_[i] * late_s);
+      slope += usual_power_[i] * turn_rad_s_[i] * (imaginary * cosine - real * sine);
+      curvature += usual_power_[i] * turn_rad_s_[i] * turn_rad_s_[i] * std::sqrt(real * real + imaginary * imaginary);
+    }
+    if (!(curvature > kNothing)) return late_s;
+    return std::max(late_s + std::clamp(slope / curvature, -kLatenessStep_s, kLatenessStep_s), 0.0);
   }
 
  private:
   std::array<Octaves, turbulence::OctaveFollower::kBands + 1> real_, imaginary_;
+  Octaves turn_rad_s_, usual_power_;
 };
 
 double dot_product(double east, double north, WindVector unit) noexcept {
@@ -133,9 +163,9 @@ void WindTapes::renew_rows(bool all) noexcept {
 
 /// The part that is left at some distances, of each band and of each octave of the noise, which is in several bands.
 void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
-  const OctaveResponses responses(stroke_.octave_hz);
-  std::array<std::array<double, kTileOctaveCount>, WindStroke::kMostPens> all;
-  for (std::size_t tape = 0; tape < pen_count_; ++tape) all[tape] = responses.power(stroke_.pens[tape].weights);
+  const OctaveResponses responses(stroke_.octave_hz, stroke_.coherence);
+  std::array<OctaveResponses::Passed, WindStroke::kMostPens> all;
+  for (std::size_t tape = 0; tape < pen_count_; ++tape) all[tape] = responses.passed(stroke_.pens[tape].weights);
   for (std::size_t row = first_row; row < first_row + count; ++row) {
     const double distance_m = distance_of(row);
     BandLanes bands{};
@@ -149,12 +179,14 @@ void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
       for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
         left[1 + band] *= static_cast<double>(bands[band]);
       }
-      const auto power = responses.power(left);
+      const OctaveResponses::Passed passed = responses.passed(left);
+      here.late_s = responses.later_s(here.late_s, passed, all[tape]);
       for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
         // Where nothing is measured yet: that of its own frequency, so that the first readings count at the pen at
         // once.
         const auto own = [&] { return std::exp(-2.0 * distance_m * static_cast<double>(octave_loss_per_m_[i])); };
-        const double kept = all[tape][i] > kNothing ? power[i] / all[tape][i] : own();
+        const double power = all[tape].power(i);
+        const double kept = power > kNothing ? passed.power(i) / power : own();
         here.octaves[i] = static_cast<float>(std::clamp(kept, 0.0, 1.0));
       }
     }
@@ -181,6 +213,13 @@ inline WindTapes::Found WindTapes::find(std::size_t tape, double east_m, double 
   }
   const double away_m = std::sqrt(away_east_m * away_east_m + away_north_m * away_north_m);
   found.distance_m = stroke_.coherence.distance_m(std::max(downwind_m, 0.0), away_m) + std::max(-downwind_m, 0.0);
+  if (downwind_m > 0.0) {
+    const Row row = row_of(found.distance_m);
+    const double near_s = kept_[tape][row.below].late_s;
+    const double far_s = kept_[tape][row.below + 1].late_s;
+    const double late_m = stroke_.coherence.speed_m_s * (near_s + static_cast<double>(row.fraction) * (far_s - near_s));
+    found.place = tapes_[tape].back(std::max(downwind_m - late_m, 0.0));
+  }
   found.kept = static_cast<float>(std::clamp(found.place.left_m / kTapeEnd_m, 0.0, 1.0));
   return found;
 }

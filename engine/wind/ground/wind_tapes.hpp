@@ -27,9 +27,11 @@ namespace yuragi::wind::ground {
 /// Several places: GustKriging per octave; the mean and the way's noise from all of them, the nearest most.
 ///
 /// This is conditional simulation with the condition at a place, as PyConTurb (Rinker 2018) and TurbSim do it for a
-/// whole recorded box, but it goes on in time. Known limits: frozen noise does not forget along the way, so that with a
-/// sensor of 1 s the fast octaves of two places on one line of wind are more alike than nature's; what bands lose,
-/// causal low passes lose, so that a place 7 m beside the sensor lags by up to 0.6 s.
+/// whole recorded box, but it goes on in time. What bands lose, causal low passes lose: what is left is late. A place
+/// downwind of the pen is ahead of the gusts that are on the tape, and reads them by that much sooner, so that gusts
+/// come when the wind brings them. Known limits: a place 7 m beside the sensor lags by up to 0.6 s; frozen noise does
+/// not forget along the way, so that with a sensor of 1 s the fast octaves of two places on one line of wind are more
+/// alike than nature's.
 ///
 /// Owns the tapes. The table of losses over distance is renewed by a few rows a tick. Thread-safe: reading, yes.
 /// Realtime-safe: all but construction. Every SIMD row computes the same bits.
@@ -78,6 +80,7 @@ class WindTapes {
   struct Kept {
     BandLanes bands{};
     OctaveLanes octaves{};  ///< in power
+    double late_s = 0.0;    ///< by which the bands that are left are later than all of them
   };
   struct Row {
     std::size_t below = 0;

@@ -37,6 +37,25 @@ constexpr std::size_t kStrengthSamples = 128;
 /// An octave weaker than this is not read.
 constexpr float kNothing_m_s = 1e-4F;
 
+/// The mean square of how a vector's components rise along themselves from sample to sample. Between two rows, of which
+/// one rises by a and the other by b, that is (a^2 + a b + b^2) / 3.
+double rise_variance(const noise::VectorTile2& tile) {
+  const std::size_t size = tile.x.size;
+  double squares = 0.0;
+  for (std::size_t row = 0; row < size; ++row) {
+    const std::size_t next_row = (row + 1) % size;
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::size_t next = (i + 1) % size;
+      const auto add = [&squares](float rise, float beside) {
+        squares += static_cast<double>(rise * (2.0F * rise + beside)) / 3.0;
+      };
+      add(tile.x.at(next, row) - tile.x.at(i, row), tile.x.at(next, next_row) - tile.x.at(i, next_row));
+      add(tile.z.at(row, next) - tile.z.at(row, i), tile.z.at(next_row, next) - tile.z.at(next_row, i));
+    }
+  }
+  return squares / static_cast<double>(2 * size * size);
+}
+
 /// `along` and `across` of a unit vector, in the world.
 WindVector turned(WindVector unit, double along, double across) noexcept {
   return {along * unit.u_m_s - across * unit.v_m_s, along * unit.v_m_s + across * unit.u_m_s};
@@ -107,6 +126,9 @@ GustNoise::GustNoise(const GustNoiseSettings& settings)
       const Octave& octave = octaves_[2 * kWayOctaves + tile_octave] = next();
       const double middle_rad_m = std::numbers::sqrt2 * octave.from_rad_m;
       turn_rates_m_23_[tile_octave] = std::cbrt(middle_rad_m * middle_rad_m);
+      const double sample = sample_m(tile_octave);
+      slope_variances_m_2_[tile_octave] =
+          static_cast<float>(rise_variance(tiles_[tile_octave].first) / (sample * sample));
     }
   }
 }
@@ -203,21 +225,24 @@ GustNoise::Values GustNoise::at(const Carried& carried, double east_m, double so
   std::array<Layer, kMaxLayers> all;
   const std::size_t count = layers(moment, all);
   for (const Layer& layer : std::span(all).first(count)) {
-    const Gust gust = read(layer, place_on(torus_of(layer.octave), east_m, south_m));
-    values.along[kFirstTileOctave + layer.octave] += gust.along_m_s;
-    values.across[kFirstTileOctave + layer.octave] += gust.across_m_s;
+    const noise::VectorReading gust = read(layer, place_on(torus_of(layer.octave), east_m, south_m));
+    values.along[kFirstTileOctave + layer.octave] = gust.along;
+    values.across[kFirstTileOctave + layer.octave] = gust.across;
   }
   return values;
 }
 
-GustNoise::Gust GustNoise::read(const Layer& layer, noise::TorusPhase place) noexcept {
+noise::VectorReading GustNoise::read(const Layer& layer, noise::TorusPhase place) noexcept {
   const auto log2_size = static_cast<unsigned>(std::countr_zero(layer.tile->x.size));
   const noise::TorusPhase there = place - layer.offset;
-  const noise::TorusCorners corners = noise::torus_corners(log2_size, there.x, there.z);
-  const float x = noise::read_corners(layer.tile->x.values.data(), corners);
-  const float z = noise::read_corners(layer.tile->z.values.data(), corners);
-  return {layer.along_m_s * (layer.ahead_x * x + layer.ahead_z * z),
-          layer.across_m_s * (layer.ahead_z * x - layer.ahead_x * z)};
+  const noise::TorusCorners at = noise::torus_corners(log2_size, there.x, there.z);
+  noise::TorusSamples x = noise::samples_at(layer.tile->x.values.data(), at);
+  noise::TorusSamples z = noise::samples_at(layer.tile->z.values.data(), at);
+  if (layer.quarter != nullptr) {
+    x = noise::mixed(x, layer.cosine, noise::samples_at(layer.quarter->x.values.data(), at), layer.sine);
+    z = noise::mixed(z, layer.cosine, noise::samples_at(layer.quarter->z.values.data(), at), layer.sine);
+  }
+  return noise::read_vector(x, z, at.fraction_x, at.fraction_z, layer.ahead_x, layer.ahead_z);
 }
 
 WindVector GustNoise::everywhere(const Moment& moment) const noexcept {
@@ -231,26 +256,37 @@ WindVector GustNoise::everywhere(const Moment& moment) const noexcept {
   return turned(moment.ahead, along, across);
 }
 
+/// From the longest waves to the shortest: the second chain's octave is longer than the first's.
 std::size_t GustNoise::layers(const Moment& moment, std::span<Layer, kMaxLayers> out) const noexcept {
   const auto ahead = on_axes(moment.ahead);
   const Carried& carried = moment.carried;
+  const float even = 1.0F / std::sqrt(1.0F + moment.fronts * moment.fronts);
+  float fall_variance = 0.0F;  // of the octaves so far, 1/s^2
   std::size_t count = 0;
-  for (std::size_t i = 0; i < 2 * kTileOctaves; ++i) {
+  for (std::size_t place = 0; place < 2 * kTileOctaves; ++place) {
+    const std::size_t i = place / 2 + (place % 2 == 0 ? kTileOctaves : 0);
     const float along_m_s = moment.along_m_s[kFirstTileOctave + i];
     const float across_m_s = moment.across_m_s[kFirstTileOctave + i];
     if (along_m_s < kNothing_m_s && across_m_s < kNothing_m_s) continue;
     const std::size_t torus = torus_of(i);
-    const auto add = [&](const noise::VectorTile2& tile, float part) {
-      out[count++] = {.tile = &tile,
-                      .octave = i,
-                      .offset = carried.tiles[torus].phase(),
-                      .ahead_x = ahead[torus][0],
-                      .ahead_z = ahead[torus][1],
-                      .along_m_s = part * along_m_s,
-                      .across_m_s = part * across_m_s};
-    };
-    add(tiles_[i].first, carried.eddies.cosine[i]);
-    if (evolves_) add(tiles_[i].quarter, carried.eddies.sine[i]);
+    Layer& layer = out[count++];
+    layer = {.tile = &tiles_[i].first,
+             .quarter = evolves_ ? &tiles_[i].quarter : nullptr,
+             .cosine = carried.eddies.cosine[i],
+             .sine = carried.eddies.sine[i],
+             .octave = i,
+             .offset = carried.tiles[torus].phase(),
+             .ahead_x = ahead[torus][0],
+             .ahead_z = ahead[torus][1],
+             .along_m_s = along_m_s,
+             .across_m_s = across_m_s};
+    if (moment.fronts == 0.0F || i % kTileOctaves < kLongOctaves) continue;
+    layer.samples_per_m = static_cast<float>(1.0 / sample_m(i));
+    if (fall_variance > 0.0F) {
+      layer.strength = even;
+      layer.strength_per_fall_s = even * moment.fronts / std::sqrt(fall_variance);
+    }
+    fall_variance += along_m_s * along_m_s * slope_variances_m_2_[i];
   }
   return count;
 }
@@ -262,10 +298,13 @@ WindVector GustNoise::local(const Moment& moment, double east_m, double south_m)
   const std::size_t count = layers(moment, all);
   float along = 0.0F;
   float across = 0.0F;
+  float fall = 0.0F;
   for (const Layer& layer : std::span(all).first(count)) {
-    const Gust gust = read(layer, places[torus_of(layer.octave)]);
-    along += gust.along_m_s;
-    across += gust.across_m_s;
+    const noise::VectorReading gust = read(layer, places[torus_of(layer.octave)]);
+    const float strength = layer.strength + layer.strength_per_fall_s * fall;
+    along += strength * (layer.along_m_s * gust.along);
+    across += strength * (layer.across_m_s * gust.across);
+    fall -= layer.samples_per_m * (layer.along_m_s * gust.rise);
   }
   const float strength = envelope(moment, east_m, south_m);
   return turned(moment.ahead, static_cast<double>(strength * along), static_cast<double>(strength * across));

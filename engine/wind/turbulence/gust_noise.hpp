@@ -8,10 +8,14 @@
 
 #include "engine/noise/noise_tile.hpp"
 #include "engine/noise/torus.hpp"
+#include "engine/noise/torus_read.hpp"
 #include "engine/noise/vector_noise.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi::wind::turbulence {
+
+/// GustNoise::Moment::fronts that gives the noise the skewness of turbulence (engine/wind/README.md W42).
+inline constexpr float kFronts = 0.14F;
 
 /// Parameters of the noise of gusts.
 struct GustNoiseSettings {
@@ -19,7 +23,7 @@ struct GustNoiseSettings {
   std::size_t samples = 512;  ///< an edge of the largest tiles: a power of two, 128 to 2048
   std::uint64_t seed = 1;
   /// Eddies turn over while they travel, so that a gust does not come back unchanged when its tile has wrapped. Twice
-  /// the memory, and two tiles to read where a frozen octave has one.
+  /// the memory, and twice as many samples to read.
   bool evolves = false;
 };
 
@@ -42,6 +46,10 @@ struct GustNoiseSettings {
 /// Where it evolves, an octave of a tile is two tiles mixed, cos(a) of one and sin(a) of the other (VectorNoise2), and
 /// its angle a advances by w = turnover |k|^(2/3) a second, |k| in the octave's middle: an eddy's own rate (Kolmogorov
 /// 1941), turnover being the cube root of the dissipation, eddy_turnover_m23_s().
+///
+/// Gusts come in fronts: with a moment's `fronts` f above 0, an octave of the middle and short tiles is stronger where
+/// the longer ones of them rise as the wind carries them, weaker where they fall, by (1 + f d) / sqrt(1 + f^2) (W42).
+/// d has variance 1: it is -d(along)/d(ahead) of those octaves at the moment's strengths, over its deviation.
 ///
 /// Gusts come in bursts: with a moment's gustiness above 0, all octaves of the tiles are stronger together in some
 /// places and weaker in others, by envelope() (W16). It travels with them.
@@ -124,6 +132,7 @@ class GustNoise {
     WindVector ahead{0.0, 1.0};  ///< unit vector downwind; `across` is to the left of it
     std::array<float, kOctaves> along_m_s{}, across_m_s{};
     float gustiness = 0.0F;  ///< how unequal the gusts of places are: of envelope(); 0: all alike
+    float fronts = 0.0F;     ///< how much stronger gusts are where longer ones rise than where they fall; 0: as strong
   };
   /// The gusts that all places have alike: the octaves of the way.
   WindVector everywhere(const Moment& moment) const noexcept;
@@ -136,17 +145,20 @@ class GustNoise {
   /// 1990, Velocity probability density functions of high Reynolds number turbulence: a lognormal strength).
   float envelope(const Moment& moment, double east_m, double south_m) const noexcept;
 
-  /// The gusts of a place as layers, to be read at many places at once and added up, without the envelope: a tile, how
-  /// far it has been carried, which way `ahead` is on its axes, and its weights in m/s along that and across it. A
-  /// place is read at place_on(torus_of(layer.octave), ...) - offset. An octave that evolves has two layers.
+  /// The gusts of a place as layers, to be read at many places at once and added up in their order, without the
+  /// envelope: operators::VectorLayer has the meaning of most. A place is read at place_on(torus_of(layer.octave), ...)
+  /// - offset.
   struct Layer {
     const noise::VectorTile2* tile = nullptr;
+    const noise::VectorTile2* quarter = nullptr;  ///< null: nothing evolves
+    float cosine = 1.0F, sine = 0.0F;
     std::size_t octave = 0;  ///< of the tiles, counted from the first chain's longest
     noise::TorusPhase offset;
-    float ahead_x = 0.0F, ahead_z = 0.0F;
+    float ahead_x = 0.0F, ahead_z = 0.0F;  ///< which way the wind blows, on the tile's axes
     float along_m_s = 0.0F, across_m_s = 0.0F;
+    float strength = 1.0F, strength_per_fall_s = 0.0F, samples_per_m = 0.0F;
   };
-  static constexpr std::size_t kMaxLayers = 4 * kTileOctaves;  ///< half as many if nothing evolves
+  static constexpr std::size_t kMaxLayers = 2 * kTileOctaves;
 
   /// Writes those that have a weight; how many they are.
   std::size_t layers(const Moment& moment, std::span<Layer, kMaxLayers> out) const noexcept;
@@ -167,11 +179,7 @@ class GustNoise {
   using Ways = std::array<noise::NoiseTile1, 2 * kWayOctaves>;
   using Tiles = std::array<noise::VectorNoise2, 2 * kTileOctaves>;
 
-  /// Along the wind and to the left of it.
-  struct Gust {
-    float along_m_s = 0.0F, across_m_s = 0.0F;
-  };
-  static Gust read(const Layer& layer, noise::TorusPhase place) noexcept;
+  static noise::VectorReading read(const Layer& layer, noise::TorusPhase place) noexcept;
 
   static Ways make_ways(std::uint64_t seed);
   static Tiles make_tiles(const GustNoiseSettings& settings);
@@ -181,7 +189,8 @@ class GustNoise {
   std::array<double, 2> way_periods_m_;
   std::array<Torus, kTori> tori_;
   std::array<Octave, kOctaves> octaves_{};
-  std::array<double, 2 * kTileOctaves> turn_rates_m_23_{};  ///< |k|^(2/3) in the middle of each octave of the tiles
+  std::array<double, 2 * kTileOctaves> turn_rates_m_23_{};     ///< |k|^(2/3) in the middle of each octave of the tiles
+  std::array<float, 2 * kTileOctaves> slope_variances_m_2_{};  ///< of how a component of an octave changes along itself
   bool evolves_;
   Ways ways_along_, ways_across_;  ///< of both chains
   Tiles tiles_;

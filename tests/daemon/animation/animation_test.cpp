@@ -165,14 +165,18 @@ TEST(AnimationTest, AFadeOfNoTimeIsDoneAtTheNextTickAndASceneThatIsNotThereIsIgn
 /// A wind toward north of 6 m/s that is measured 20 m south of the middle, with a gust after 20 s.
 class MeasuredGust {
  public:
-  MeasuredGust() { run_.blow({0.0, 6.0}); }
+  MeasuredGust() {
+    run_.blow({0.0, 6.0});
+    run_.take_only(kBand);
+  }
   wind::ground::DrivingWind next() {
     const bool is_gust = ++tick_ > 20 * 60;
-    run_.step([is_gust](std::size_t, wind::ground::WindSample& now) { now.north_m_s[3] = is_gust ? 4.0F : 0.0F; });
+    run_.step([is_gust](std::size_t, wind::ground::WindSample& now) { now.north_m_s[kBand] = is_gust ? 4.0F : 0.0F; });
     return {.state = {.wind = run_.wind()}, .ground = run_.wind(), .stroke = run_.stroke()};
   }
 
  private:
+  static constexpr std::size_t kBand = 3;
   StrokeRun run_{{{0.0, 20.0}}};
   int tick_ = 0;
 };

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -80,6 +81,65 @@ TEST_P(VectorSampleJobOnEachRow, ReadsTheSameBitsAsOnePlaceAtATime) {
   }
 }
 
+/// Of a tile that turns: two fields of unlike waves.
+noise::VectorNoise2 turning(double from_cycles) {
+  return noise::VectorNoiseMaker()
+      .make({.size = 64, .seed = 11, .from_cycles = from_cycles, .to_cycles = 2.0 * from_cycles}, true)
+      .value();
+}
+
+TEST_P(VectorSampleJobOnEachRow, ALayerIsStrongerWhereThoseBeforeItFallAhead) {
+  constexpr float kCosine = 0.28F, kSine = 0.96F, kStrength = 0.9F, kPerFall_s = 0.4F, kSamplesPerM = 2.0F;
+  const noise::VectorNoise2 slow = turning(1.0);
+  const noise::VectorNoise2 quick = turning(4.0);
+  const Places places(33);  // also some that are read one by one
+  const auto layer_of = [&](const noise::VectorNoise2& noise) {
+    return VectorLayer{.tile = &noise.first,
+                       .quarter = &noise.quarter,
+                       .cosine = kCosine,
+                       .sine = kSine,
+                       .place_x = places.x,
+                       .place_z = places.z,
+                       .ahead_x = kAheadX,
+                       .ahead_z = kAheadZ,
+                       .along_weights = places.along_weights};
+  };
+  const auto read = [&](const std::vector<VectorLayer>& layers) {
+    std::array<std::vector<float>, 2> out = {std::vector<float>(places.x.size()), std::vector<float>(places.x.size())};
+    const VectorSampleJob job{.layers = layers, .row = GetParam(), .out_along = out[0], .out_across = out[1]};
+    EXPECT_EQ(job.run(), VectorSampleJob::Problem::kNone);
+    return out;
+  };
+  VectorLayer first = layer_of(slow);
+  VectorLayer second = layer_of(quick);
+  const auto slow_only = read({first});
+  const auto quick_only = read({second});
+  first.samples_per_m = kSamplesPerM;
+  second.strength = kStrength;
+  second.strength_per_fall_s = kPerFall_s;
+  const auto both = read({first, second});
+
+  for (std::size_t i = 0; i < places.x.size(); ++i) {
+    // What the first has ahead and behind, within the cell, where it is nearly straight.
+    const auto slow_at = [&](double samples) {
+      const auto step = [samples](float ahead) {
+        return static_cast<std::uint32_t>(static_cast<std::int64_t>(samples * static_cast<double>(ahead) * 0x1p26));
+      };
+      const noise::TorusPhase at{places.x[i] + step(kAheadX), places.z[i] + step(kAheadZ)};
+      const auto mixed = [&](const noise::NoiseTile2& tile, const noise::NoiseTile2& quarter) {
+        return kCosine * noise::read_noise(tile, at) + kSine * noise::read_noise(quarter, at);
+      };
+      return kAheadX * mixed(slow.first.x, slow.quarter.x) + kAheadZ * mixed(slow.first.z, slow.quarter.z);
+    };
+    EXPECT_NEAR(slow_only[0][i], places.along_weights[i] * slow_at(0.0), 1e-5F);
+    const float fall = -kSamplesPerM * places.along_weights[i] * (slow_at(0.5) - slow_at(-0.5));
+    const float strength = kStrength + kPerFall_s * fall;
+    for (std::size_t component = 0; component < 2; ++component) {
+      EXPECT_NEAR(both[component][i] - slow_only[component][i], strength * quick_only[component][i], 0.06F);
+    }
+  }
+}
+
 TEST(VectorSampleJob, WithoutLayersAllIsStill) {
   std::vector<float> along(5, 1.0F), across(5, 1.0F);
   EXPECT_EQ((VectorSampleJob{.layers = {}, .out_along = along, .out_across = across}.run()),
@@ -104,6 +164,16 @@ TEST(VectorSampleJob, RefusesWhatCannotBeRead) {
   const noise::VectorTile2 lame{.x = tile.x, .z = {}};
   layer.tile = &lame;
   EXPECT_EQ(problem_of(layer), VectorSampleJob::Problem::kTileNotReadable);
+  layer = good;
+  layer.quarter = &lame;
+  EXPECT_EQ(problem_of(layer), VectorSampleJob::Problem::kTileNotReadable);
+  const noise::VectorTile2 small =
+      noise::VectorNoiseMaker().make({.size = 32, .seed = 7, .from_cycles = 2.0, .to_cycles = 4.0}, false)->first;
+  layer.quarter = &small;
+  EXPECT_EQ(problem_of(layer), VectorSampleJob::Problem::kTileNotReadable);
+  layer = good;
+  layer.strength_per_fall_s = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(problem_of(layer), VectorSampleJob::Problem::kWeightNotFinite);
   layer = good;
   layer.place_z = layer.place_z.first(3);
   EXPECT_EQ(problem_of(layer), VectorSampleJob::Problem::kSizesDiffer);

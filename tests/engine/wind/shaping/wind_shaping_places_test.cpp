@@ -17,6 +17,7 @@ class MeasuredWind {
  public:
   explicit MeasuredWind(double speed_m_s = 6.0) {
     run_.blow({0.0, speed_m_s});
+    run_.take_only(kBand);
     gusts_.ahead = {0.0, 1.0};
     gusts_.carried = shared_gusts()->begin(1);
     gusts_.along_m_s.fill(0.2F);
@@ -28,7 +29,7 @@ class MeasuredWind {
     const double now_m_s = gust_m_s * std::sin(2.0 * std::numbers::pi * 0.1 * time_s_);
     time_s_ += StrokeRun::kTick_s;
     run_.step([now_m_s](std::size_t, ground::WindSample& now) {
-      now.north_m_s[5] = static_cast<float>(now_m_s);
+      now.north_m_s[kBand] = static_cast<float>(now_m_s);
       now.known_along.fill(0.8F);
       now.known_across.fill(0.6F);
     });
@@ -48,6 +49,7 @@ class MeasuredWind {
   }
 
  private:
+  static constexpr std::size_t kBand = 5;
   StrokeRun run_{{{0.0, 20.0}}};
   turbulence::GustNoise::Moment gusts_;
   double time_s_ = 0.0;
