@@ -29,7 +29,7 @@ constexpr double kChange_s = 300.0;  ///< here things happen
 constexpr double kChangeEnd_s = 660.0;
 constexpr double kRecordEnd_s = 1800.0;
 constexpr double kSilenceEnd_s = kChange_s + 100.0;
-constexpr std::uint64_t kGroundSeeds = 2;
+constexpr std::uint64_t kGroundSeeds = 3;
 constexpr double kMostStep = 1.5;
 constexpr double kMostSpeed = 1.3;
 
