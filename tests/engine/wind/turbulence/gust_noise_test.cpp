@@ -450,7 +450,7 @@ TEST(GustNoise, RisesFasterThanItFallsByKolmogorovsLaw) {
     even.ahead = {std::cos(angle_rad), std::sin(angle_rad)};
     GustNoise::Moment gusts = even;
     gusts.fronts = kFronts;
-    for (const double distance_m : {0.7, 1.4, 3.0, 7.0, 14.0}) {
+    for (const double distance_m : {0.7, 3.0, 14.0}) {
       const Change without = change_over(evolving, even, distance_m);
       const Change with = change_over(evolving, gusts, distance_m);
       EXPECT_NEAR(without.skewness, 0.0, 0.05) << distance_m << " m";
