@@ -92,7 +92,8 @@ TEST(WindTapes, TheNoiseGrowsWithTheDistanceInEachOctaveInEveryDirection) {
   for (const WindVector toward : {WindVector{0.0, -1.0}, WindVector{1.0, 0.0}, WindVector{0.0, 1.0},
                                   WindVector{0.6, -0.8}, WindVector{-0.6, 0.8}}) {
     WindTapes::Reading before = one.tapes.at(0.0, 0.0);
-    for (double away_m = 0.01; away_m < 400.0; away_m *= 1.07) {
+    for (int step = 0; step < 157; ++step) {
+      const double away_m = 0.01 * std::pow(1.07, step);  // to 400 m
       const WindTapes::Reading now = one.tapes.at(away_m * toward.u_m_s, away_m * toward.v_m_s);
       for (std::size_t i = 0; i < kTileOctaveCount; ++i) {
         ASSERT_GE(now.noise_along[i], before.noise_along[i] - 1e-6F) << i << ' ' << away_m;
@@ -168,7 +169,8 @@ TEST(WindTapes, TowardTheEndOfTheTapeAllBecomesNoiseWithoutAnEdge) {
   OnePen one(1.0, 0.9);
   EXPECT_GT(one.tapes.at(0.0, -238.0).gusts.v_m_s, 1.0) << "weather";
   double before = one.tapes.at(0.0, -238.0).gusts.v_m_s;
-  for (double away_m = 238.0; away_m < 300.0; away_m += 0.25) {
+  for (int step = 0; step < 248; ++step) {
+    const double away_m = 238.0 + 0.25 * step;
     const double now = one.tapes.at(0.0, -away_m).gusts.v_m_s;
     ASSERT_LT(std::abs(now - before), 0.1);
     before = now;
@@ -183,7 +185,8 @@ TEST(WindTapes, IsContinuousOverTheGround) {
   OnePen one;
   for (const WindVector toward : {WindVector{0.0, -1.0}, WindVector{1.0, 0.0}, WindVector{-0.6, 0.8}}) {
     double before = one.tapes.at(-5.0 * toward.u_m_s, -5.0 * toward.v_m_s).gusts.v_m_s;
-    for (double away_m = -5.0; away_m < 5.0; away_m += 0.001) {
+    for (int step = -5000; step < 5000; ++step) {
+      const double away_m = 0.001 * step;
       const double now = one.tapes.at(away_m * toward.u_m_s, away_m * toward.v_m_s).gusts.v_m_s;
       ASSERT_LT(std::abs(now - before), 0.05) << away_m;
       before = now;
