@@ -279,7 +279,7 @@ TEST(WindGrid, SkippedTicksLeaveNoLineBehind) {
 struct MeasuredGround {
   explicit MeasuredGround(std::vector<wind::WindVector> pens, float noise_m_s) : run(std::move(pens)) {
     run.blow({0.0, 6.0});
-    for (int tick = 0; tick < 1800; ++tick) {
+    for (int tick = 0; tick < 1860; ++tick) {  // which ends in a gust
       run.tick(tapes, [tick](std::size_t pen, wind::ground::WindSample& now) {
         for (std::size_t band = 2; band < 8; ++band) {
           const double phase =
