@@ -95,7 +95,8 @@ TEST(WindGrid, AGridOfPlacesIsReadToTheSameBitsAsEachOfThem) {
     std::vector<float> z_m;
     for (std::size_t i = 0; i < 30 * kColumns; ++i) {
       x_m.push_back(side_m * static_cast<float>(i % kColumns) / 49.0F + 3.0F);
-      z_m.push_back(side_m * static_cast<float>(i / kColumns) / 29.0F - 4.0F);
+      const std::size_t line = i / kColumns;
+      z_m.push_back(side_m * static_cast<float>(line) / 29.0F - 4.0F);
     }
     WindGrid as_grid(shared_gusts(), x_m, z_m, best_simd_row(), 0.5, kColumns);
     WindGrid as_places(shared_gusts(), x_m, z_m, best_simd_row());
