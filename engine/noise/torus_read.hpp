@@ -68,6 +68,20 @@ struct TorusSamples {
           a_part * a.south_west + b_part * b.south_west, a_part * a.south_east + b_part * b.south_east};
 }
 
+/// A value between four samples, and how much it rises from one sample to the next along x and along z.
+struct TorusSlope {
+  float value, along_x, along_z;
+};
+
+[[gnu::always_inline]] inline TorusSlope slope_at(const TorusSamples& at, float fraction_x, float fraction_z) noexcept {
+  const float north_rise = at.north_east - at.north_west;
+  const float south_rise = at.south_east - at.south_west;
+  const float north = at.north_west + fraction_x * north_rise;
+  const float south = at.south_west + fraction_x * south_rise;
+  const float along_z = south - north;
+  return {north + fraction_z * along_z, between(north_rise, south_rise, fraction_z), along_z};
+}
+
 /// A noise vector at a place: its part along a unit vector, its part to the left of that (from x to -z), and by how
 /// much the first rises along the unit vector, per distance of two samples.
 struct VectorReading {
@@ -76,19 +90,8 @@ struct VectorReading {
 
 [[gnu::always_inline]] inline VectorReading read_vector(const TorusSamples& x, const TorusSamples& z, float fraction_x,
                                                         float fraction_z, float ahead_x, float ahead_z) noexcept {
-  struct Slope {
-    float value, along_x, along_z;
-  };
-  const auto slope = [=](const TorusSamples& at) {
-    const float north_rise = at.north_east - at.north_west;
-    const float south_rise = at.south_east - at.south_west;
-    const float north = at.north_west + fraction_x * north_rise;
-    const float south = at.south_west + fraction_x * south_rise;
-    const float along_z = south - north;
-    return Slope{north + fraction_z * along_z, between(north_rise, south_rise, fraction_z), along_z};
-  };
-  const Slope of_x = slope(x);
-  const Slope of_z = slope(z);
+  const TorusSlope of_x = slope_at(x, fraction_x, fraction_z);
+  const TorusSlope of_z = slope_at(z, fraction_x, fraction_z);
   return {ahead_x * of_x.value + ahead_z * of_z.value, ahead_z * of_x.value - ahead_x * of_z.value,
           ahead_x * ahead_x * of_x.along_x + ahead_x * ahead_z * (of_x.along_z + of_z.along_x) +
               ahead_z * ahead_z * of_z.along_z};
