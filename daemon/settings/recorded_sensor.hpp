@@ -7,7 +7,7 @@
 
 namespace yuragi::daemon::settings {
 
-/// What the driver of a recorded sensor tells of it. As it is: the driver tells nothing, or driver or options are
+/// What the driver of a recorded sensor states about it. Default: it states nothing, or driver or options are
 /// unknown here.
 struct RecordedSource {
   /// It speaks on change only: for how long, s, its silence means that nothing has changed

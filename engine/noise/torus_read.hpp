@@ -97,4 +97,24 @@ struct VectorReading {
               ahead_z * ahead_z * of_z.along_z};
 }
 
+/// The same at one place of a vector's two tiles, cosine * first + sine * quarter; `quarter_x` null: the first alone.
+struct VectorTiles {
+  const float* x;
+  const float* z;
+  const float* quarter_x;
+  const float* quarter_z;
+  float cosine, sine;
+};
+
+[[gnu::always_inline]] inline VectorReading read_vector(const VectorTiles& tiles, const TorusCorners& at, float ahead_x,
+                                                        float ahead_z) noexcept {
+  TorusSamples x = samples_at(tiles.x, at);
+  TorusSamples z = samples_at(tiles.z, at);
+  if (tiles.quarter_x != nullptr) {
+    x = mixed(x, tiles.cosine, samples_at(tiles.quarter_x, at), tiles.sine);
+    z = mixed(z, tiles.cosine, samples_at(tiles.quarter_z, at), tiles.sine);
+  }
+  return read_vector(x, z, at.fraction_x, at.fraction_z, ahead_x, ahead_z);
+}
+
 }  // namespace yuragi::noise

@@ -216,14 +216,9 @@ void sample(const SampleKernelArguments& arguments) noexcept {
   const noise::TorusCorners at =
       noise::torus_corners(layer.places.log2_size, layer.places.x[place] - layer.places.offset_x,
                            layer.places.z[place] - layer.places.offset_z);
-  noise::TorusSamples x = noise::samples_at(layer.tile_x, at);
-  noise::TorusSamples z = noise::samples_at(layer.tile_z, at);
-  if (layer.quarter_x != nullptr) {
-    x = noise::mixed(x, layer.cosine, noise::samples_at(layer.quarter_x, at), layer.sine);
-    z = noise::mixed(z, layer.cosine, noise::samples_at(layer.quarter_z, at), layer.sine);
-  }
-  const noise::VectorReading read =
-      noise::read_vector(x, z, at.fraction_x, at.fraction_z, layer.ahead_x, layer.ahead_z);
+  const noise::VectorTiles tiles = {layer.tile_x,    layer.tile_z, layer.quarter_x,
+                                    layer.quarter_z, layer.cosine, layer.sine};
+  const noise::VectorReading read = noise::read_vector(tiles, at, layer.ahead_x, layer.ahead_z);
   return plus_layer(sum, layer, read, weight_at(layer.along, layer.along_weights, place),
                     weight_at(layer.across, layer.across_weights, place));
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What the wind of slow stations is like: one table of sampling, interval and wind, from outside and by numpy alone.
 
-usage: station_table.py YURAGI [--before OLD_YURAGI] [--seeds N] [--winds NAME,...] [--intervals S,...]
+usage: station_table.py YURAGI [--before OLD_YURAGI] [--seeds N] [--winds NAME;...] [--intervals S,...]
 
 Winds: both recordings of ../shared/data/sonic, and synthetic winds of von Karman's spectrum (speed, intensity and length by their
 names), N seeds each. A station reports means, or instantaneous wind, at an interval; `yuragi wind` makes the wind of its readings,
@@ -21,17 +21,18 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "e2e"))
 import ground_wind_analysis as gw  # noqa: E402
+from ground_wind_test import GUSTY, MOST_TURN_DEG, STEADY, parsed  # noqa: E402
 from wind_record_test import SEGMENT_S, density  # noqa: E402
 
 SETTLED_S = 600  # the fit's memory
-MOST_TURN_DEG, MOST_WINDOWS = 40, 4  # of the windows in which places are compared
+MOST_WINDOWS = 4  # in which places are compared
 TRAVEL_M = 20.0
 ACROSS_M = (1, 3, 7, 20)
 SKEWNESS_S = (0.2, 1.0, 5.0)
 OCTAVES_HZ = tuple(0.6 / 2**i for i in range(7, -1, -1))
 SAMPLINGS = ("mean", "instant")
 INTERVALS_S = (1, 5, 14, 60)
-RECORDS = {"13:30": "20180720T133000", "14:00": "20180720T140000"}
+RECORDS = {"13:30": GUSTY, "14:00": STEADY}
 SYNTHETIC = {  # speed, m/s; turbulence intensity; length, m
     "5 m/s, TI 0.2, 40 m": (5.0, 0.2, 40.0),
     "3 m/s, TI 0.5, 15 m": (3.0, 0.5, 15.0),
@@ -100,13 +101,8 @@ def made(case, real, places, folder):
         command += ["--value", case.sampling]
     command += [f"--place={east},{south}" for east, south in places]
     text = subprocess.run(command, check=True, capture_output=True).stdout
-    rows = text[text.index(b"\n", text.index(b"time_s")) + 1 :]
-    for word in (b"default", b"handover", b"live"):
-        rows = rows.replace(word, b"0")
-    values = np.fromstring(rows.replace(b"\n", b","), sep=",").reshape(-1, 7 + 2 * len(places))
     # The recording begins with its first reading, at the end of the first interval.
-    before = case.interval_s * gw.RATE_HZ - 1
-    return before, values[:, 1:3], np.moveaxis(values[:, 7:].reshape(len(values), len(places), 2), 0, 1)
+    return case.interval_s * gw.RATE_HZ - 1, *parsed(text, len(places))
 
 
 def standardized(changes, power):
@@ -178,10 +174,6 @@ def band_power(wind):
     return np.array([np.sum(power[(frequency >= low) & (frequency < 2 * low)]) for low in OCTAVES_HZ[:-1]])
 
 
-def work(case):
-    return figures(case)
-
-
 def misses(sampling, interval_s, values, octaves):
     """What of a row is out of its bound."""
     names = []
@@ -220,7 +212,7 @@ def main():
     options.add_argument("yuragi")
     options.add_argument("--before", metavar="OLD_YURAGI")
     options.add_argument("--seeds", type=int, default=32)
-    options.add_argument("--winds", help="a part of the names, separated by ;")
+    options.add_argument("--winds", help="some of their names, separated by ;")
     options.add_argument("--intervals", help="s, separated by commas")
     options.add_argument("--records", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parents[3] / "shared/data/sonic")
     options = options.parse_args()
@@ -244,7 +236,7 @@ def main():
         for name, path, sampling, interval_s, wind in keys:
             seeds = range(1, options.seeds + 1)
             cases = [Case(path, knows_value[path], wind, seed, sampling, interval_s, records.get(wind)) for seed in seeds]
-            print(row(name, sampling, interval_s, wind, pool.map(work, cases, chunksize=1)), flush=True)
+            print(row(name, sampling, interval_s, wind, pool.map(figures, cases, chunksize=1)), flush=True)
 
 
 if __name__ == "__main__":

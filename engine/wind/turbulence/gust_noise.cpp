@@ -41,11 +41,12 @@ constexpr float kNothing_m_s = 1e-4F;
 /// one rises by a and the other by b, that is (a^2 + a b + b^2) / 3.
 double rise_variance(const noise::VectorTile2& tile) {
   const std::size_t size = tile.x.size;
+  const std::size_t last = size - 1;  // a power of two less one
   double squares = 0.0;
   for (std::size_t row = 0; row < size; ++row) {
-    const std::size_t next_row = (row + 1) % size;
+    const std::size_t next_row = (row + 1) & last;
     for (std::size_t i = 0; i < size; ++i) {
-      const std::size_t next = (i + 1) % size;
+      const std::size_t next = (i + 1) & last;
       const auto add = [&squares](float rise, float beside) {
         squares += static_cast<double>(rise * (2.0F * rise + beside)) / 3.0;
       };
@@ -126,6 +127,7 @@ GustNoise::GustNoise(const GustNoiseSettings& settings)
       const Octave& octave = octaves_[2 * kWayOctaves + tile_octave] = next();
       const double middle_rad_m = std::numbers::sqrt2 * octave.from_rad_m;
       turn_rates_m_23_[tile_octave] = std::cbrt(middle_rad_m * middle_rad_m);
+      if (i < kLongOctaves) continue;  // they make no fronts
       const double sample = sample_m(tile_octave);
       slope_variances_m_2_[tile_octave] =
           static_cast<float>(rise_variance(tiles_[tile_octave].first) / (sample * sample));
@@ -236,13 +238,13 @@ noise::VectorReading GustNoise::read(const Layer& layer, noise::TorusPhase place
   const auto log2_size = static_cast<unsigned>(std::countr_zero(layer.tile->x.size));
   const noise::TorusPhase there = place - layer.offset;
   const noise::TorusCorners at = noise::torus_corners(log2_size, there.x, there.z);
-  noise::TorusSamples x = noise::samples_at(layer.tile->x.values.data(), at);
-  noise::TorusSamples z = noise::samples_at(layer.tile->z.values.data(), at);
-  if (layer.quarter != nullptr) {
-    x = noise::mixed(x, layer.cosine, noise::samples_at(layer.quarter->x.values.data(), at), layer.sine);
-    z = noise::mixed(z, layer.cosine, noise::samples_at(layer.quarter->z.values.data(), at), layer.sine);
-  }
-  return noise::read_vector(x, z, at.fraction_x, at.fraction_z, layer.ahead_x, layer.ahead_z);
+  const noise::VectorTiles tiles = {.x = layer.tile->x.values.data(),
+                                    .z = layer.tile->z.values.data(),
+                                    .quarter_x = layer.quarter == nullptr ? nullptr : layer.quarter->x.values.data(),
+                                    .quarter_z = layer.quarter == nullptr ? nullptr : layer.quarter->z.values.data(),
+                                    .cosine = layer.cosine,
+                                    .sine = layer.sine};
+  return noise::read_vector(tiles, at, layer.ahead_x, layer.ahead_z);
 }
 
 WindVector GustNoise::everywhere(const Moment& moment) const noexcept {
