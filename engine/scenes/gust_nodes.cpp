@@ -122,22 +122,24 @@ void GustNodes::read_tiles(const wind::turbulence::GustNoise::Moment& moment, co
     const Nodes& nodes = is_slow ? coarse_ : fine_;
     const NodeRange& range = is_slow ? coarse_range : fine_range;
     const std::size_t torus = wind::turbulence::GustNoise::torus_of(layer.octave);
-    (is_slow ? coarse[coarse_count++] : fine[fine_count++]) = {.tile = layer.tile,
-                                                               .quarter = layer.quarter,
-                                                               .cosine = layer.cosine,
-                                                               .sine = layer.sine,
-                                                               .place_x = range.of(std::span(nodes.on_torus_x[torus])),
-                                                               .place_z = range.of(std::span(nodes.on_torus_z[torus])),
-                                                               .offset = layer.offset,
-                                                               .ahead_x = layer.ahead_x,
-                                                               .ahead_z = layer.ahead_z,
-                                                               .along = held * layer.along_m_s,
-                                                               .across = held * layer.across_m_s,
-                                                               .along_weights = range.of(weights.along[layer.octave]),
-                                                               .across_weights = range.of(weights.across[layer.octave]),
-                                                               .strength = layer.strength,
-                                                               .strength_per_fall_s = layer.strength_per_fall_s,
-                                                               .samples_per_m = layer.samples_per_m};
+    // Not in one expression: gcc 12 leaves arguments unset where a conditional is assigned a list.
+    operators::VectorLayer& sampled = is_slow ? coarse[coarse_count++] : fine[fine_count++];
+    sampled = {.tile = layer.tile,
+               .quarter = layer.quarter,
+               .cosine = layer.cosine,
+               .sine = layer.sine,
+               .place_x = range.of(std::span(nodes.on_torus_x[torus])),
+               .place_z = range.of(std::span(nodes.on_torus_z[torus])),
+               .offset = layer.offset,
+               .ahead_x = layer.ahead_x,
+               .ahead_z = layer.ahead_z,
+               .along = held * layer.along_m_s,
+               .across = held * layer.across_m_s,
+               .along_weights = range.of(weights.along[layer.octave]),
+               .across_weights = range.of(weights.across[layer.octave]),
+               .strength = layer.strength,
+               .strength_per_fall_s = layer.strength_per_fall_s,
+               .samples_per_m = layer.samples_per_m};
   }
   const auto add_up = [this](std::span<const operators::VectorLayer> layers, Nodes& nodes, const NodeRange& range) {
     operators::VectorSampleJob{.layers = layers,
