@@ -77,6 +77,11 @@ class SensorHub {
   /// changes, if it cannot have been learnt (GroupGains::restore()).
   bool restore_relative_gains(const wind::judging::LearntByName& learnt);
 
+  /// How far gusts are alike at this site, as learnt from sensors at several places (BlendedEstimator::reach).
+  const wind::blend::GustReach& gust_reach() const noexcept { return estimator_.reach(); }
+  /// Goes on from that of an earlier run. False, and nothing changes, if it cannot have been learnt.
+  bool restore_gust_reach(const wind::blend::GustReach& learnt) noexcept { return estimator_.restore_reach(learnt); }
+
   /// The status of each sensor, and of the fall-back while it plays.
   std::vector<wire::SensorStatus> status() const;
 

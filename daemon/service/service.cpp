@@ -1,6 +1,7 @@
 #include "daemon/service/service.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <optional>
 
@@ -113,9 +114,12 @@ class Service::Io {
         parameters_(reload_, animation_ ? &director_ : nullptr, config.stream.control,
                     static_cast<std::uint64_t>(started_.utc.time_since_epoch().count())) {
     if (animation_) {
-      shaper_.keep_site_file(hub_.site(),
-                             {.learnt = [this] { return hub_.relative_gains(); },
-                              .restore = [this](const auto& learnt) { return hub_.restore_relative_gains(learnt); }});
+      shaper_.keep_site_file(
+          hub_.site(),
+          {.gains = {.learnt = [this] { return hub_.relative_gains(); },
+                     .restore = [this](const auto& learnt) { return hub_.restore_relative_gains(learnt); }},
+           .reach = {.learnt = [this] { return hub_.gust_reach(); },
+                     .restore = [this](const auto& learnt) { return hub_.restore_gust_reach(learnt); }}});
       loop_ = std::make_unique<animation::AnimationLoop>(*animation_, wind_, clock_, rate_hz_);
       recent_tick_lateness_.emplace(loop_->counters().lateness);
       scenes_ = std::make_unique<animation::SceneExchange>(*animation_, *loop_, director_);
@@ -519,6 +523,9 @@ class Service::Io {
     wire::Sensors status;
     status.sensors = hub_.status();
     status.wind = hub_.wind();
+    const wind::blend::GustReach& reach = hub_.gust_reach();
+    if (wind::blend::is_known(reach.across_variance)) status.gust_reach_across = std::exp(reach.across_ln);
+    if (wind::blend::is_known(reach.along_variance)) status.gust_reach_along = std::exp(reach.along_ln);
     status.shaping = shaper_.status();
     status.look = look_;
     status.cameras = cameras_;

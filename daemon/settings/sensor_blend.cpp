@@ -68,8 +68,8 @@ const std::array kSensorBlendParameters = {
             "what the station reports: mean, the mean wind over the averaging time; instant, the instantaneous wind: "
             "short gusts that it happens to sample then do not count as slow ones; maximum, the strongest wind "
             "of a period, which is shown but not used as wind. auto: what the driver or profile states; if "
-            "that is nothing, instant for readings at most 30 s apart, otherwise mean; `yuragi sensors watch` "
-            "shows it",
+            "that is nothing, what half an hour of readings shows, if they are close enough; until then instant for "
+            "readings at most 30 s apart, otherwise mean. `yuragi sensors watch` shows it",
         .choices = kValues},
     Parameter{
         .name = "averaging",

@@ -24,6 +24,11 @@ constexpr const char* kOctavesKey = "decibels_of_each_octave_of_gusts";
 constexpr const char* kGainsKey = "relative_gains";
 constexpr const char* kReadsKey = "reads";
 constexpr const char* kSecondsKey = "seconds";
+constexpr const char* kReachKey = "gust_reach";
+constexpr const char* kAcrossKey = "across";
+constexpr const char* kAlongKey = "along";
+constexpr const char* kAcrossDeviationKey = "across_deviation";
+constexpr const char* kAlongDeviationKey = "along_deviation";
 /// More sensors than any installation has.
 constexpr std::size_t kMostSensors = 256;
 /// Many times the size of a valid file: a larger one is refused.
@@ -36,12 +41,21 @@ nlohmann::json json_of_gains(const wind::judging::LearntByName& gains) {
   return json;
 }
 
+/// Factors, and the standard deviations of their logarithms.
+nlohmann::json json_of_reach(const wind::blend::GustReach& reach) {
+  return {{kAcrossKey, std::exp(reach.across_ln)},
+          {kAcrossDeviationKey, std::sqrt(reach.across_variance)},
+          {kAlongKey, std::exp(reach.along_ln)},
+          {kAlongDeviationKey, std::sqrt(reach.along_variance)}};
+}
+
 /// The failure has an empty text where there was none.
 Failure write_site_file(const std::filesystem::path& file, const SiteMemory& memory) {
   try {
     nlohmann::json json = {
         {kTimesKey, memory.times_s}, {kOctavesKnownKey, memory.octaves_known_s}, {kOctavesKey, memory.octaves_db}};
     if (!memory.gains.empty()) json[kGainsKey] = json_of_gains(memory.gains);
+    if (memory.reach != wind::blend::GustReach{}) json[kReachKey] = json_of_reach(memory.reach);
     const auto written = settings::write_whole(file, json_text(json) + '\n');
     return written ? Failure{} : written.error();
   } catch (const std::exception& error) {
@@ -97,6 +111,22 @@ std::string read_gains(const nlohmann::json& json, std::size_t names, wind::judg
   return {};
 }
 
+/// Takes the reach of gusts. Returns what is wrong with it; empty: nothing.
+std::string read_reach(const nlohmann::json& json, wind::blend::GustReach& reach) {
+  for (const char* key : {kAcrossKey, kAcrossDeviationKey, kAlongKey, kAlongDeviationKey}) {
+    if (!json.is_object() || !json.contains(key) || !json[key].is_number())
+      return fmt::format("has no number \"{}\"", key);
+  }
+  const auto square = [&json](const char* key) { return json[key].get<double>() * json[key].get<double>(); };
+  const wind::blend::GustReach all = {.across_ln = std::log(json[kAcrossKey].get<double>()),
+                                      .along_ln = std::log(json[kAlongKey].get<double>()),
+                                      .across_variance = square(kAcrossDeviationKey),
+                                      .along_variance = square(kAlongDeviationKey)};
+  if (!is_valid(all)) return "has what cannot have been learnt";
+  reach = all;
+  return {};
+}
+
 }  // namespace
 
 Result<SiteMemory, Failure> SiteFile::read() const {
@@ -116,6 +146,7 @@ Result<SiteMemory, Failure> SiteFile::read() const {
                        read_numbers(json, kOctavesKey, memory.octaves_db);
   if (!is_read) return none;
   if (json.contains(kGainsKey)) memory.gains_refusal = read_gains(json[kGainsKey], names.count(), memory.gains);
+  if (json.contains(kReachKey)) memory.reach_refusal = read_reach(json[kReachKey], memory.reach);
   return memory;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/result.hpp"
+#include "engine/wind/blend/gust_reach_fit.hpp"
 #include "engine/wind/judging/group_gains.hpp"
 
 namespace yuragi::daemon::shaping {
@@ -18,6 +19,9 @@ struct SiteMemory {
   /// How its sensors differ. Empty in files of older versions.
   wind::judging::LearntByName gains{};
   std::string gains_refusal{};  ///< why those of the file are not read; empty: they are
+  /// How far its gusts are alike; as if nothing were known, if the file has none.
+  wind::blend::GustReach reach{};
+  std::string reach_refusal{};  ///< why that of the file is not read; empty: it is
 };
 
 /// Keeps a SiteMemory in a small JSON file.
@@ -27,8 +31,8 @@ class SiteFile {
 
   const std::filesystem::path& path() const noexcept { return file_; }
 
-  /// Reads the file. Checks only that the values are numbers. The gains of sensors are left out if they are wrong:
-  /// the site's wind is worth more than they are.
+  /// Reads the file. Checks only that the values are numbers. The gains of sensors and the reach of gusts are left out
+  /// if they are wrong: the site's wind is worth more than they are.
   Result<SiteMemory, Failure> read() const;
 
   /// Renames a file that cannot be read as one, so that save() does not overwrite it: FILE.unreadable, or, if there is

@@ -41,9 +41,9 @@ WindShaper::~WindShaper() {
   log_site_file();
 }
 
-void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts, KeptGains gains) {
+void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts, KeptOfSensors sensors) {
   gusts_ = std::move(gusts);
-  gains_ = std::move(gains);
+  sensors_ = std::move(sensors);
   const bool has_gain = shaping_.settings().site.median_m_s > 0.0;
   if (site_path_.empty()) {
     if (!has_gain) return;
@@ -74,16 +74,27 @@ void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> 
                  settings::duration_text(std::ranges::max(gusts_->known_s())));
   }
   restore_gains(*memory);
+  restore_reach(*memory);
 }
 
 void WindShaper::restore_gains(const SiteMemory& memory) {
-  if (!gains_.restore) return;
+  if (!sensors_.gains.restore) return;
   std::string refusal = memory.gains_refusal;
-  if (refusal.empty() && !gains_.restore(memory.gains)) refusal = "has what cannot have been learnt";
+  if (refusal.empty() && !sensors_.gains.restore(memory.gains)) refusal = "has what cannot have been learnt";
   if (!refusal.empty()) {
     spdlog::warn("shaping: {}: relative_gains {}; how the sensors differ is learnt anew", site_path_.string(), refusal);
   } else if (!memory.gains.empty()) {
     spdlog::info("shaping: {} holds how {} differ", site_path_.string(), count_text(memory.gains.size(), "sensor"));
+  }
+}
+
+void WindShaper::restore_reach(const SiteMemory& memory) {
+  if (!sensors_.reach.restore) return;
+  if (!memory.reach_refusal.empty()) {
+    spdlog::warn("shaping: {}: gust_reach {}; how far gusts are alike is learnt anew", site_path_.string(),
+                 memory.reach_refusal);
+  } else if (memory.reach != wind::blend::GustReach{} && sensors_.reach.restore(memory.reach)) {
+    spdlog::info("shaping: {} holds how far gusts are alike here", site_path_.string());
   }
 }
 
@@ -161,7 +172,8 @@ void WindShaper::save_site() {
     memory.octaves_known_s.assign(gusts_->known_s().begin(), gusts_->known_s().end());
     memory.octaves_db.assign(gusts_->learnt_db().begin(), gusts_->learnt_db().end());
   }
-  if (gains_.learnt) memory.gains = gains_.learnt();
+  if (sensors_.gains.learnt) memory.gains = sensors_.gains.learnt();
+  if (sensors_.reach.learnt) memory.reach = sensors_.reach.learnt();
   site_file_->save(std::move(memory));
 }
 

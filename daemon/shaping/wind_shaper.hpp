@@ -14,11 +14,18 @@
 
 namespace yuragi::daemon::shaping {
 
-/// The gains of a site's sensors, which the site file keeps beside its wind. Empty functions: they are not kept.
-struct KeptGains {
-  std::function<wind::judging::LearntByName()> learnt;
-  /// False: they cannot have been learnt.
-  std::function<bool(const wind::judging::LearntByName&)> restore;
+/// Something that the site file keeps beside the site's wind. Empty functions: it is not kept.
+template <typename T>
+struct Kept {
+  std::function<T()> learnt;
+  /// False: it cannot have been learnt.
+  std::function<bool(const T&)> restore;
+};
+
+/// What a site's sensors have learnt from each other.
+struct KeptOfSensors {
+  Kept<wind::judging::LearntByName> gains{};
+  Kept<wind::blend::GustReach> reach{};
 };
 
 /// WindShaping with opening hours, a site file that keeps what was learnt over a restart, and a log line where an
@@ -33,9 +40,9 @@ class WindShaper {
 
   /// Reads [shaping] site_file, and writes it from now on, once an hour and at the end. To be called before the first
   /// shape(). Does nothing where no file is configured, or where a sensor plays a recording, which may be of another
-  /// site. `gusts`: the spectrum that is kept in the file too; null: not kept. What
-  /// `gains` calls must live as long as this.
-  void keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts = {}, KeptGains gains = {});
+  /// site. `gusts`: the spectrum that is kept in the file too; null: not kept. What `sensors` calls must live as long
+  /// as this.
+  void keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts = {}, KeptOfSensors sensors = {});
 
   /// Shapes by other settings and opening hours from now on: what was learnt of the site stays, and nothing jumps
   /// (WindShaping::change). The site file stays as it was.
@@ -53,6 +60,7 @@ class WindShaper {
   void log_changes();
   void log_ceiling(const wind::shaping::WindShapingReport& report, MonoTime now);
   void restore_gains(const SiteMemory& memory);
+  void restore_reach(const SiteMemory& memory);
   void save_site();
   void log_site_file();
   OpeningNews opening() const;
@@ -61,7 +69,7 @@ class WindShaper {
   settings::OpeningHours hours_;
   std::optional<SiteFile> site_file_;
   std::shared_ptr<wind::turbulence::SiteSpectrum> gusts_;
-  KeptGains gains_;
+  KeptOfSensors sensors_;
   std::filesystem::path site_path_;  ///< of the site file; empty: none
 
   bool is_open_ = true;

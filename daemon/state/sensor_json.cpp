@@ -138,6 +138,8 @@ ordered_json sensors_json(const wire::Sensors& sensors) {
             {"refused", sensors.refused_clients},
             {"stuck", sensors.stuck_clients},
             {"idle", sensors.idle_clients}}},
+          {"gust_reach",
+           {{"across", json_or_null(sensors.gust_reach_across)}, {"along", json_or_null(sensors.gust_reach_along)}}},
           {"late_ticks", sensors.late_ticks},
           {"recent_ticks", sensors.recent_ticks},
           {"recent_skipped_ticks", sensors.recent_skipped_ticks},

@@ -22,9 +22,11 @@ std::string value_text(wind::ReadingValue value, double averaging_s) {
   return "unknown";
 }
 
-std::string value_text(const StatedValue& stated, wind::ReadingValue taken) {
+std::string value_text(const StatedValue& stated, wind::TakenValue taken) {
   if (stated.value == wind::ReadingValue::kUnknown) {
-    return value_text(taken, 0.0) + (taken == wind::ReadingValue::kUnknown ? "" : " (assumed)");
+    if (taken.value == wind::ReadingValue::kUnknown) return value_text(taken.value, 0.0);
+    return fmt::format("{} ({})", value_text(taken.value, 0.0),
+                       taken.is_judged ? "judged from its readings" : "assumed");
   }
   return fmt::format("{} ({})", value_text(stated.value, stated.averaging_s), stated.source);
 }

@@ -18,8 +18,8 @@ struct StatedValue {
 /// "instantaneous", "mean over 3 s", "maximum over the interval", "unknown". Pure.
 std::string value_text(wind::ReadingValue value, double averaging_s);
 
-/// The same with its source in brackets: "instantaneous (Lufft WS manual 6.8)". If it is unknown, what is assumed,
-/// `taken`: "instantaneous (assumed)". Pure.
-std::string value_text(const StatedValue& stated, wind::ReadingValue taken = wind::ReadingValue::kUnknown);
+/// The same with its source in brackets: "instantaneous (Lufft WS manual 6.8)". If it is unknown, what it is taken as:
+/// "instantaneous (assumed)", "mean over the interval (judged from its readings)". Pure.
+std::string value_text(const StatedValue& stated, wind::TakenValue taken = {});
 
 }  // namespace yuragi::drivers::sensor

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/fft/real_fft.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/noise/noise_spectrum.hpp"
 
 namespace yuragi::noise {
@@ -27,7 +28,7 @@ NoiseTile2 without_waves_from(double end, const NoiseTile2& base, fft::RealFft& 
   for (std::size_t i = 0; i < fft.spectrum().size(); ++i) {
     const std::size_t row = i / columns;  // of the spectrum
     const auto wave_z = static_cast<double>(spectrum_row(row, base.size, 2).wave_z);
-    fft.spectrum()[i] *= passed(std::hypot(static_cast<double>(i % columns), wave_z), end);
+    fft.spectrum()[i] *= passed(math::length(static_cast<double>(i % columns), wave_z), end);
   }
   fft.inverse();
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "engine/base/kernel.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/noise/noise_kernels.hpp"
 
 namespace yuragi::noise {
@@ -35,8 +36,8 @@ EvolvingNoise::EvolvingNoise(const NoiseSpec& spec, double turn_rad_s, SimdRow r
     first_im_.push_back(fft_.spectrum()[i].imag());
     const std::size_t row_index = i / columns;
     const auto wave_z = static_cast<double>(spectrum_row(row_index, spec.size, 2).wave_z);
-    const double k = std::hypot(static_cast<double>(i % columns), wave_z);
-    turns_per_s_.push_back(signs[i] * turn_rad_s * std::cbrt(k * k) / (2.0 * std::numbers::pi));
+    const double k = math::length(static_cast<double>(i % columns), wave_z);
+    turns_per_s_.push_back(signs[i] * turn_rad_s * math::cube_root(k * k) / (2.0 * std::numbers::pi));
   }
   phase_.assign(fft_.spectrum().size(), 0);
 

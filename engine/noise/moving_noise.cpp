@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/math/portable.hpp"
 #include "engine/noise/noise_spectrum.hpp"
 
 namespace yuragi::noise {
@@ -72,8 +73,8 @@ MovingNoise::MovingNoise(int dims, std::size_t size, std::span<const MovingField
   for (std::size_t i = 0; i < signs.size(); ++i) {
     const auto x = static_cast<double>(i % fft_.row_modes());
     const SpectrumRow row = spectrum_row(i / fft_.row_modes(), size, dims);
-    const double k = std::hypot(x, static_cast<double>(row.wave_z), static_cast<double>(row.wave_y));
-    turns_.push_back(signs[i] * std::cbrt(k * k));
+    const double k = math::length(x, static_cast<double>(row.wave_z), static_cast<double>(row.wave_y));
+    turns_.push_back(signs[i] * math::cube_root(k * k));
   }
   for (const MovingField& field : fields) fields_.push_back(make_field(field));
   move_to({0.0, 0.0, 0.0}, 0.0);

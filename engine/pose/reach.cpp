@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/math/portable.hpp"
+
 namespace yuragi::pose {
 namespace {
 
@@ -11,7 +13,7 @@ namespace {
 double reach_of(const std::vector<float>& x_m, const std::vector<float>& z_m, std::size_t first, std::size_t count) {
   double farthest_m = 0.0;
   for (std::size_t i = first; i < first + count; ++i) {
-    farthest_m = std::max(farthest_m, std::hypot(static_cast<double>(x_m[i]), static_cast<double>(z_m[i])));
+    farthest_m = std::max(farthest_m, math::length(static_cast<double>(x_m[i]), static_cast<double>(z_m[i])));
   }
   return farthest_m;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/math/philox.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/noise/line_cut.hpp"
 #include "engine/noise/unit_reading.hpp"
 #include "engine/operators/sample_job.hpp"
@@ -54,7 +55,7 @@ double steepest_slope(const noise::NoiseTile2& tile, double period_m) noexcept {
     }
   }
   const double cells_per_m = static_cast<double>(tile.size) / period_m;
-  return std::hypot(static_cast<double>(along_x), static_cast<double>(along_z)) * cells_per_m;
+  return math::length(static_cast<double>(along_x), static_cast<double>(along_z)) * cells_per_m;
 }
 
 CarriedNoise::Tile CarriedNoise::make_tile(const CarriedNoiseSpec& spec, std::uint64_t which, double period_m) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/base/units.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/pose/pose_arrays.hpp"
 
 // The bound of largest_joint_step_m. A spline through the knots changes by no more than they do. The hybrid's leans
@@ -34,7 +35,7 @@ double edge_length_m(const ClothEdge& edge) {
   const auto way_m = [last = edge.columns - 1](const std::vector<float>& at_m) {
     return static_cast<double>(at_m[last]) - static_cast<double>(at_m[0]);
   };
-  return std::hypot(way_m(edge.x_m), way_m(edge.y_m), way_m(edge.z_m));
+  return math::length(way_m(edge.x_m), way_m(edge.y_m), way_m(edge.z_m));
 }
 
 operators::ClothKnots cloth_knots(const ClothSpec& spec, const ClothEdge& edge) {
@@ -220,7 +221,7 @@ double Cloth::largest_joint_step_m(double dt_s, double lean_step, double turn_st
   if (turn_step_rad > 0.0) {
     for (std::size_t i = 0; i < from_x_m_.size(); ++i) {
       edge_reach_m =
-          std::max(edge_reach_m, std::hypot(static_cast<double>(from_x_m_[i]), static_cast<double>(from_z_m_[i])));
+          std::max(edge_reach_m, math::length(static_cast<double>(from_x_m_[i]), static_cast<double>(from_z_m_[i])));
     }
   }
   const double reach_m = edge_reach_m + spec_.length_m;

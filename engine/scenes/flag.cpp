@@ -5,6 +5,7 @@
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/math/trig.hpp"
 #include "engine/operators/oscillator_job.hpp"
 #include "engine/scenes/cloth.hpp"
@@ -287,7 +288,7 @@ class Flag final : public Scene {
         half_flutter_speed_m_s_(settings.half_flutter_speed_m_s),
         wave_speed_(settings.wave_speed),
         edge_flutter_(settings.edge_flutter),
-        longest_rest_(std::hypot(lean_of_deg(droop_at_deg(settings, 1.0)), lean_of_deg(settings.fold_angle_deg))),
+        longest_rest_(math::length(lean_of_deg(droop_at_deg(settings, 1.0)), lean_of_deg(settings.fold_angle_deg))),
         wind_(setup.placement, setup.gusts),
         cloth_(flag_spec(settings), edge, setup.row),
         down_m_(heights_m(cloth_, settings.hoist_m)),

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/math/philox.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/noise/torus.hpp"
 #include "engine/noise/unit_reading.hpp"
@@ -87,7 +88,7 @@ FlameAxis::FlameAxis(const FlameAxisSpec& spec)
   // Rounded to floats, so that the last bit of a library's logarithm decides about nothing.
   const double felt_m = std::max(spec.felt_at_m, kLowestWindHeight_m);
   const double felt = std::log(felt_m / kRoughness_m) / std::log(kWindHeight_m / kRoughness_m);
-  const double own_m_s = std::cbrt(kFlameGravity_m_s2 * kBurnt_kg_m2_s * spec.foot_m / kAir_kg_m3);
+  const double own_m_s = math::cube_root(kFlameGravity_m_s2 * kBurnt_kg_m2_s * spec.foot_m / kAir_kg_m3);
   relative_wind_s_m_ = static_cast<double>(static_cast<float>(felt / own_m_s));
   strongest_ = FlameInWind::at(relative_wind_s_m_ * spec.strongest_m_s);
   for (std::size_t row = 0; row < spec.rows; ++row) {

@@ -7,6 +7,7 @@
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/operators/bend_share.hpp"
 #include "engine/operators/coat_bending_job.hpp"
 #include "engine/operators/oscillator_job.hpp"
@@ -163,12 +164,12 @@ class Fur final : public Scene {
   /// strokes change by what their noise does. A projection onto the skin changes by no more than what it is of. Never
   /// more than from one extreme to the other; an oscillator and the joints as in StrandSway.
   double largest_joint_step_m(double dt_s) const noexcept override {
-    const double largest_stroke = std::hypot(1.0, kStrokeAcross) * kLargestStroke;
+    const double largest_stroke = math::length(1.0, kStrokeAcross) * kLargestStroke;
     const double largest_bend_rad = max_bend_rad_ + stroke_rad_ * largest_stroke;
     const double s = largest_flexibility_ / half_bend_speed_m_s_ * SceneWind::largest_step_m_s(dt_s);
     const double slope = operators::kSteepestBendShare * largest_bend_rad + 0.5 * kSheltered * max_bend_rad_;
     const double stroke_step =
-        std::hypot(1.0, kStrokeAcross) * strokes_.largest_change(fastest_stroke_m_s_, fastest_stroke_m_s_, dt_s);
+        math::length(1.0, kStrokeAcross) * strokes_.largest_change(fastest_stroke_m_s_, fastest_stroke_m_s_, dt_s);
     const double bend_rad =
         std::min(slope * s + stroke_rad_ * std::min(stroke_step, 2.0 * largest_stroke), 2.0 * largest_bend_rad);
     const double swaying_rad =

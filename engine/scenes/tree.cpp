@@ -9,6 +9,7 @@
 
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/operators/bend_share.hpp"
 #include "engine/operators/branch_force_job.hpp"
 #include "engine/operators/flutter_job.hpp"
@@ -406,7 +407,7 @@ Tree::Tree(pose::TreeSkeleton tree, const ParameterValues& values, const SceneSe
   float radius_m = 1e-3F;
   for (const Wood& wood : wood_) {
     for (std::size_t i = 0; i < wood.count; ++i) {
-      radius_m = std::max(radius_m, std::hypot(wood.side_x[i], wood.side_z[i]));
+      radius_m = std::max(radius_m, math::length(wood.side_x[i], wood.side_z[i]));
     }
   }
   for (Wood& wood : wood_) {
@@ -596,7 +597,7 @@ void Tree::project_wood(Wood& wood, pose::StrandPose& pose) noexcept {
 // whatever wind and noises do: so by itself it changes by no more than 2 G, from one extreme to the other, and an
 // oscillator that it drives, whatever course it takes, by no more than the oscillator's largest rate for such a drive.
 double Tree::largest_wood_step_rad(const Wood& wood, double dt_s) const noexcept {
-  const double largest_rad = std::hypot(max_tilt_rad_, max_swing_rad_);
+  const double largest_rad = math::length(max_tilt_rad_, max_swing_rad_);
   const double swayed_rad =
       operators::OscillatorStep::largest_rate_per_s(wood.largest_hz, wood.damping_ratio) * dt_s * largest_rad;
   return (1.0 - hybrid_) * 2.0 * largest_rad + hybrid_ * swayed_rad;

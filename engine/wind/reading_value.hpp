@@ -11,7 +11,7 @@ enum class ReadingValue : std::uint8_t {
   kMean,     ///< the mean wind over a time
   kInstant,  ///< the instantaneous wind: frequencies above half the sampling rate are folded into it (aliasing)
   kMaximum,  ///< the strongest wind of a period: never used as the wind
-  kUnknown,  ///< not documented: assumed_value() of the interval is assumed
+  kUnknown,  ///< not documented: judged from the readings, or else assumed_value() of the interval
 };
 
 /// Are such readings used as wind? Maxima are not.
@@ -21,6 +21,13 @@ constexpr bool makes_wind(ReadingValue value) noexcept {
 
 /// The names of those that can be stated, in their order.
 inline constexpr std::array<std::string_view, 3> kReadingValueNames = {"mean", "instant", "maximum"};
+
+/// What a station's readings are used as: what is stated of them, or judged from them (turbulence::ValueVerdict), or
+/// assumed.
+struct TakenValue {
+  ReadingValue value = ReadingValue::kUnknown;
+  bool is_judged = false;
+};
 
 /// Returns what is assumed of a station whose value is unknown, by the interval between its readings: the assumption
 /// whose worst error is the smaller one. Means taken as instantaneous make a wind with a part of the variance,

@@ -3,11 +3,12 @@
 #include <cmath>
 
 #include "engine/base/units.hpp"
+#include "engine/math/portable.hpp"
 
 namespace yuragi::wind {
 
 double speed_of(WindVector wind) noexcept {
-  return std::hypot(wind.u_m_s, wind.v_m_s);
+  return math::length(wind.u_m_s, wind.v_m_s);
 }
 
 double direction_from_deg(WindVector wind) noexcept {

@@ -20,6 +20,7 @@ bool read_text(const flatbuffers::String* from, std::string& to) {
 
 namespace {
 
+constexpr double kMaxTimes = 1e3;
 constexpr double kMaxWind_m_s = 1e3;
 constexpr double kMaxWay_m = 1e6;
 constexpr double kMaxDuration_s = 1e12;
@@ -158,15 +159,13 @@ bool read(const fb::Sensor& from, SensorStatus& to) {
     refusals = counter->count();
     if (!read_text(counter->reason(), reason)) return false;
   }
-  constexpr double kMaxTimesGroup = 1e3;
-  return is_within(to.reads_times_group, 1.0 / kMaxTimesGroup, kMaxTimesGroup) &&
-         is_within(to.age_s, 0.0, kMaxDuration_s) && is_within(to.interval_s, 0.0, kMaxDuration_s) &&
-         read_text(from.name(), to.name) && read_text(from.driver(), to.driver) &&
-         read_text(from.detail(), to.detail) && read_text(from.state_reason(), to.state_reason) &&
-         read_text(from.value(), to.value) && read(from.speed_m_s(), to.speed_m_s) &&
-         read(from.direction_deg(), to.direction_deg) && read(from.gust_m_s(), to.gust_m_s) &&
-         read(from.raw_speed_m_s(), to.raw_speed_m_s) && read(from.raw_direction_deg(), to.raw_direction_deg) &&
-         read_quantities(from, to);
+  return is_within(to.reads_times_group, 1.0 / kMaxTimes, kMaxTimes) && is_within(to.age_s, 0.0, kMaxDuration_s) &&
+         is_within(to.interval_s, 0.0, kMaxDuration_s) && read_text(from.name(), to.name) &&
+         read_text(from.driver(), to.driver) && read_text(from.detail(), to.detail) &&
+         read_text(from.state_reason(), to.state_reason) && read_text(from.value(), to.value) &&
+         read(from.speed_m_s(), to.speed_m_s) && read(from.direction_deg(), to.direction_deg) &&
+         read(from.gust_m_s(), to.gust_m_s) && read(from.raw_speed_m_s(), to.raw_speed_m_s) &&
+         read(from.raw_direction_deg(), to.raw_direction_deg) && read_quantities(from, to);
 }
 
 /// A server that does not know of it sends none: then nothing is at work.
@@ -290,13 +289,19 @@ bool read(const fb::Sensors& from, Sensors& to) {
   to.recent_ticks = from.recent_ticks();
   to.given_up = from.given_up();
   to.recent_skipped_ticks = std::min(from.recent_skipped_ticks(), to.recent_ticks);
+  to.gust_reach_across = from.gust_reach_across();
+  to.gust_reach_along = from.gust_reach_along();
   const std::size_t troubles = from.troubles() == nullptr ? 0 : from.troubles()->size();
   if (troubles > kMaxTroubles) return false;
   for (std::size_t i = 0; i < troubles; ++i) {
     if (!read_text(from.troubles()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.troubles.emplace_back()))
       return false;
   }
-  return read_cameras(from, to) && read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
+  const auto is_reach = [](const std::optional<double>& reach) {
+    return !reach || is_within(*reach, 1.0 / kMaxTimes, kMaxTimes);
+  };
+  return is_reach(to.gust_reach_across) && is_reach(to.gust_reach_along) && read_cameras(from, to) &&
+         read(from.shaping(), to.shaping) && read(from.io_lateness(), to.io_lateness) &&
          read(from.tick_lateness(), to.tick_lateness) && read(from.recorder(), to.recorder) &&
          read(from.animation(), to.animation);
 }

@@ -423,6 +423,8 @@ Bytes encode(const Sensors& sensors) {
   table.add_recent_skipped_ticks(sensors.recent_skipped_ticks);
   table.add_troubles(trouble_list);
   table.add_given_up(sensors.given_up);
+  if (sensors.gust_reach_across) table.add_gust_reach_across(*sensors.gust_reach_across);
+  if (sensors.gust_reach_along) table.add_gust_reach_along(*sensors.gust_reach_along);
   return finish(builder, fb::Body_Sensors, table.Finish());
 }
 

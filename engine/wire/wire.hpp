@@ -232,6 +232,8 @@ struct Sensors {
   std::uint64_t recent_skipped_ticks = 0;  ///< those of them that were skipped
   std::vector<std::string> troubles = {};  ///< what else does not work at present and is tried again, for a person
   std::uint8_t given_up = 0;               ///< the most of all clients' Display
+  /// How many times as far across the wind, and along it, gusts are alike here as usually; nothing: not known.
+  std::optional<double> gust_reach_across = std::nullopt, gust_reach_along = std::nullopt;
 };
 
 enum class PlayerAction : std::uint8_t { kReport, kPause, kResume, kStep, kSeek, kRate };

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/wind/blend/blended_estimator.hpp"
+#include "engine/wind/turbulence/wind_turbulence.hpp"
 #include "tests/proof/band_power.hpp"
 #include "tests/proof/estimated_wind.hpp"
 #include "tests/proof/sonic_record.hpp"
@@ -153,6 +154,57 @@ TEST(Sampling, AssumedIsTheSmallerMistake) {
     EXPECT_EQ(wind::assumed_value(interval_s), is_instant_safer ? kInstant : kMean)
         << interval_s << " s: variance wrong by a factor of " << std::exp(mean_taken_as_instant)
         << " if means are taken as instantaneous, of " << std::exp(instant_taken_as_mean) << " the other way round";
+  }
+}
+
+/// What is judged of a station of unknown value that plays a record twice.
+ReadingValue judged(const SonicRecord& record, ReadingValue value, double interval_s) {
+  const auto readings =
+      value == ReadingValue::kInstant ? instant_samples(record, interval_s) : block_means(record, interval_s);
+  wind::WindVector mean;
+  for (const wind::WindVector& sample : record.samples) mean = mean + sample;
+  mean = 1.0 / static_cast<double>(record.samples.size()) * mean;
+  const double speed_m_s = wind::speed_of(mean);
+  wind::turbulence::WindTurbulence turbulence({}, 600.0, ReadingValue::kUnknown);
+  for (int turn = 0; turn < 2; ++turn) {
+    for (const wind::WindReading& reading : readings) {
+      turbulence.forget(interval_s);
+      turbulence.take(wind::wind_from(reading.speed_m_s, *reading.direction_deg), 1.0 / speed_m_s * mean, speed_m_s,
+                      true);
+      turbulence.fit(interval_s, speed_m_s);
+    }
+    turbulence.break_off();
+  }
+  return turbulence.verdict();
+}
+
+// What nobody states is judged from readings of 1 or 2 s. It is never judged wrongly; of instantaneous wind always
+// rightly, of means in known spectra. Of means of real wind often not at all: it has more quick gusts than W5.
+TEST(Sampling, WhatNobodyStatesIsJudgedFromTheReadings) {
+  int means = 0, told = 0;
+  for (const auto& [speed, intensity, length] :
+       {std::array{5.0, 0.2, 40.0}, {3.0, 0.5, 15.0}, {10.0, 0.15, 100.0}, {1.2, 0.8, 15.0}, {5.0, 0.3, 300.0}}) {
+    for (const SonicRecord& record : made_up(speed, intensity, length)) {
+      EXPECT_EQ(judged(record, kInstant, 1.0), kInstant) << record.name;
+      for (const double interval_s : {1.0, 2.0, 5.0, 14.0}) {
+        EXPECT_NE(judged(record, kInstant, interval_s), kMean) << record.name << ' ' << interval_s;
+        const ReadingValue of_means = judged(record, kMean, interval_s);
+        EXPECT_NE(of_means, kInstant) << record.name << ' ' << interval_s;
+        if (interval_s > 1.0) continue;
+        ++means;
+        told += of_means == kMean ? 1 : 0;
+      }
+    }
+  }
+  fmt::print("means of 1 s: {} of {} are told\n", told, means);
+  EXPECT_GE(told, means * 9 / 10);
+  for (const int number : {0, 1}) {
+    const auto record = load_sonic(number);
+    if (!record) GTEST_SKIP() << "../shared/data/sonic is not here";
+    for (const double interval_s : {1.0, 2.0}) {
+      EXPECT_EQ(judged(*record, kInstant, interval_s), kInstant) << record->name << ' ' << interval_s;
+      EXPECT_NE(judged(*record, kMean, interval_s), kInstant) << record->name << ' ' << interval_s;
+    }
   }
 }
 

@@ -68,6 +68,18 @@ std::string place_of_wind(const wind::WindState& wind) {
   return text;
 }
 
+/// How far gusts are alike at the site; empty where that is not known.
+std::string reach_text(const wire::Sensors& sensors) {
+  const auto one = [](const std::optional<double>& times, std::string_view where) {
+    return times ? fmt::format("{:.2f} times as far {} the wind", *times, where) : std::string();
+  };
+  const std::string across = one(sensors.gust_reach_across, "across");
+  const std::string along = one(sensors.gust_reach_along, "along");
+  if (across.empty() && along.empty()) return {};
+  return fmt::format("gusts are alike {}{}{} as usually; learnt from these sensors", across,
+                     across.empty() || along.empty() ? "" : " and ", along);
+}
+
 /// "0.05, 0.20, 12.50 ms". The percentiles are upper ends of classes; none is above the maximum, which is exact.
 std::string lateness_text(const wire::Lateness& lateness) {
   return fmt::format("{:.2f}, {:.2f}, {:.2f} ms", 1e3 * std::min(lateness.p50_s, lateness.max_s),
@@ -130,6 +142,7 @@ std::string sensor_table(const wire::Sensors& sensors) {
                                   direction_text(wind::direction_from_deg(wind)), wind_source(sensors), sensors.clients,
                                   sensors.recent_skipped_ticks);
   if (const std::string place = place_of_wind(sensors.wind); !place.empty()) table += wrapped(place);
+  if (const std::string reach = reach_text(sensors); !reach.empty()) table += wrapped(reach);
   if (!sensors.shaping.text.empty()) table += wrapped("shaped: " + sensors.shaping.text);
   if (const std::string recorder = recorder_text(sensors); !recorder.empty()) table += wrapped(recorder);
   if (const std::string service = service_text(sensors); !service.empty()) table += fmt::format("  {}\n", service);

@@ -1,6 +1,6 @@
 // How the daemon itself does.
 import { element, set_text } from "./element";
-import { Animation, Lateness, Recorder, Status } from "./status";
+import { Animation, GustReach, Lateness, Recorder, Status } from "./status";
 import { bytes_text, milliseconds_text } from "./wording";
 
 const UNKNOWN = "–";
@@ -31,12 +31,20 @@ function recorder_text(recorder: Recorder | null): string {
   return `writing, ${recorder.written.toLocaleString("en")} readings${lost}`;
 }
 
+/** As `yuragi sensors watch` shows it. */
+function reach_text(reach: GustReach): string {
+  const shown = [reach.across === null ? "" : `${reach.across.toFixed(2)} times as far across the wind`,
+    reach.along === null ? "" : `${reach.along.toFixed(2)} times as far along the wind`].filter((text) => text !== "");
+  return shown.length === 0 ? UNKNOWN : `${shown.join(" and ")} as usually`;
+}
+
 const FACTS: [string, (status: Status) => string][] = [
   ["Ticks", (status) => `${status.tick_rate_hz} Hz, ${status.recent_skipped_ticks.toLocaleString("en")} skipped in 10 minutes`],
   ["Work of a tick", (status) => animation_text(status.animation)],
   ["Of it, by scene", (status) => scene_costs_text(status.animation)],
   ["Ticks late by", (status) => lateness_text(status.tick_lateness)],
   ["Sensors and clients late by", (status) => lateness_text(status.io_lateness)],
+  ["Gusts are alike", (status) => reach_text(status.gust_reach)],
   ["Recorder", (status) => recorder_text(status.recorder)],
   ["Free on its disk", (status) => (status.recorder?.free_bytes == null ? UNKNOWN : bytes_text(status.recorder.free_bytes))],
   ["Viewers", (status) => `${status.clients.connected} connected`],

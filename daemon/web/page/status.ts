@@ -28,6 +28,12 @@ export interface Sensor {
   age_s: number | null;
 }
 
+/** How many times as far gusts are alike here as usually: learnt from sensors at several places. */
+export interface GustReach {
+  across: number | null;
+  along: number | null;
+}
+
 export interface Lateness {
   p50_s: number;
   p99_s: number;
@@ -65,6 +71,7 @@ export interface Status {
   sensors: Sensor[];
   recorder: Recorder | null;
   clients: { connected: number; refused: number; stuck: number; idle: number };
+  gust_reach: GustReach;
   late_ticks: number;
   recent_ticks: number;
   recent_skipped_ticks: number;

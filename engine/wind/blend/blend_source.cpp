@@ -155,27 +155,39 @@ double BlendSource::trust_at(double frequency_hz) const noexcept {
   return full_trust_at(frequency_hz, slowness_s()) * unfolded_.at(frequency_hz);
 }
 
-/// Sets what is assumed of the readings, by their interval. Weights follow slewed, and the turbulence with its next
-/// fit.
-void BlendSource::set_taken() noexcept {
-  const ReadingValue assumed = assumed_value(interval_s_);
+/// What readings of an unknown value are: what is judged from them, or what is assumed by their interval, which
+/// changes only with an interval well beyond the limit.
+ReadingValue BlendSource::likely_value() const noexcept {
+  if (const ReadingValue judged = measured_.verdict(); judged != ReadingValue::kUnknown) return judged;
   const double nearer_s = taken_ == ReadingValue::kInstant ? interval_s_ / kBeyondLimit : interval_s_ * kBeyondLimit;
-  if (assumed == taken_ || assumed_value(nearer_s) == taken_) return;
-  taken_ = assumed;
-  measured_.take_as(assumed);
-  if (assumed == ReadingValue::kMean) unfolded_ = {};
+  return assumed_value(nearer_s) == taken_ ? taken_ : assumed_value(interval_s_);
+}
+
+/// False if nothing changes. Weights follow slewed, and the turbulence with its next fit.
+bool BlendSource::set_taken() noexcept {
+  if (settings_.value != ReadingValue::kUnknown) return false;
+  const ReadingValue likely = likely_value();
+  if (likely == taken_) return false;
+  taken_ = likely;
+  measured_.take_as(likely);
+  if (likely == ReadingValue::kMean) unfolded_ = {};
+  return true;
 }
 
 /// When it has changed.
 void BlendSource::set_interval() noexcept {
   if (expected_interval_s() == interval_s_) return;
   interval_s_ = expected_interval_s();
-  if (settings_.value == ReadingValue::kUnknown) set_taken();
+  set_taken();
   set_full_trust();
+  set_passed();
+}
+
+void BlendSource::set_passed() noexcept {
   passed_[0] = 1.0;
   for (std::size_t band = 0; band < turbulence::OctaveFollower::kBands; ++band) {
-    passed_[1 + band] =
-        std::abs(averaged_and_held(turbulence::OctaveFollower::centre_hz(band), averaging_s(), interval_s_));
+    passed_[1 + band] = std::sqrt(
+        std::norm(averaged_and_held(turbulence::OctaveFollower::centre_hz(band), averaging_s(), interval_s_)));
   }
 }
 
@@ -203,7 +215,9 @@ void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
   const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
   measured_.fit(interval_s, speed_m_s);
   turbulence_ = measured_.along().turbulence();
-  if (taken_ == ReadingValue::kInstant) set_full_trust();
+  const bool is_other = set_taken();
+  if (is_other) set_passed();
+  if (is_other || taken_ == ReadingValue::kInstant) set_full_trust();
   const auto strengths = [&](const turbulence::TurbulenceFit& fit) {
     const turbulence::Turbulence turbulence = fit.turbulence();
     turbulence::GustVariances variances =
@@ -256,7 +270,7 @@ SourceResponse BlendSource::passed_of(double frequency_hz) const noexcept {
   const std::complex<double> along = averaged_and_held(frequency_hz, averaging_s(), interval_s_);
   if (!has_vane()) return {along, 0.0};
   const std::complex<double> vane(1.0, 2.0 * std::numbers::pi * frequency_hz * direction_.memory_s());
-  return {along, along / vane};
+  return {along, 1.0 / std::norm(vane) * along * std::conj(vane)};
 }
 
 double blend_group_delay_s(double frequency_hz, double interval_s, double averaging_s) noexcept {

@@ -51,8 +51,10 @@ class BlendSource {
   /// Advances to `now`. Precondition: it has sent a reading.
   void step(MonoTime now, double dt_s, const turbulence::OctaveFollower::Parts& parts) noexcept;
 
-  /// What its readings are taken as; never kUnknown.
-  ReadingValue taken() const noexcept { return taken_; }
+  /// What its readings are taken as; never of kUnknown.
+  TakenValue taken() const noexcept {
+    return {.value = taken_, .is_judged = measured_.verdict() != ReadingValue::kUnknown};
+  }
 
   const SourceRecord& record() const noexcept { return record_; }
   bool has_vane() const noexcept { return direction_.has_vane(); }
@@ -71,6 +73,8 @@ class BlendSource {
   /// Its frequency response (W19): what averaging, the holding of readings and its vane leave of a wave of the real
   /// wind. Times the response of its bands (OctaveFollower::Response) it is the source's part of the blend.
   SourceResponse passed_of(double frequency_hz) const noexcept;
+  /// How much later than the wind its readings are: half of what one averages over, and half of what it is held for.
+  double reading_delay_s() const noexcept { return 0.5 * (averaging_s() + expected_interval_s()); }
   /// The power that is folded onto this frequency, over the wind's own there (W40): 0 of means.
   double folded_over_own(double frequency_hz) const noexcept {
     return taken_ == ReadingValue::kInstant ? 1.0 / unfolded_.at(frequency_hz) - 1.0 : 0.0;
@@ -90,7 +94,9 @@ class BlendSource {
   double averaging_s() const noexcept;
   double slowness_s() const noexcept;
   void set_interval() noexcept;
-  void set_taken() noexcept;
+  ReadingValue likely_value() const noexcept;
+  bool set_taken() noexcept;
+  void set_passed() noexcept;
   void set_full_trust() noexcept;
   void measure(WindVector ahead, double mean_of_s) noexcept;
   void fit(double interval_s, double advection_m_s) noexcept;

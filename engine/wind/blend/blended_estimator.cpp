@@ -69,10 +69,12 @@ BlendedEstimator::BlendedEstimator(std::size_t source_count, const BlendSettings
       places_(completed(settings.sources, source_count)),
       pens_(places_.count(),
             Pen{.shares = std::vector<BandWeights>(source_count), .written = std::vector<BandWeights>(source_count)}),
+      reach_fit_(places_.count()),
       shares_(source_count),
       weights_(source_count),
       level_shares_(source_count),
       place_weights_(source_count),
+      measured_places_(places_.count()),
       passed_(source_count),
       folded_(source_count) {
   settings_.sources.resize(source_count);
@@ -96,8 +98,8 @@ bool BlendedEstimator::accept(std::size_t index, const WindReading& reading) noe
                                           .advection_m_s = std::max(advection_m_s_, kLeastAdvection_m_s)});
 }
 
-ReadingValue BlendedEstimator::taken(std::size_t source) const noexcept {
-  return source < sources_.size() ? sources_[source].taken() : ReadingValue::kUnknown;
+TakenValue BlendedEstimator::taken(std::size_t source) const noexcept {
+  return source < sources_.size() ? sources_[source].taken() : TakenValue{};
 }
 
 bool BlendedEstimator::is_direction_live(std::size_t besides) const noexcept {
@@ -313,8 +315,10 @@ void BlendedEstimator::carry_gusts(const MeasuredMean& measured, double dt_s) no
   const double part = is_first_ ? 1.0 : -std::expm1(-dt_s / kCoherenceMemory_s);
   coherence.speed_m_s = advection_m_s_;
   coherence.length_m = gust_length_m(measured);
-  coherence.decay_along += part * (ground::GustCoherence::decay_along_of(now.intensity) - coherence.decay_along);
-  coherence.decay_across += part * (ground::GustCoherence::decay_across_of(now.intensity) - coherence.decay_across);
+  const double decay_along = ground::GustCoherence::decay_along_of(now.intensity) * std::exp(-reach().along_ln);
+  const double decay_across = ground::GustCoherence::decay_across_of(now.intensity) * std::exp(-reach().across_ln);
+  coherence.decay_along += part * (decay_along - coherence.decay_along);
+  coherence.decay_across += part * (decay_across - coherence.decay_across);
   reach_m_ += std::clamp(settings_.reach_m - reach_m_, -kReachRate * way_m, kReachRate * way_m);
 }
 
@@ -379,6 +383,27 @@ void BlendedEstimator::write_gusts() noexcept {
       pen.now.north_m_s[level - 1] = static_cast<float>(gust.v_m_s);
     }
   }
+}
+
+/// From what is measured at places that are configured.
+void BlendedEstimator::learn_reach(double dt_s) noexcept {
+  if (pens_.size() < 2) return;
+  for (std::size_t p = 0; p < pens_.size(); ++p) {
+    const PenPlaces::Place& place = places_.place(p);
+    double delay_s = 0.0;
+    double all = kLeastShare;
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      if (places_.pen_of(i) != p) continue;
+      const double weight = choice_.weight(i) + kLeastWeight;
+      delay_s += weight * sources_[i].reading_delay_s();
+      all += weight;
+    }
+    measured_places_[p] = {.east_m = place.east_m,
+                           .south_m = place.south_m,
+                           .delay_s = delay_s / all,
+                           .pen = place.is_edge ? nullptr : &stroke_.pens[p]};
+  }
+  reach_fit_.advance(dt_s, stroke_, measured_places_);
 }
 
 /// What all sources together leave open at a frequency.
@@ -535,6 +560,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   carry_gusts(measured, dt_s);
   place_pens();
   write_gusts();
+  learn_reach(dt_s);
   weigh_gusts(measured, dt_s);
   show(measured);
 

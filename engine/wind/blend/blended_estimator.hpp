@@ -7,6 +7,7 @@
 
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/blend/blend_source.hpp"
+#include "engine/wind/blend/gust_reach_fit.hpp"
 #include "engine/wind/blend/mean_wind_plane.hpp"
 #include "engine/wind/blend/pen_places.hpp"
 #include "engine/wind/blend/source_choice.hpp"
@@ -78,11 +79,17 @@ class BlendedEstimator {
   /// How `source` does, as of the last advance(). One that is not there is silent.
   SourceReport report(std::size_t source) const noexcept;
 
-  /// Returns what the readings of `source` are taken as: its configured value, or the assumed one if that is unknown.
-  ReadingValue taken(std::size_t source) const noexcept;
+  /// Returns what the readings of `source` are taken as: its configured value, or what is judged or assumed if that is
+  /// unknown.
+  TakenValue taken(std::size_t source) const noexcept;
 
   /// Does another source than `besides` measure the direction of the wind that is shown? As of the last advance().
   bool is_direction_live(std::size_t besides) const noexcept;
+
+  /// How much farther gusts are alike here than elsewhere, as learnt from sensors at several places.
+  const GustReach& reach() const noexcept { return reach_fit_.reach(); }
+  /// Goes on from what an earlier run learnt; false, and nothing changes, for what cannot have been learnt.
+  bool restore_reach(const GustReach& reach) noexcept { return reach_fit_.restore(reach); }
 
   /// The turbulence that is fitted at the moment, along the wind.
   turbulence::Turbulence turbulence() const noexcept;
@@ -140,6 +147,7 @@ class BlendedEstimator {
   void carry_gusts(const MeasuredMean& measured, double dt_s) noexcept;
   double gust_length_m(const MeasuredMean& measured) const noexcept;
   void place_pens() noexcept;
+  void learn_reach(double dt_s) noexcept;
   void write_gusts() noexcept;
   void weigh_gusts(const MeasuredMean& measured, double dt_s) noexcept;
   void weigh_octave(std::size_t octave, const MeasuredMean& measured, float part) noexcept;
@@ -158,6 +166,7 @@ class BlendedEstimator {
   MeanWindPlane plane_;
   PenPlaces places_;
   std::vector<Pen> pens_;
+  GustReachFit reach_fit_;
   ground::GroundWind ground_;
   ground::WindStroke stroke_;
   double advection_m_s_ = 0.0;
@@ -171,6 +180,7 @@ class BlendedEstimator {
   std::vector<Share> shares_;
   std::vector<double> weights_, level_shares_;
   std::vector<PlaceWeights> place_weights_;
+  std::vector<GustReachFit::Place> measured_places_;
   std::vector<SourceResponse> passed_;  ///< at the octave at hand
   std::vector<double> folded_;          ///< the power that is folded onto it, over the wind's own
   BandWeights fade_{};                  ///< what the tape can hold of each band

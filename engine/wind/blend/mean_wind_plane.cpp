@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/portable.hpp"
+
 namespace yuragi::wind::blend {
 namespace {
 
@@ -25,7 +27,7 @@ MeanWindPlane::MeanWindPlane(std::span<const BlendSourceSettings> sources) {
     is_first = false;
   }
   middle_ = {std::clamp(0.0, ends_.west_m, ends_.east_m), std::clamp(0.0, ends_.north_m, ends_.south_m)};
-  length_m_ = std::hypot(ends_.east_m - ends_.west_m, ends_.south_m - ends_.north_m);
+  length_m_ = math::length(ends_.east_m - ends_.west_m, ends_.south_m - ends_.north_m);
 }
 
 void MeanWindPlane::weigh(std::span<const double> shares, double part, std::span<PlaceWeights> weights) const noexcept {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/portable.hpp"
 #include "engine/wind/ground/wind_stroke.hpp"
 
 namespace yuragi::wind::blend {
@@ -17,7 +18,7 @@ PenPlaces::PenPlaces(std::span<const BlendSourceSettings> sources) : pens_(sourc
 std::size_t PenPlaces::pen_for(const BlendSourceSettings& source) {
   constexpr double kSamePlace_m = 0.5;
   const auto distance_m = [&source](const Place& place) {
-    return place.is_edge ? 0.0 : std::hypot(place.east_m - source.east_m, place.south_m - source.south_m);
+    return place.is_edge ? 0.0 : math::length(place.east_m - source.east_m, place.south_m - source.south_m);
   };
   const auto is_same = [&](const Place& place) {
     return source.has_place ? !place.is_edge && distance_m(place) < kSamePlace_m : place.is_edge;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/portable.hpp"
 #include "engine/wind/turbulence/sampled_turbulence.hpp"
 
 namespace yuragi::wind::blend {
@@ -16,8 +17,8 @@ void UnfoldedPart::set(double interval_s, double time_scale_s) noexcept {
   interval_s_ = interval_s;
   for (std::size_t i = 0; i < kPoints; ++i) {
     const double octave = kFirstOctave + static_cast<double>(i) / static_cast<double>(kAnOctave);
-    parts_[i] = std::max(
-        kLeastPart, turbulence::von_karman_unfolded_part(std::exp2(octave) / interval_s, interval_s, time_scale_s));
+    parts_[i] = std::max(kLeastPart, turbulence::von_karman_unfolded_part(math::power_of_two(octave) / interval_s,
+                                                                          interval_s, time_scale_s));
   }
 }
 

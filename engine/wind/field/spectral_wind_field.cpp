@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/math/philox.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/wind/field/von_karman_modes.hpp"
 
@@ -39,7 +40,7 @@ class CellPower {
 
   double operator()(double x, double z, double y) const {
     // The density bends most where waves are long: those cells are divided.
-    const double cycles = std::hypot(x, z, y);
+    const double cycles = math::length(x, z, y);
     const int parts = cycles < 0.5 ? (is_space_ ? 32 : 128) : cycles < 3.0 ? 8 : 1;
     const int parts_y = is_space_ ? parts : 1;
     double sum = 0.0;
@@ -168,7 +169,7 @@ SpectralWindField::SpectralWindField(const WindFieldSettings& settings, double l
     const double turnover_m23_s =
         turbulence::eddy_turnover_m23_s(settings.turbulence_intensity * settings.speed_m_s, settings.length_m);
     const double longest_rad_m = 2.0 * std::numbers::pi / period_m_;
-    turning_rad_s_ = turnover_m23_s * std::cbrt(longest_rad_m * longest_rad_m);
+    turning_rad_s_ = turnover_m23_s * math::cube_root(longest_rad_m * longest_rad_m);
   }
   go_to(0.0);
 }

@@ -3,9 +3,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/math/portable.hpp"
 #include "engine/noise/von_karman_corner.hpp"
 
 namespace yuragi::wind::field {
+namespace {
+
+constexpr double kGammaOfFiveSixths = 1.1287870299081257;
+
+}  // namespace
 
 VonKarmanModes::VonKarmanModes(turbulence::WindComponent component, double sigma_m_s, double length_m) noexcept
     : component_(component) {
@@ -14,7 +20,7 @@ VonKarmanModes::VonKarmanModes(turbulence::WindComponent component, double sigma
   const double kappa = 1.0 / (noise::kVonKarmanCorner * length_of_u_m);
   kappa_squared_ = kappa * kappa;
   // E integrates to 3/2 sigma^2; the integral of k^4 / (kappa^2 + k^2)^(17/6) is kappa^(-2/3) B(5/2, 1/3) / 2.
-  const double energy = 3.0 * sigma_m_s * sigma_m_s * std::cbrt(kappa_squared_) / std::beta(5.0 / 2.0, 1.0 / 3.0);
+  const double energy = 3.0 * sigma_m_s * sigma_m_s * math::cube_root(kappa_squared_) / std::beta(5.0 / 2.0, 1.0 / 3.0);
   scale_ = energy / (4.0 * std::numbers::pi);
 }
 
@@ -37,10 +43,10 @@ double VonKarmanModes::space_density(double along_rad_m, double across_rad_m, do
 
 double von_karman_coherence(double along_rad_m, double distance_m, double length_m) noexcept {
   const double kappa = 1.0 / (noise::kVonKarmanCorner * length_m);
-  const double x = std::abs(distance_m) * std::hypot(along_rad_m, kappa);
+  const double x = std::abs(distance_m) * math::length(along_rad_m, kappa);
   if (x < 1e-9) return 1.0;
   if (x > 500.0) return 0.0;
-  return std::pow(2.0, 1.0 / 6.0) / std::tgamma(5.0 / 6.0) *
+  return math::power_of_two(1.0 / 6.0) / kGammaOfFiveSixths *
          (std::pow(x, 5.0 / 6.0) * std::cyl_bessel_k(5.0 / 6.0, x) -
           0.5 * std::pow(x, 11.0 / 6.0) * std::cyl_bessel_k(1.0 / 6.0, x));
 }

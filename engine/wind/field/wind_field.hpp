@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 
+#include "engine/math/portable.hpp"
 #include "engine/wind/ground/ground_wind.hpp"
 
 namespace yuragi::wind::field {
@@ -62,7 +63,7 @@ struct FieldGrid {
   double reach_m() const noexcept {
     const std::size_t half_x = count_x / 2;
     const std::size_t half_z = count_z / 2;
-    return spacing_m * std::hypot(static_cast<double>(half_x), static_cast<double>(half_z));
+    return spacing_m * math::length(static_cast<double>(half_x), static_cast<double>(half_z));
   }
   WindPlace place(std::size_t i, std::size_t j, std::size_t k) const noexcept;
 };

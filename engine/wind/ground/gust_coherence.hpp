@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/math/portable.hpp"
 #include "engine/noise/von_karman_corner.hpp"
 
 namespace yuragi::wind::ground {
@@ -51,7 +52,7 @@ struct GustCoherence {
     const double wavenumber_rad_m = 2.0 * std::numbers::pi * frequency_hz / speed_m_s;
     const double longest_hz = speed_m_s / longest_wave_m;
     const double travels = std::clamp(std::log2(frequency_hz / std::max(longest_hz, kWeather_hz)), 0.0, 1.0);
-    return travels * std::hypot(wavenumber_rad_m, 1.0 / (noise::kVonKarmanCorner * length_m));
+    return travels * math::length(wavenumber_rad_m, 1.0 / (noise::kVonKarmanCorner * length_m));
   }
 };
 

@@ -10,6 +10,8 @@
 #include <numbers>
 #include <string>
 
+#include "engine/math/portable.hpp"
+
 namespace yuragi::wind::judging {
 namespace {
 
@@ -216,7 +218,7 @@ DirectionMean direction_mean(std::span<const double> directions_deg) noexcept {
     east += std::sin(kRadians * direction_deg);
     north += std::cos(kRadians * direction_deg);
   }
-  const double length = std::min(1.0, std::hypot(east, north) / static_cast<double>(directions_deg.size()));
+  const double length = std::min(1.0, math::length(east, north) / static_cast<double>(directions_deg.size()));
   double mean_deg = std::atan2(east, north) / kRadians;
   if (mean_deg < 0.0) mean_deg += 360.0;
   return {.count = directions_deg.size(),

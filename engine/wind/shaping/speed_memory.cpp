@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/math/portable.hpp"
+
 namespace yuragi::wind::shaping {
 namespace {
 
@@ -12,7 +14,7 @@ constexpr double kBinsPerOctave = 8.0;
 
 /// Where a bin begins.
 double edge_m_s(double bin) noexcept {
-  return kSlowest_m_s * std::exp2(bin / kBinsPerOctave);
+  return kSlowest_m_s * math::power_of_two(bin / kBinsPerOctave);
 }
 
 std::size_t bin_of(double speed_m_s) noexcept {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/math/portable.hpp"
+
 namespace yuragi::wind::shaping {
 namespace {
 
@@ -238,8 +240,8 @@ void WindShaping::add_breeze(ground::DrivingWind& wind, double dt_s) noexcept {
     const double across_m_s = scale * std::sqrt(across_[i]);
     own.along_m_s[i] = static_cast<float>(along_m_s);
     own.across_m_s[i] = static_cast<float>(across_m_s);
-    gusts.along_m_s[i] = static_cast<float>(std::hypot(static_cast<double>(gusts.along_m_s[i]), along_m_s));
-    gusts.across_m_s[i] = static_cast<float>(std::hypot(static_cast<double>(gusts.across_m_s[i]), across_m_s));
+    gusts.along_m_s[i] = static_cast<float>(math::length(static_cast<double>(gusts.along_m_s[i]), along_m_s));
+    gusts.across_m_s[i] = static_cast<float>(math::length(static_cast<double>(gusts.across_m_s[i]), across_m_s));
   }
   know_less(wind.stroke, real, gusts);
   const WindVector breeze = opening_.value * breeze_m_s * gusts.ahead + noise_->everywhere(own);

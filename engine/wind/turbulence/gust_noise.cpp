@@ -8,6 +8,7 @@
 #include <span>
 
 #include "engine/math/philox.hpp"
+#include "engine/math/portable.hpp"
 #include "engine/noise/spectral_noise.hpp"
 #include "engine/noise/torus_read.hpp"
 #include "engine/noise/unit_reading.hpp"
@@ -126,7 +127,7 @@ GustNoise::GustNoise(const GustNoiseSettings& settings)
       const std::size_t tile_octave = chain * kTileOctaves + i;
       const Octave& octave = octaves_[2 * kWayOctaves + tile_octave] = next();
       const double middle_rad_m = std::numbers::sqrt2 * octave.from_rad_m;
-      turn_rates_m_23_[tile_octave] = std::cbrt(middle_rad_m * middle_rad_m);
+      turn_rates_m_23_[tile_octave] = math::cube_root(middle_rad_m * middle_rad_m);
       if (i < kLongOctaves) continue;  // they make no fronts
       const double sample = sample_m(tile_octave);
       slope_variances_m_2_[tile_octave] =
@@ -190,7 +191,7 @@ void GustNoise::carry(Carried& carried, double east_m_s, double south_m_s, doubl
     carried.tiles[i].x.add(x_m, tori_[i].period_m);
     carried.tiles[i].z.add(z_m, tori_[i].period_m);
   }
-  const double way_m = std::hypot(east_m_s, south_m_s) * dt_s;
+  const double way_m = math::length(east_m_s, south_m_s) * dt_s;
   carried.way_first.add(way_m, way_periods_m_[0]);
   carried.way_second.add(way_m, way_periods_m_[1]);
 
@@ -321,7 +322,7 @@ float GustNoise::envelope(const Moment& moment, double east_m, double south_m) c
 
 double eddy_turnover_m23_s(double sigma_m_s, double length_m) noexcept {
   constexpr double kDissipation = 0.88;
-  return kDissipation * sigma_m_s / std::cbrt(length_m);
+  return kDissipation * sigma_m_s / math::cube_root(length_m);
 }
 
 }  // namespace yuragi::wind::turbulence

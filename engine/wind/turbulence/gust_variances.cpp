@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/math/portable.hpp"
 #include "engine/noise/von_karman_corner.hpp"
 #include "engine/wind/turbulence/von_karman_integrals.hpp"
 
@@ -16,7 +17,7 @@ GustVariances gust_variances(const GustNoise& noise, double intensity, double le
   // On the ground, in two dimensions: what is left above |k| of the variance of one component.
   const auto above = [length_m](double rad_m) {
     const double reduced = noise::kVonKarmanCorner * length_m * rad_m;
-    const double scalar = 1.0 / std::cbrt(1.0 + reduced * reduced);
+    const double scalar = 1.0 / math::cube_root(1.0 + reduced * reduced);
     return scalar * (7.0 - scalar * scalar * scalar) / 6.0;
   };
   // Along the way, in one: at a wind of 1 m/s a wavenumber k is a frequency k / 2 pi.

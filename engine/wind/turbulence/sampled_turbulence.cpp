@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "engine/math/portable.hpp"
 #include "engine/noise/von_karman_corner.hpp"
 #include "engine/wind/turbulence/ratio_table.hpp"
 #include "engine/wind/turbulence/von_karman.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 /// Means of more samples than this are as good as means over all of the time.
 constexpr std::size_t kSampledScales = 6;
+constexpr double kGammaOfThird = 2.6789385347077476;
 
 /// The autocorrelation at a lag over L / U: the transform of W5. Von Karman 1948; as in ESDU 85020. Across the wind it
 /// is f + (r / 2) df/dr, f being that along it (incompressible turbulence, carried along frozen).
@@ -22,7 +24,7 @@ double autocorrelation(double lag, WindComponent component) {
   const double x = lag / noise::kVonKarmanCorner;
   if (x < 1e-9) return 1.0;
   if (x > 600.0) return 0.0;
-  const double scale = std::pow(2.0, 2.0 / 3.0) / std::tgamma(1.0 / 3.0) * std::cbrt(x);
+  const double scale = math::cube_root(4.0) / kGammaOfThird * math::cube_root(x);
   const double along = scale * std::cyl_bessel_k(1.0 / 3.0, x);
   if (component == WindComponent::kAlong) return along;
   return along - 0.5 * x * scale * std::cyl_bessel_k(2.0 / 3.0, x);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/math/portable.hpp"
+
 namespace yuragi::wind::turbulence {
 namespace {
 
@@ -77,7 +79,7 @@ double SiteSpectrum::power(double frequency_hz, double interval_s) const noexcep
     const double low_db = above > 0 ? octaves[above - 1] : 0.0;
     return low_db + t * (octaves[std::min(above, kOctaves - 1)] - low_db);
   };
-  return std::pow(10.0, 0.1 * (level_db(frequency_hz) - level_db(resolved_hz)));
+  return math::power_of_ten(0.1 * (level_db(frequency_hz) - level_db(resolved_hz)));
 }
 
 }  // namespace yuragi::wind::turbulence

@@ -34,32 +34,17 @@ constexpr double kLeastIntensity = 1e-4;
 }  // namespace
 
 TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value, WindComponent component)
-    : prior_(prior), memory_s_(memory_s), value_(value), component_(component) {
+    : prior_(prior), value_(value), component_(component), squares_(memory_s) {
   make_haar_table();  // now, not on the way
   if (value_ == ReadingValue::kInstant || value_ == ReadingValue::kUnknown) make_sampled_haar_table();
   prior_.intensity = std::max(prior.intensity, kLeastIntensity);
   turbulence_ = {prior_.intensity, 8.0};
 }
 
-void TurbulenceFit::add(std::size_t scale, double difference, double weight) noexcept {
-  if (scale >= kScales || !std::isfinite(difference) || !std::isfinite(weight)) return;
-  squares_[scale] += weight * square(difference);
-  weights_[scale] += weight;
-  counts_[scale] += 1.0;
-}
-
-void TurbulenceFit::forget(double dt_s) noexcept {
-  const double kept = std::exp(-std::max(dt_s, 0.0) / memory_s_);
-  for (double& sum : squares_) sum *= kept;
-  for (double& weight : weights_) weight *= kept;
-  for (double& count : counts_) count *= kept;
-}
-
 void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
   if (!(interval_s > 0.0) || !(speed_m_s > 0.0)) return;
 
-  // The variance at each scale, and its weight: neighbouring differences overlap, so 2^scale of them count about as
-  // one.
+  // The variance at each scale, and its weight.
   std::array<double, kScales> log_variance{};
   std::array<double, kScales> weight{};
   std::array<double, kScales> independent{};
@@ -69,12 +54,12 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
     const double readings = std::ldexp(1.0, static_cast<int>(scale));
     if (readings * interval_s > longest_s * 1.001) break;
     used = scale + 1;
-    independent[scale] = counts_[scale] / readings;
-    if (independent[scale] < 0.5 || !(squares_[scale] > 0.0)) {
+    independent[scale] = squares_.observations(scale);
+    if (independent[scale] < 0.5 || !(squares_.mean(scale) > 0.0)) {
       independent[scale] = 0.0;
       continue;
     }
-    log_variance[scale] = std::log(squares_[scale] / weights_[scale]);
+    log_variance[scale] = std::log(squares_.mean(scale));
     weight[scale] = independent[scale] / (1.0 + independent[scale] / kMostObservations);
   }
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 #include "engine/wind/reading_value.hpp"
+#include "engine/wind/turbulence/haar_squares.hpp"
 #include "engine/wind/turbulence/wind_component.hpp"
 
 namespace yuragi::wind::turbulence {
@@ -36,17 +36,18 @@ struct TurbulencePrior {
 /// Thread-safe: no. Realtime-safe after construction: yes.
 class TurbulenceFit {
  public:
-  static constexpr std::size_t kScales = 10;
+  static constexpr std::size_t kScales = HaarSquares::kScales;
 
   TurbulenceFit(const TurbulencePrior& prior, double memory_s, ReadingValue value = ReadingValue::kMean,
                 WindComponent component = WindComponent::kAlong);
 
-  /// A difference between two neighbouring means of 2^scale readings each, over the mean speed; `weight` (0 or more):
-  /// how much it counts in the scale's mean square.
-  void add(std::size_t scale, double difference, double weight = 1.0) noexcept;
+  /// HaarSquares::add() of a difference over the mean speed.
+  void add(std::size_t scale, double difference, double weight = 1.0) noexcept {
+    squares_.add(scale, difference, weight);
+  }
 
   /// What has been added fades: so much time has gone by.
-  void forget(double dt_s) noexcept;
+  void forget(double dt_s) noexcept { squares_.forget(dt_s); }
 
   /// Sets what the readings are taken as from the next fit on: kMean or kInstant. Precondition: it was constructed with
   /// that or with kUnknown.
@@ -58,12 +59,9 @@ class TurbulenceFit {
 
   Turbulence turbulence() const noexcept { return turbulence_; }
 
-  /// How many differences of a scale (below kScales) are remembered, counted as independent ones.
-  double observations(std::size_t scale) const noexcept { return std::ldexp(counts_[scale], -static_cast<int>(scale)); }
-  /// The mean square of the differences of a scale, as they were added; 0 where none is.
-  double measured(std::size_t scale) const noexcept {
-    return weights_[scale] > 0.0 ? squares_[scale] / weights_[scale] : 0.0;
-  }
+  /// HaarSquares::observations() and mean() of a scale (below kScales).
+  double observations(std::size_t scale) const noexcept { return squares_.observations(scale); }
+  double measured(std::size_t scale) const noexcept { return squares_.mean(scale); }
   /// The mean square of differences between neighbouring means over tau_s (above 0), by the fit.
   double expected(double tau_s) const noexcept;
 
@@ -74,11 +72,9 @@ class TurbulenceFit {
   double shape(std::size_t scale, double interval_over_time_scale) const noexcept;
 
   TurbulencePrior prior_;
-  double memory_s_;
   ReadingValue value_;
   WindComponent component_;
-  std::array<double, kScales> squares_{}, weights_{};
-  std::array<double, kScales> counts_{};
+  HaarSquares squares_;
   Turbulence turbulence_;
   std::array<double, kScales> log_correction_{};
   double interval_s_ = 1.0;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "engine/math/portable.hpp"
+
 namespace yuragi::wind::turbulence {
 
 double log_profile_m_s(double friction_velocity_m_s, double height_m, double roughness_m) noexcept {
@@ -42,7 +44,7 @@ double davenport_coherence(double frequency_hz, double distance_m, double speed_
 double iec_coherence(double frequency_hz, double distance_m, double speed_m_s, double height_m) noexcept {
   const double reduced = frequency_hz * distance_m / speed_m_s;
   const double separation = 0.12 * distance_m / iec_length_scale_m(WindComponent::kAlong, height_m);
-  return std::exp(-12.0 * std::hypot(reduced, separation));
+  return std::exp(-12.0 * math::length(reduced, separation));
 }
 
 }  // namespace yuragi::wind::turbulence

@@ -25,11 +25,14 @@ TurbulencePrior across_the_wind(TurbulencePrior prior) {
 WindTurbulence::WindTurbulence(const TurbulencePrior& prior, double memory_s, ReadingValue value)
     : along_(prior, memory_s, value),
       across_(across_the_wind(prior), memory_s, value, WindComponent::kAcross),
-      sums_(kRingSize) {}
+      sums_(kRingSize) {
+  if (value == ReadingValue::kUnknown) verdict_.emplace(prior.length_m);
+}
 
 void WindTurbulence::forget(double dt_s) noexcept {
   along_.forget(dt_s);
   across_.forget(dt_s);
+  if (verdict_) verdict_->forget(dt_s);
 }
 
 /// From now on sums are counted from the last reading.
@@ -56,7 +59,9 @@ void WindTurbulence::take(WindVector wind, WindVector ahead, double speed_m_s, b
     const WindVector newer = sum_until(0) - middle;
     const WindVector older = middle - sum_until(2 * count);
     const WindVector difference = 1.0 / (static_cast<double>(count) * speed_m_s) * (newer - older);
-    along_.add(scale, limited(difference.u_m_s * ahead.u_m_s + difference.v_m_s * ahead.v_m_s), speed_m_s);
+    const double along = limited(difference.u_m_s * ahead.u_m_s + difference.v_m_s * ahead.v_m_s);
+    along_.add(scale, along, speed_m_s);
+    if (verdict_) verdict_->add(scale, along, speed_m_s);
     if (!has_across) continue;
     across_.add(scale, limited(difference.v_m_s * ahead.u_m_s - difference.u_m_s * ahead.v_m_s), speed_m_s);
   }
@@ -65,6 +70,7 @@ void WindTurbulence::take(WindVector wind, WindVector ahead, double speed_m_s, b
 void WindTurbulence::fit(double interval_s, double speed_m_s) noexcept {
   along_.fit(interval_s, speed_m_s);
   across_.fit(interval_s, speed_m_s);
+  if (verdict_) verdict_->judge(interval_s, speed_m_s);
 }
 
 }  // namespace yuragi::wind::turbulence

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "engine/wind/turbulence/gust_variances.hpp"
 #include "engine/wind/turbulence/turbulence_fit.hpp"
+#include "engine/wind/turbulence/value_verdict.hpp"
 #include "engine/wind/wind_vector.hpp"
 
 namespace yuragi::wind::turbulence {
@@ -24,7 +26,7 @@ namespace yuragi::wind::turbulence {
 /// and 2 us once a turn.
 class WindTurbulence {
  public:
-  /// `prior`: along the wind; across it, the intensity is kAcrossPerAlong of it.
+  /// `prior`: along the wind; across it, the intensity is kAcrossPerAlong of it. Of kUnknown, the readings are judged.
   WindTurbulence(const TurbulencePrior& prior, double memory_s, ReadingValue value = ReadingValue::kMean);
 
   /// TurbulenceFit::take_as() of both.
@@ -38,16 +40,20 @@ class WindTurbulence {
   void break_off() noexcept { history_size_ = 0; }
   /// The next reading, in a wind that blows toward the unit vector `ahead` with a mean of speed_m_s (above 0).
   void take(WindVector wind, WindVector ahead, double speed_m_s, bool has_across) noexcept;
-  /// Fits both, for readings every interval_s.
+  /// Fits both, for readings every interval_s, and judges what the readings are.
   void fit(double interval_s, double speed_m_s) noexcept;
 
   const TurbulenceFit& along() const noexcept { return along_; }
   const TurbulenceFit& across() const noexcept { return across_; }
 
+  /// ValueVerdict::verdict(); kUnknown if the readings are not judged.
+  ReadingValue verdict() const noexcept { return verdict_ ? verdict_->verdict() : ReadingValue::kUnknown; }
+
  private:
   void begin_turn() noexcept;
 
   TurbulenceFit along_, across_;
+  std::optional<ValueVerdict> verdict_;
   std::vector<WindVector> sums_;  ///< a ring: of all readings up to each of the last ones
   std::size_t last_ = 0;          ///< the last reading's place in it
   std::size_t history_size_ = 0;  ///< readings without a gap up to the last

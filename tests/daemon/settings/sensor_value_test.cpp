@@ -98,8 +98,10 @@ TEST(SensorValue, IsAsConfiguredBeforeItIsAsStated) {
 }
 
 TEST(SensorValue, IsShownAsAssumedIfItIsUnknown) {
-  EXPECT_EQ(value_text(StatedValue{}, wind::assumed_value(16.0)), "instantaneous (assumed)");
-  EXPECT_EQ(value_text(StatedValue{}, wind::assumed_value(60.0)), "mean over the interval (assumed)");
+  EXPECT_EQ(value_text(StatedValue{}, {.value = wind::assumed_value(16.0)}), "instantaneous (assumed)");
+  EXPECT_EQ(value_text(StatedValue{}, {.value = wind::assumed_value(60.0)}), "mean over the interval (assumed)");
+  EXPECT_EQ(value_text(StatedValue{}, {.value = wind::ReadingValue::kMean, .is_judged = true}),
+            "mean over the interval (judged from its readings)");
   EXPECT_EQ(value_text(StatedValue{}), "unknown");
 }
 

@@ -208,6 +208,28 @@ TEST(WindShaper, AStormIsToldOnceHoweverManyGustsItHas) {
   EXPECT_EQ(log.count("the storm is over; the strongest was 30.0 m/s"), 1);
 }
 
+/// Two sensors, and what they have learnt from each other.
+struct KeptPair {
+  wind::judging::GroupGains gains{2};
+  wind::blend::GustReachFit reach{2};
+  KeptOfSensors kept() {
+    return {
+        .gains = {.learnt =
+                      [this] {
+                        return wind::judging::LearntByName{{"roof", gains.learnt()[0]}, {"yard", gains.learnt()[1]}};
+                      },
+                  .restore =
+                      [this](const wind::judging::LearntByName& learnt) {
+                        std::vector<wind::judging::GroupGains::Learnt> all(2);
+                        if (learnt.contains("roof")) all[0] = learnt.at("roof");
+                        if (learnt.contains("yard")) all[1] = learnt.at("yard");
+                        return gains.restore(all);
+                      }},
+        .reach = {.learnt = [this] { return reach.reach(); },
+                  .restore = [this](const wind::blend::GustReach& learnt) { return reach.restore(learnt); }}};
+  }
+};
+
 class SiteFileTest : public ::testing::Test {
  protected:
   SiteFileTest() {
@@ -218,6 +240,13 @@ class SiteFileTest : public ::testing::Test {
 
   std::string with_file(const std::string& more = "") const {
     return "site_median = 4\nsite_memory = 0.2\nover = 10\nsite_file = \"" + file_.string() + "\"\n" + more;
+  }
+
+  /// As a run of the daemon leaves it.
+  void write_file(KeptPair& pair) const {
+    ShaperBench wall(with_file());
+    wall.shaper.keep_site_file({}, pair.kept());
+    wall.after(2.0);
   }
 
   std::filesystem::path folder_ =
@@ -289,32 +318,10 @@ TEST_F(SiteFileTest, AFileFromBeforeGustsWereLearntIsStillRead) {
   EXPECT_EQ(gusts->octaves_db(), wind::turbulence::SiteSpectrum::Decibels{});
 }
 
-/// Two sensors, and the sum of what the site file gives back.
-struct KeptPair {
-  wind::judging::GroupGains gains{2};
-  KeptGains kept() {
-    return {.learnt =
-                [this] {
-                  return wind::judging::LearntByName{{"roof", gains.learnt()[0]}, {"yard", gains.learnt()[1]}};
-                },
-            .restore =
-                [this](const wind::judging::LearntByName& learnt) {
-                  std::vector<wind::judging::GroupGains::Learnt> all(2);
-                  if (learnt.contains("roof")) all[0] = learnt.at("roof");
-                  if (learnt.contains("yard")) all[1] = learnt.at("yard");
-                  return gains.restore(all);
-                }};
-  }
-};
-
 TEST_F(SiteFileTest, HowTheSensorsDifferIsRememberedOverARestart) {
   KeptPair before;
   ASSERT_TRUE(before.gains.restore(std::vector<wind::judging::GroupGains::Learnt>{{0.2, 7200.0}, {-0.2, 7200.0}}));
-  {
-    ShaperBench wall(with_file());
-    wall.shaper.keep_site_file({}, before.kept());
-    wall.after(2.0);
-  }
+  write_file(before);
   const CapturedLog log;
   KeptPair after;
   ShaperBench wall(with_file());
@@ -323,11 +330,51 @@ TEST_F(SiteFileTest, HowTheSensorsDifferIsRememberedOverARestart) {
   EXPECT_NEAR(after.gains.gain(1), before.gains.gain(1), 1e-9);
   EXPECT_EQ(after.gains.learnt()[0].learnt_s, 7200.0);
   EXPECT_EQ(log.count("holds how 2 sensors differ"), 1);
+  EXPECT_EQ(log.count("how far gusts are alike"), 0) << "nothing is known of it";
+}
+
+TEST_F(SiteFileTest, HowFarGustsAreAlikeIsRememberedOverARestart) {
+  KeptPair before;
+  ASSERT_TRUE(
+      before.reach.restore({.across_ln = 0.4, .along_ln = -0.2, .across_variance = 0.01, .along_variance = 0.02}));
+  write_file(before);
+  const CapturedLog log;
+  KeptPair after;
+  ShaperBench wall(with_file());
+  wall.shaper.keep_site_file({}, after.kept());
+  EXPECT_NEAR(after.reach.reach().across_ln, 0.4, 1e-9);
+  EXPECT_NEAR(after.reach.reach().along_ln, -0.2, 1e-9);
+  EXPECT_NEAR(after.reach.reach().across_variance, 0.01, 1e-9);
+  EXPECT_NEAR(after.reach.reach().along_variance, 0.02, 1e-9);
+  EXPECT_EQ(log.count("holds how far gusts are alike here"), 1);
+}
+
+/// A JSON list of the times of a site's wind.
+std::string some_times() {
+  std::string times;
+  for (std::size_t bin = 0; bin < wind::shaping::SpeedMemory::kBins; ++bin) times += bin == 0 ? "0" : ",100";
+  return '[' + times + ']';
+}
+
+TEST_F(SiteFileTest, AWrongReachIsToldAndTheRestOfTheFileIsUsed) {
+  const auto reach = [](const char* across, const char* deviation) {
+    return fmt::format(R"({{"across":{},"across_deviation":{},"along":1,"along_deviation":0.1}})", across, deviation);
+  };
+  for (const std::string& wrong : {std::string("3"), std::string("[]"), std::string("null"), std::string("{}"),
+                                   reach("1e9", "0.1"), reach("0", "0.1"), reach("-1", "0.1"), reach("null", "0.1"),
+                                   reach("\"1\"", "0.1"), reach("1", "0"), reach("1", "9")}) {
+    std::ofstream(file_) << R"({"seconds_at_each_speed": )" << some_times() << R"(, "gust_reach": )" << wrong << "}";
+    const CapturedLog log;
+    KeptPair pair;
+    ShaperBench wall(with_file());
+    wall.shaper.keep_site_file({}, pair.kept());
+    EXPECT_EQ(log.count("how far gusts are alike is learnt anew"), 1) << wrong;
+    EXPECT_EQ(log.count("of the site's wind"), 1) << wrong;
+    EXPECT_EQ(pair.reach.reach(), wind::blend::GustReach{}) << wrong;
+  }
 }
 
 TEST_F(SiteFileTest, WrongGainsAreToldAndTheRestOfTheFileIsUsed) {
-  std::string times;
-  for (std::size_t bin = 0; bin < wind::shaping::SpeedMemory::kBins; ++bin) times += bin == 0 ? "0" : ",100";
   std::string many;
   for (int i = 0; i < 1000; ++i) many += (i == 0 ? "\"" : ",\"") + std::to_string(i) + R"(":{"reads":1,"seconds":1})";
   const std::string good = R"("yard":{"reads":0.9,"seconds":60})";
@@ -337,7 +384,8 @@ TEST_F(SiteFileTest, WrongGainsAreToldAndTheRestOfTheFileIsUsed) {
         "{" + good + R"(,"roof":{"reads":1e9,"seconds":60}})", "{" + good + R"(,"roof":{"reads":0,"seconds":60}})",
         "{" + good + R"(,"roof":{"reads":-1.2,"seconds":60}})", "{" + good + R"(,"roof":{"reads":1.2,"seconds":-1}})",
         "{" + good + R"(,"roof":{"reads":"1.2","seconds":60}})", "{" + good + "," + good + "}", "{" + many + "}"}) {
-    std::ofstream(file_) << "{\"seconds_at_each_speed\": [" << times << "], \"relative_gains\": " << wrong << "}";
+    std::ofstream(file_) << R"({"seconds_at_each_speed": )" << some_times() << R"(, "relative_gains": )" << wrong
+                         << "}";
     const CapturedLog log;
     KeptPair pair;
     ShaperBench wall(with_file());

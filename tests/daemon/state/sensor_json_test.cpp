@@ -16,6 +16,7 @@ TEST(SensorJson, HasNumbersAsNumbersAndNullWhereNothingIsKnown) {
   wire::Sensors sensors;
   sensors.sensors = {sensor};
   sensors.wind.wind = {.u_m_s = -4.0, .v_m_s = 0.0};
+  sensors.gust_reach_across = 1.5;
   sensors.recorder = wire::RecorderStatus{.state = wire::RecorderState::kHanging,
                                           .written = 12,
                                           .clock_doubt = "the clock is doubted",
@@ -34,6 +35,8 @@ TEST(SensorJson, HasNumbersAsNumbersAndNullWhereNothingIsKnown) {
   EXPECT_EQ(json["wind"]["speed_m_s"], 4.0);
   EXPECT_EQ(json["wind"]["direction_deg"], 90.0);
   EXPECT_EQ(json["wind"]["source"], "default");
+  EXPECT_EQ(json["gust_reach"]["across"], 1.5);
+  EXPECT_TRUE(json["gust_reach"]["along"].is_null());
   EXPECT_EQ(json["recorder"]["state"], "hanging");
   EXPECT_TRUE(json["recorder"]["free_bytes"].is_null());
   EXPECT_EQ(json["recorder"]["clock_doubt"], "the clock is doubted");

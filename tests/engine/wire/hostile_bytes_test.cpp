@@ -336,6 +336,8 @@ TEST(HostileBytes, SensorsOutOfBoundsAreRefused) {
       [](auto& s) { s.wind.upwind_m = -1e7; },
       [](auto& s) { s.wind.to_middle_s = -1.0; },
       [](auto& s) { s.wind.to_middle_s = 1e30; },
+      [](auto& s) { s.gust_reach_across = std::nan(""); },
+      [](auto& s) { s.gust_reach_along = 0.0; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
     Sensors sensors = samples::sensors();

@@ -406,6 +406,8 @@ TEST(WireRoundTrip, HowTheDaemonDoesComesBack) {
   EXPECT_EQ(sensors.stuck_clients, 7U);
   EXPECT_EQ(sensors.idle_clients, 8U);
   EXPECT_EQ(sensors.given_up, 3);
+  EXPECT_EQ(sensors.gust_reach_across, 1.5);
+  EXPECT_EQ(sensors.gust_reach_along, std::nullopt) << "not known";
   EXPECT_EQ(sensors.parameters_revision, 21U);
   ASSERT_TRUE(sensors.io_lateness && sensors.tick_lateness);
   EXPECT_EQ(sensors.io_lateness->p50_s, 0.0625);

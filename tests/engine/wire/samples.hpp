@@ -425,7 +425,8 @@ inline wire::Sensors sensors() {
       .recent_ticks = 36'000,
       .recent_skipped_ticks = 40,
       .troubles = {"the page cannot be served"},
-      .given_up = 3};
+      .given_up = 3,
+      .gust_reach_across = 1.5};
 }
 
 inline wire::RawTrace raw_trace() {

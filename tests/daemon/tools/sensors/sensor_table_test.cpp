@@ -119,6 +119,18 @@ TEST(SensorTable, SaysWhereTheWindIsAndWhenItsGustsComeToTheMiddle) {
   EXPECT_THAT(sensor_table(sensors), HasSubstr("\n  at the sensors, level with the middle of the scenes\n"));
 }
 
+TEST(SensorTable, SaysHowFarGustsAreAlikeWhereThatIsKnown) {
+  wire::Sensors sensors;
+  EXPECT_THAT(sensor_table(sensors), Not(HasSubstr("alike")));
+  sensors.gust_reach_across = 1.4;
+  EXPECT_THAT(
+      sensor_table(sensors),
+      HasSubstr("\n  gusts are alike 1.40 times as far across the wind as usually; learnt from these sensors\n"));
+  sensors.gust_reach_along = 0.8;
+  EXPECT_THAT(sensor_table(sensors),
+              HasSubstr("alike 1.40 times as far across the wind and 0.80 times as far along the"));
+}
+
 TEST(SensorTable, SaysHowTheWindIsShapedWhereItIs) {
   wire::Sensors sensors;
   EXPECT_THAT(sensor_table(sensors), Not(HasSubstr("shaped")));

@@ -344,15 +344,15 @@ TEST(BlendedSources, WhatNobodySaysIsAssumedByTheInterval) {
     if (second % 60 == 0) run.read(5.0 + 0.01 * second, 180.0, 1);
     run.run_for(1.0);
   }
-  EXPECT_EQ(run.estimator().taken(0), ReadingValue::kInstant);
-  EXPECT_EQ(run.estimator().taken(1), ReadingValue::kMean);
-  EXPECT_EQ(run.estimator().taken(2), ReadingValue::kMean);
+  EXPECT_EQ(run.estimator().taken(0).value, ReadingValue::kInstant);
+  EXPECT_EQ(run.estimator().taken(1).value, ReadingValue::kMean);
+  EXPECT_EQ(run.estimator().taken(2).value, ReadingValue::kMean);
 
   // One whose interval wavers about the limit stays what it is.
   BlendRun wavering(1, without_noise({{.value = ReadingValue::kUnknown}}));
   for (int i = 0; i < 60; ++i)
     wavering.read_for(27.0 + static_cast<double>(i / 15 % 2) * 6.0, 33.0, 5.0 + 0.01 * i, 180.0);
-  EXPECT_EQ(wavering.estimator().taken(0), ReadingValue::kInstant);
+  EXPECT_EQ(wavering.estimator().taken(0).value, ReadingValue::kInstant);
 }
 
 // One of which nobody says what it is is taken as what is assumed, bit for bit.

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "engine/wind/ground/wind_stroke.hpp"
+#include "engine/wind/turbulence/octave_follower.hpp"
+
+namespace yuragi::wind::blend {
+
+/// How much farther gusts are alike at a site than by the law of GustCoherence, learnt from its own pairs of sensors
+/// (W44): the logarithms of the factors across the wind and along it, and the variance of each.
+struct GustReach {
+  /// Of a site of which nothing is known: the law's constants differ from site to site by about so much.
+  static constexpr double kPriorVariance = 0.25;
+  /// Largest factor, and the inverse of the smallest.
+  static constexpr double kMostFactor = 3.0;
+
+  double across_ln = 0.0, along_ln = 0.0;
+  double across_variance = kPriorVariance, along_variance = kPriorVariance;
+
+  bool operator==(const GustReach&) const = default;
+};
+
+/// Is a factor known, by the variance of its logarithm? Pure.
+constexpr bool is_known(double variance) noexcept {
+  return variance < 0.16 * GustReach::kPriorVariance;  // within 20 %
+}
+
+/// May that have been learnt? Pure.
+bool is_valid(const GustReach& reach) noexcept;
+
+/// Learns GustReach from what is measured at several places, octave band by octave band. A gust of one place is
+/// compared with that of the other at the moment when the mean wind has carried it there, as WindTapes reads it; the
+/// product of the two, over their deviations, is expected to be the root coherence. An extended Kalman filter
+/// (Jazwinski 1970, Stochastic Processes and Filtering Theory, 8.3) of two logarithms, bounded; what was learnt counts
+/// for hours of learning, and stays as it is while nothing can be learnt. Causal; no step is larger than some per cent.
+///
+/// Allocates at construction only. Thread-safe: no. Realtime-safe after construction: yes; some microseconds a tick.
+class GustReachFit {
+ public:
+  static constexpr std::size_t kBands = turbulence::OctaveFollower::kBands;
+
+  /// What is measured at a place.
+  struct Place {
+    double east_m = 0.0, south_m = 0.0;    ///< where its sensors stand
+    double delay_s = 0.0;                  ///< how much later than the wind its readings are: averaging and hold
+    const ground::WindPen* pen = nullptr;  ///< null: it is not known where its sensors stand
+  };
+
+  /// `place_count`: with fewer than two nothing is learnt.
+  explicit GustReachFit(std::size_t place_count);
+
+  /// Advances by a tick. `stroke` and `places` (place_count of them) are of this tick.
+  void advance(double dt_s, const ground::WindStroke& stroke, std::span<const Place> places) noexcept;
+
+  const GustReach& reach() const noexcept { return reach_; }
+  /// Goes on from what an earlier run learnt; false, and nothing changes, for what cannot have been learnt.
+  bool restore(const GustReach& reach) noexcept;
+
+ private:
+  /// A band of one place at a moment, over the mean speed; with the way that the wind had come.
+  struct Sample {
+    double way_m = 0.0;
+    double carried_east_m = 0.0, carried_south_m = 0.0;
+    WindVector gust{};
+    bool is_known = false;
+  };
+  static constexpr std::size_t kSamples = 128;
+
+  /// A band of one place.
+  struct Trace {
+    std::array<Sample, kSamples> ring{};
+    double power = 0.0;    ///< mean square of its gusts over the mean speed
+    double known_s = 0.0;  ///< for how long that has been measured
+  };
+
+  Trace& trace(std::size_t place, std::size_t band) noexcept { return traces_[place * kBands + band]; }
+  void sample(std::size_t band, double passed_s, const ground::WindStroke& stroke,
+              std::span<const Place> places) noexcept;
+  void compare(std::size_t band, const ground::WindStroke& stroke, std::span<const Place> places) noexcept;
+  void observe(std::size_t band, double product, double along_m, double across_m,
+               const ground::GustCoherence& law) noexcept;
+  bool read(const Trace& trace, std::size_t newest, double way_m, const ground::WindStroke& stroke,
+            WindVector& gust) const noexcept;
+
+  std::size_t place_count_;
+  std::vector<Trace> traces_;
+  struct Pace {
+    double since_s = 0.0;    ///< since the last sample
+    std::size_t newest = 0;  ///< its place in the rings
+  };
+  std::array<Pace, kBands> paces_{};
+  GustReach reach_;
+  double covariance_ = 0.0;
+  double since_observed_s_ = 0.0;
+  bool has_observed_ = false;  ///< in this tick
+};
+
+}  // namespace yuragi::wind::blend

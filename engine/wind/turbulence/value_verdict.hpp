@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+
+#include "engine/wind/reading_value.hpp"
+#include "engine/wind/turbulence/haar_squares.hpp"
+
+namespace yuragi::wind::turbulence {
+
+/// Judges from the readings of a station whether each is a mean over the interval or the instantaneous wind (W43).
+///
+/// Means leave less of the differences between neighbouring readings than of those between longer means; instantaneous
+/// wind does not. Compared are the likelihoods of Haar's variances over 1 to 32 readings by W28 and by W39, over all
+/// lengths by their prior. It judges after 30 min, and only while the readings are close enough to show gusts of the
+/// inertial range, which have one shape everywhere; at longer intervals averaging cannot be told from a longer gust.
+///
+/// Thread-safe: no. Realtime-safe after construction: yes; at most once a minute judge() takes about 20 us.
+class ValueVerdict {
+ public:
+  static constexpr std::size_t kScales = 6;
+
+  /// `length_m`: integral length scale before anything is measured; above 0.
+  explicit ValueVerdict(double length_m);
+
+  /// HaarSquares::add() of a difference over the mean speed. Scales from kScales on are not judged.
+  void add(std::size_t scale, double difference, double weight) noexcept { squares_.add(scale, difference, weight); }
+  /// So much time has gone by.
+  void forget(double dt_s) noexcept;
+
+  /// Judges readings every `interval_s` in a wind of mean speed `speed_m_s`, both above 0. An interval that changes
+  /// by more than a fifth begins anew.
+  void judge(double interval_s, double speed_m_s) noexcept;
+
+  /// kMean or kInstant, or kUnknown as long as neither is 20 times as likely as the other. Once judged it stays until
+  /// the other one is.
+  ReadingValue verdict() const noexcept { return verdict_; }
+
+  /// The logarithm of how many times as likely the readings are if they are instantaneous as if they are means.
+  double log_likelihood_ratio(double interval_s, double speed_m_s) const noexcept;
+
+ private:
+  void begin(double interval_s) noexcept;
+
+  double length_m_;
+  HaarSquares squares_;
+  double known_s_ = 0.0;
+  double judged_s_ = 0.0;  ///< of the known time, at the last judgement
+  double interval_s_ = 0.0;
+  ReadingValue verdict_ = ReadingValue::kUnknown;
+};
+
+}  // namespace yuragi::wind::turbulence
