@@ -71,7 +71,7 @@ list(JOIN YURAGI_HOT_ROOMS "|" YURAGI_HOT_ROOMS)
 list(JOIN YURAGI_WARM_ROOMS "|" YURAGI_WARM_ROOMS)
 
 # yuragi_room(engine/wind SOURCES a.cpp b.cpp LINK yuragi_engine_base ...)
-# A library of one folder. LINK lists what ARCHITECTURE.md's table allows that room.
+# A library of one folder. LINK lists the rooms and libraries whose headers it includes; tests/architecture holds its sources against it.
 function(yuragi_room folder)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   string(REPLACE "/" "_" name "yuragi_${folder}")

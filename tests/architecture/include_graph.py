@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the rooms of the project, from the bottom up, with the files in each and the rooms that it includes.
+"""Prints the rooms of the project, from the bottom up: what each is, by its README.md, its files and the rooms that it includes.
 
 usage: tests/architecture/include_graph.py [PROJECT_ROOT]
 
@@ -24,7 +24,8 @@ def main(root):
     for level in range(max(levels.values()) + 1):
         print(f"level {level}")
         for room in sorted(r for r in graph if levels[r] == level):
-            print(f"  {room} ({files[room]} files) -> {', '.join(sorted(graph[room])) or 'nothing'}")
+            title = (root / room / "README.md").read_text(encoding="utf-8").splitlines()[0].lstrip("# ")
+            print(f"  {title} ({files[room]} files)\n    -> {', '.join(sorted(graph[room])) or 'nothing'}")
     return 0
 
 

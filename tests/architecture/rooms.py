@@ -1,41 +1,104 @@
-"""The rooms of ARCHITECTURE.md, and who includes whom in the sources."""
+"""The rooms of the project, as their CMakeLists.txt declare them, and who includes whom in the sources."""
 import pathlib
 import re
 
 TOPS = ("engine", "drivers", "daemon", "viewer", "simulators")
-TABLE_HEAD = "| room | what it is | may include | libraries |"
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"(?P<own>[^"]+)"|<(?P<outside>[^>]+)>)')
+# yuragi_room(engine/wind SOURCES ... LINK ...), yuragi_program(yuragi LINK ...), target_link_libraries(yuragi_drivers PUBLIC ...)
+DECLARATION = re.compile(r"\b(?P<command>yuragi_room|yuragi_program|target_link_libraries)\(\s*(?P<name>\S+)(?P<rest>[^()]*)\)")
+LINK = re.compile(r"\b(?:LINK|PUBLIC|PRIVATE|INTERFACE)\b(?P<targets>.*)", re.DOTALL)
+
+# How the headers of a library begin. One that is not here has none that a room includes.
+HEADERS = {
+    "Boost::headers": "boost/lockfree boost/system",
+    "CLI11::CLI11": "CLI",
+    "PkgConfig::CRYPTO": "openssl",
+    "PkgConfig::CURL": "curl",
+    "PkgConfig::EPOXY": "epoxy",
+    "PkgConfig::FFTW3": "fftw3.h",
+    "PkgConfig::HIDAPI": "hidapi",
+    "PkgConfig::IMGUI": "imgui backends/imgui",
+    "PkgConfig::JPEG": "jpeglib.h",
+    "PkgConfig::LIBLO": "lo",
+    "PkgConfig::LIBMODBUS": "modbus",
+    "PkgConfig::LIBUSB": "libusb",
+    "PkgConfig::MOSQUITTO": "mosquitto.h",
+    "PkgConfig::PNG": "png.h",
+    "PkgConfig::PORTAUDIO": "portaudio",
+    "PkgConfig::PROMETHEUS": "prometheus",
+    "PkgConfig::STB": "stb",
+    "PkgConfig::UMOCKDEV": "umockdev.h",
+    "SQLite::SQLite3": "sqlite3.h",
+    "TinyGLTF::TinyGLTF": "tiny_gltf.h",
+    "date::date-tz": "date",
+    "flatbuffers::flatbuffers": "flatbuffers pose_generated.h",
+    "fmt::fmt": "fmt",
+    "glfw": "GLFW",
+    "glm::glm": "glm",
+    "nlohmann_json::nlohmann_json": "nlohmann",
+    "spdlog::spdlog": "spdlog",
+    "tomlplusplus::tomlplusplus": "toml++",
+    "yuragi_asio": "boost/asio boost/beast boost/system",
+}
 
 
 class Room:
-    """One line of the table."""
+    """A folder of sources. `links`: the rooms that it links; `may_include`: those, and what they link in turn;
+    `libraries`: how the headers begin of the libraries that it links itself."""
 
-    def __init__(self, name, may_include, libraries):
+    def __init__(self, name, links, may_include, libraries):
         self.name = name
+        self.links = links
         self.may_include = may_include
         self.libraries = libraries
 
 
-def read_table(text):
-    """The table of rooms in ARCHITECTURE.md's text: {name: Room}."""
-    lines = iter(text.splitlines())
-    if TABLE_HEAD not in lines:
-        raise ValueError(f"ARCHITECTURE.md has no table that begins with {TABLE_HEAD}")
-    next(lines)  # | --- |
+def target_of(room):
+    return "yuragi_" + room.replace("/", "_")
+
+
+def rooms_of(files):
+    """The rooms that these CMakeLists.txt declare: {name: Room}. `files`: {folder: text}."""
+    targets = {}  # what each target links
+    names = {}  # the room of a target
+    for folder, text in files.items():
+        for match in DECLARATION.finditer(re.sub(r"#.*", "", text)):
+            target = match["name"]
+            if match["command"] == "yuragi_room":
+                target = target_of(match["name"])
+                names[target] = match["name"]
+            elif match["command"] == "yuragi_program":
+                if f"yuragi_room({folder}\n" in text or f"yuragi_room({folder} " in text:
+                    continue  # its main.cpp belongs to the room
+                target = target_of(folder)
+                names[target] = folder
+            linked = LINK.search(match["rest"])
+            targets.setdefault(target, []).extend(linked["targets"].split() if linked else [])
+
+    def reached_from(target, reached):
+        for other in targets.get(target, ()):
+            if other not in reached:
+                reached.add(other)
+                reached_from(other, reached)
+        return reached
+
     rooms = {}
-    for line in lines:
-        if not line.startswith("|"):
-            break
-        name, _, may_include, libraries = (cell.strip() for cell in line.strip("|").split("|"))
-        rooms[name] = Room(name, may_include.split(), libraries.split())
-    for room in rooms.values():
-        named, room.may_include = room.may_include, set()
-        for other in named:
-            below = {r for r in rooms if other.endswith("/*") and r.startswith(other[:-1])} or {other}
-            if not below <= rooms.keys():
-                raise ValueError(f"{room.name} may include {other}, which is no room")
-            room.may_include |= below - {room.name}
+    for target, name in names.items():
+        links = {names[other] for other in targets[target] if other in names} - {name}
+        may_include = {names[other] for other in reached_from(target, set()) if other in names} - {name}
+        libraries = [prefix for other in targets[target] for prefix in HEADERS.get(other, "").split()]
+        rooms[name] = Room(name, links, may_include, libraries)
     return rooms
+
+
+def read_rooms(root):
+    return rooms_of(
+        {
+            path.parent.relative_to(root).as_posix(): path.read_text(encoding="utf-8")
+            for top in TOPS
+            for path in sorted((root / top).rglob("CMakeLists.txt"))
+        }
+    )
 
 
 def includes_of(text):
