@@ -269,7 +269,9 @@ double error_between(double reach, bool learns) {
   static const auto kNoise =
       std::make_shared<const turbulence::GustNoise>(turbulence::GustNoiseSettings{.samples = 128});
   BlendedEstimator estimator(2, settings, kNoise);
-  if (!learns) EXPECT_TRUE(estimator.restore_reach({.across_variance = 1e-12, .along_variance = 1e-12}));
+  if (!learns) {
+    EXPECT_TRUE(estimator.restore_reach({.across_variance = 1e-12, .along_variance = 1e-12}));
+  }
   ground::WindTapes tapes(2);
   ThreePlaces wind(reach);
   double squares = 0.0;
@@ -293,7 +295,9 @@ double error_between(double reach, bool learns) {
     const double lacks_m_s = ground.measured_at(0.0, 0.0).v_m_s - ThreePlaces::kMean_m_s - gusts[1];
     squares += lacks_m_s * lacks_m_s / (0.5 * kTicks);
   }
-  if (learns) EXPECT_NEAR(std::exp(estimator.reach().across_ln) / reach, 1.0, 0.25) << reach;
+  if (learns) {
+    EXPECT_NEAR(std::exp(estimator.reach().across_ln) / reach, 1.0, 0.25) << reach;
+  }
   return squares;
 }
 
