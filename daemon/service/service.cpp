@@ -1,7 +1,6 @@
 #include "daemon/service/service.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <optional>
 
@@ -523,9 +522,8 @@ class Service::Io {
     wire::Sensors status;
     status.sensors = hub_.status();
     status.wind = hub_.wind();
-    const wind::blend::GustReach& reach = hub_.gust_reach();
-    if (wind::blend::is_known(reach.across_variance)) status.gust_reach_across = std::exp(reach.across_ln);
-    if (wind::blend::is_known(reach.along_variance)) status.gust_reach_along = std::exp(reach.along_ln);
+    status.gust_reach_across = hub_.gust_reach().across();
+    status.gust_reach_along = hub_.gust_reach().along();
     status.shaping = shaper_.status();
     status.look = look_;
     status.cameras = cameras_;

@@ -11,6 +11,7 @@ struct WindVector {
   friend WindVector operator+(WindVector a, WindVector b) { return {a.u_m_s + b.u_m_s, a.v_m_s + b.v_m_s}; }
   friend WindVector operator-(WindVector a, WindVector b) { return {a.u_m_s - b.u_m_s, a.v_m_s - b.v_m_s}; }
   friend WindVector operator*(double k, WindVector a) { return {k * a.u_m_s, k * a.v_m_s}; }
+  friend double dot(WindVector a, WindVector b) noexcept { return a.u_m_s * b.u_m_s + a.v_m_s * b.v_m_s; }
 };
 
 /// Speed, m/s.

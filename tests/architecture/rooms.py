@@ -68,9 +68,9 @@ def rooms_of(files):
                 target = target_of(match["name"])
                 names[target] = match["name"]
             elif match["command"] == "yuragi_program":
-                if f"yuragi_room({folder}\n" in text or f"yuragi_room({folder} " in text:
-                    continue  # its main.cpp belongs to the room
                 target = target_of(folder)
+                if target in names:
+                    continue  # its main.cpp belongs to the room
                 names[target] = folder
             linked = LINK.search(match["rest"])
             targets.setdefault(target, []).extend(linked["targets"].split() if linked else [])

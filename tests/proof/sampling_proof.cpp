@@ -181,7 +181,7 @@ ReadingValue judged(const SonicRecord& record, ReadingValue value, double interv
 // What nobody states is judged from readings of 1 or 2 s. It is never judged wrongly; of instantaneous wind always
 // rightly, of means in known spectra. Of means of real wind often not at all: it has more quick gusts than W5.
 TEST(Sampling, WhatNobodyStatesIsJudgedFromTheReadings) {
-  int means = 0, told = 0;
+  int means = 0, recognised = 0;
   for (const auto& [speed, intensity, length] :
        {std::array{5.0, 0.2, 40.0}, {3.0, 0.5, 15.0}, {10.0, 0.15, 100.0}, {1.2, 0.8, 15.0}, {5.0, 0.3, 300.0}}) {
     for (const SonicRecord& record : made_up(speed, intensity, length)) {
@@ -192,12 +192,12 @@ TEST(Sampling, WhatNobodyStatesIsJudgedFromTheReadings) {
         EXPECT_NE(of_means, kInstant) << record.name << ' ' << interval_s;
         if (interval_s > 1.0) continue;
         ++means;
-        told += of_means == kMean ? 1 : 0;
+        recognised += of_means == kMean ? 1 : 0;
       }
     }
   }
-  fmt::print("means of 1 s: {} of {} are told\n", told, means);
-  EXPECT_GE(told, means * 9 / 10);
+  fmt::print("means of 1 s: {} of {} are recognised\n", recognised, means);
+  EXPECT_GE(recognised, means * 9 / 10);
   for (const int number : {0, 1}) {
     const auto record = load_sonic(number);
     if (!record) GTEST_SKIP() << "../shared/data/sonic is not here";

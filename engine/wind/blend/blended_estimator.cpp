@@ -45,10 +45,6 @@ double part_of_octave(double ratio) noexcept {
   return ratio >= 2.0 ? 1.0 : std::log2(ratio);
 }
 
-double dot(WindVector a, WindVector b) noexcept {
-  return a.u_m_s * b.u_m_s + a.v_m_s * b.v_m_s;
-}
-
 std::vector<BlendSourceSettings> completed(std::vector<BlendSourceSettings> sources, std::size_t count) {
   sources.resize(count);
   return sources;

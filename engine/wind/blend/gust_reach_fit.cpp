@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/math/portable.hpp"
+#include "engine/wind/blend/blend_source.hpp"
 #include "engine/wind/turbulence/von_karman.hpp"
 
 namespace yuragi::wind::blend {
@@ -16,13 +17,11 @@ using turbulence::OctaveFollower;
 constexpr double kQuickest_hz = 2.0;
 constexpr double kSamplesOfAWave = 16.0;
 /// A place has a band if its sensors resolve so much of it.
-constexpr double kLeastWeight = 0.8;
+constexpr double kLeastResolved = 0.8;
 constexpr double kPowerMemory_s = 600.0;
 /// Powers are used after so much time, or so many waves if they take longer.
 constexpr double kLeastKnown_s = 300.0;
 constexpr double kLeastKnown_waves = 10.0;
-/// In weaker wind nothing is learnt: it has no direction to speak of.
-constexpr double kLeastSpeed_m_s = 0.5;
 /// Where the wind has turned on the way by more than this part of it, or a metre, nothing is learnt.
 constexpr double kMostTurn = 0.2;
 constexpr double kLeastTurn_m = 1.0;
@@ -43,6 +42,9 @@ struct BandPoint {
   double frequency_times_centre = 1.0;
   double power = 1.0;  ///< what the band passes, times the frequency
 };
+/// A factor is known within 20 %.
+constexpr double kKnownVariance = 0.04;
+
 /// All bands have one shape: the difference of two low passes an octave apart.
 const std::array<BandPoint, kPoints>& band_points() noexcept {
   static const std::array<BandPoint, kPoints> all = [] {
@@ -63,11 +65,19 @@ double most_ln() noexcept {
   return std::log(GustReach::kMostFactor);
 }
 
-double dot(WindVector a, WindVector b) noexcept {
-  return a.u_m_s * b.u_m_s + a.v_m_s * b.v_m_s;
+std::optional<double> factor_if_known(double ln, double variance) noexcept {
+  return variance < kKnownVariance ? std::optional(std::exp(ln)) : std::nullopt;
 }
 
 }  // namespace
+
+std::optional<double> GustReach::across() const noexcept {
+  return factor_if_known(across_ln, across_variance);
+}
+
+std::optional<double> GustReach::along() const noexcept {
+  return factor_if_known(along_ln, along_variance);
+}
 
 bool is_valid(const GustReach& reach) noexcept {
   constexpr double kRounding = 1e-9;
@@ -104,6 +114,7 @@ void GustReachFit::advance(double dt_s, const ground::WindStroke& stroke, std::s
     pace.newest = (pace.newest + 1) % kSamples;
     sample(band, pace.since_s, stroke, places);
     pace.since_s = 0.0;
+    // Weaker wind has no direction to speak of.
     if (stroke.coherence.speed_m_s >= kLeastSpeed_m_s) compare(band, stroke, places);
   }
   if (!has_observed_) return;
@@ -127,7 +138,7 @@ void GustReachFit::sample(std::size_t band, double passed_s, const ground::WindS
            .carried_south_m = stroke.carried_south_m,
            .gust = {},
            .is_known = false};
-    if (pen == nullptr || pen->weights[1 + band] < kLeastWeight) continue;
+    if (pen == nullptr || pen->weights[1 + band] < kLeastResolved) continue;
     now.is_known = true;
     const double per_speed = 1.0 / stroke.coherence.speed_m_s;
     now.gust = per_speed *

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,13 +22,12 @@ struct GustReach {
   double across_ln = 0.0, along_ln = 0.0;
   double across_variance = kPriorVariance, along_variance = kPriorVariance;
 
+  /// The factors, as soon as each is known within 20 %.
+  std::optional<double> across() const noexcept;
+  std::optional<double> along() const noexcept;
+
   bool operator==(const GustReach&) const = default;
 };
-
-/// Is a factor known, by the variance of its logarithm? Pure.
-constexpr bool is_known(double variance) noexcept {
-  return variance < 0.16 * GustReach::kPriorVariance;  // within 20 %
-}
 
 /// May that have been learnt? Pure.
 bool is_valid(const GustReach& reach) noexcept;

@@ -12,7 +12,8 @@ namespace yuragi::wind::turbulence {
 /// Means leave less of the differences between neighbouring readings than of those between longer means; instantaneous
 /// wind does not. Compared are the likelihoods of Haar's variances over 1 to 32 readings by W28 and by W39, over all
 /// lengths by their prior. It judges after 30 min, and only while the readings are close enough to show gusts of the
-/// inertial range, which have one shape everywhere; at longer intervals averaging cannot be told from a longer gust.
+/// inertial range, which have one shape everywhere; at longer intervals averaging cannot be distinguished from a longer
+/// gust.
 ///
 /// Thread-safe: no. Realtime-safe after construction: yes; at most once a minute judge() takes about 20 us.
 class ValueVerdict {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -137,6 +138,8 @@ TEST(GustReachFit, LearnsHowFarGustsReachAcrossTheWind) {
     // A pair across the wind shows nothing of how far gusts reach along it.
     EXPECT_EQ(reach.along_ln, 0.0);
     EXPECT_EQ(reach.along_variance, GustReach::kPriorVariance);
+    EXPECT_EQ(reach.across(), std::exp(reach.across_ln));
+    EXPECT_EQ(reach.along(), std::nullopt);
   }
 }
 
