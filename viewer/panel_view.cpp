@@ -157,11 +157,11 @@ void explain(const wire::ParameterState& state) {
   ImGui::PushTextWrapPos(kTooltipWidth * ImGui::GetFontSize());
   ImGui::TextUnformatted(state.help.c_str());
   if (!state.left_out.empty()) ImGui::TextUnformatted(("Left out: " + state.left_out).c_str());
-  if (state.change == wire::ParameterChange::kCrossFade) {
+  if (state.change == KeyChange::kCrossFade) {
     ImGui::TextUnformatted("The scene is made anew, and cross-faded to.");
   }
-  if (state.change == wire::ParameterChange::kTakesRestart) ImGui::TextUnformatted("Takes a restart of the daemon.");
-  if (state.change == wire::ParameterChange::kTakesReload) {
+  if (state.change == KeyChange::kTakesRestart) ImGui::TextUnformatted("Takes a restart of the daemon.");
+  if (state.change == KeyChange::kTakesReload) {
     ImGui::TextUnformatted("Is read with the configuration: yuragi reload.");
   }
   ImGui::PopTextWrapPos();
@@ -178,8 +178,7 @@ void draw_parameter(Panel& panel, const wire::ParameterGroup& group, const wire:
   ImGui::TextUnformatted(state.name.c_str());
   explain(state);
   ImGui::TableNextColumn();
-  const bool is_fixed =
-      state.change == wire::ParameterChange::kTakesRestart || state.change == wire::ParameterChange::kTakesReload;
+  const bool is_fixed = state.change == KeyChange::kTakesRestart || state.change == KeyChange::kTakesReload;
   if (!panel.refusal().empty() || is_fixed) {
     ImGui::AlignTextToFramePadding();
     ImGui::PushTextWrapPos(0.0F);

@@ -60,9 +60,8 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
                        {"height_m", state::json_or_null(sensor.heights.sensor_m)}});
     if (!full) continue;
     sensors.back()["values"] = json_of(sensor.values);
-    sensors.back()["calibration"] = json_of(sensor.by_name.calibration);
-    sensors.back()["judge"] = json_of(sensor.by_name.judge);
-    sensors.back()["blend"] = json_of(sensor.by_name.blend);
+    for (const settings::SensorTable& table : settings::sensor_tables())
+      sensors.back()[table.name] = json_of(sensor.by_name.at(table.name));
   }
   nlohmann::ordered_json scenes = nlohmann::ordered_json::array();
   for (const settings::SceneConfig& scene : config.scenes) {
@@ -79,17 +78,25 @@ nlohmann::ordered_json config_json(const settings::Config& config, bool full) {
     alerts.push_back({{"name", alert.name}, {"when", alert.values.text("when")}});
     if (full) alerts.back()["values"] = json_of(alert.values);
   }
-  nlohmann::ordered_json json = {{"sensors", sensors}, {"scenes", scenes}, {"cameras", cameras}, {"alerts", alerts}};
+  nlohmann::ordered_json outputs = nlohmann::ordered_json::array();
+  for (const output::OutputTable& output : config.outputs) {
+    nlohmann::ordered_json windows = nlohmann::ordered_json::array();
+    for (const output::Window& window : output.output.windows) windows.push_back({{"monitor", window.monitor}});
+    for (std::size_t i = 0; full && i < output.windows.size(); ++i) windows[i] = json_of(output.windows[i]);
+    outputs.push_back({{"name", output.output.name}, {"windows", std::move(windows)}});
+    if (full) outputs.back()["values"] = json_of(output.values);
+  }
+  nlohmann::ordered_json json = {
+      {"sensors", sensors}, {"scenes", scenes}, {"cameras", cameras}, {"alerts", alerts}, {"outputs", outputs}};
   if (!full) return json;
-  json["seed"] = config.seed;
-  json["stream"] = json_of(config.by_name.stream);
-  json["http"] = json_of(config.by_name.http);
-  json["recording"] = json_of(config.by_name.recording);
-  json["animation"] = json_of(config.by_name.animation);
-  json["wind"] = json_of(config.by_name.wind);
-  json["shaping"] = json_of(config.by_name.shaping);
-  json["look"] = json_of(config.by_name.look);
-  json["log"] = json_of(config.by_name.log);
+  for (const settings::ConfigTable& table : settings::config_tables()) {
+    const nlohmann::ordered_json values = json_of(config.by_name.at(table.name));
+    if (table.name.empty()) {
+      json.update(values);
+    } else {
+      json[table.name] = values;
+    }
+  }
   return json;
 }
 
@@ -168,8 +175,9 @@ void add_check_config(CLI::App& app) {
       "Exit code 0: no error; 78: errors, each reported as file:line:column: key: what is wrong.\nNo device is opened. "
       "--full prints the whole configuration with every default; \"(secret)\" stands in place of a password.\n"
       "Warns on standard error where others can read a password.\n"
-      "--json: sensors (name, driver, place, gust_length_m, height_m), scenes (name, kind), cameras (name, from) and "
-      "alerts\n(name, when); with --full also the values of every table by the keys of the configuration, without "
+      "--json: sensors (name, driver, place, gust_length_m, height_m), scenes (name, kind), cameras (name, from), "
+      "alerts\n(name, when) and outputs (name, windows); with --full also the values of every table by the keys of the "
+      "configuration, without "
       "secrets.\n"
       "--as-service tries the next boot: what yuragi.service would meet, whoever asks (with sudo it may look at "
       "everything):\nits user's rights to token, pictures, recordings, profiles and devices, ports, libraries, the "
@@ -205,13 +213,10 @@ std::vector<DescribedTable> all_tables() {
     all.push_back(
         {"[[sensor]]", fmt::format("driver = \"{}\": {}", driver->name, driver->summary), driver->parameters});
   }
-  all.push_back({"[sensor.calibration]",
-                 "below a [[sensor]] of any kind: from its readings to the wind; recordings hold uncalibrated readings",
-                 settings::calibration_parameters()});
-  all.push_back({"[sensor.blend]", "below a [[sensor]] of any kind: how it is combined with other sensors",
-                 settings::sensor_blend_parameters()});
-  all.push_back({"[sensor.judge]", "below a [[sensor]] of any kind: which of its readings are accepted",
-                 settings::judge_parameters()});
+  for (const settings::SensorTable& table : settings::sensor_tables()) {
+    all.push_back({fmt::format("[sensor.{}]", table.name),
+                   fmt::format("below a [[sensor]] of any kind: {}", table.summary), table.parameters});
+  }
   all.push_back({"[[scene]]", "of any kind: its place and visibility", settings::common_scene_parameters()});
   for (const scenes::SceneDescription* scene : scenes::scene_table()) {
     all.push_back({"[[scene]]", fmt::format("kind = \"{}\": {}", scene->name, scene->summary), scene->parameters});

@@ -130,7 +130,7 @@ void print_table(const wire::ParameterGroup& group) {
     };
     std::string line = fmt::format("  {:<20} {}", state.name, shown(state.value));
     if (state.value != state.configured) line += fmt::format("  (the configuration: {})", shown(state.configured));
-    if (state.change == wire::ParameterChange::kTakesRestart) line += "  (takes a restart)";
+    if (state.change == KeyChange::kTakesRestart) line += "  (takes a restart)";
     fmt::print("{}\n", line);
   }
 }

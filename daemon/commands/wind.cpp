@@ -251,9 +251,9 @@ void stand_at(wind::blend::BlendSourceSettings& source, const GroundPlace& place
 void set_recorded_value(wind::blend::BlendSourceSettings& source, const WindOptions& options,
                         const settings::Config& config, const std::filesystem::path& file) {
   const drivers::sensor::StatedValue value = settings::sensor_value_of(
-      config.sensors[0].by_name.blend, options.offline.sensor_interval_s
-                                           ? drivers::sensor::StatedValue{.value = wind::ReadingValue::kMean}
-                                           : sensing::recorded_source(file, options.playback.sensor).value);
+      config.sensors[0].by_name.at(settings::kBlendTable),
+      options.offline.sensor_interval_s ? drivers::sensor::StatedValue{.value = wind::ReadingValue::kMean}
+                                        : sensing::recorded_source(file, options.playback.sensor).value);
   source.value = value.value;
   source.averaging_s = value.averaging_s;
   if (!makes_wind(source.value)) {
@@ -314,7 +314,7 @@ void run_wind(WindOptions options) {
       options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
   config.sensors.resize(1);
   if (options.seed) config.seed = *options.seed;
-  if (options.value) config.sensors[0].by_name.blend.set("value", *options.value);
+  if (options.value) config.sensors[0].by_name.at(settings::kBlendTable).set("value", *options.value);
   options.offline.rules = sensing::jury_rules_of(config.sensors[0]);
   options.offline.stale_intervals = config.wind.stale_intervals;
   options.offline.has_relative_gains = config.wind.has_relative_gains;

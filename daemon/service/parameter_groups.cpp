@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "daemon/service/reload_report.hpp"
-#include "daemon/settings/reload_plan.hpp"
+#include "daemon/settings/config.hpp"
 #include "daemon/settings/scene_config.hpp"
 
 namespace yuragi::daemon::service {
@@ -38,15 +38,13 @@ std::optional<std::string> value_in(const ParameterValues& values, std::string_v
 }
 
 wire::ParameterGroup look_group(const settings::Config& running, const settings::Config& configured) {
+  const settings::ConfigTable& table = settings::config_table("look");
   wire::ParameterGroup group;
-  for (const Parameter& parameter : look::look_parameters()) {
+  for (const Parameter& parameter : table.parameters) {
     wire::ParameterState& state = group.parameters.emplace_back(described(parameter));
-    state.value = value_in(running.by_name.look, parameter.name);
-    state.configured = value_in(configured.by_name.look, parameter.name);
-    const bool is_live = settings::change_of("look", parameter.name) == settings::KeyChange::kApplied;
-    state.change = look::names_file(parameter.name) ? wire::ParameterChange::kTakesReload
-                   : is_live                        ? wire::ParameterChange::kAtOnce
-                                                    : wire::ParameterChange::kTakesRestart;
+    state.value = value_in(running.by_name.at(table.name), parameter.name);
+    state.configured = value_in(configured.by_name.at(table.name), parameter.name);
+    state.change = parameter.change.value_or(table.change);
   }
   return group;
 }
@@ -58,9 +56,7 @@ wire::ParameterGroup scene_group(const settings::SceneConfig& scene, const setti
     wire::ParameterState& state = group.parameters.emplace_back(described(parameter));
     state.value = parameter.name == "shown" ? value_text(is_shown) : value_in(scene.values, parameter.name);
     state.configured = configured == nullptr ? state.default_value : value_in(configured->values, parameter.name);
-    state.change = settings::names_file(parameter.name)      ? wire::ParameterChange::kTakesReload
-                   : settings::remakes_scene(parameter.name) ? wire::ParameterChange::kCrossFade
-                                                             : wire::ParameterChange::kAtOnce;
+    state.change = parameter.change.value_or(settings::kSceneKeyChange);
   }
   return group;
 }

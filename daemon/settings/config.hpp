@@ -10,10 +10,7 @@
 #include <vector>
 
 #include "daemon/settings/alert_config.hpp"
-#include "daemon/settings/animation_config.hpp"
-#include "daemon/settings/camera_config.hpp"
 #include "daemon/settings/config_error.hpp"
-#include "daemon/settings/config_tables.hpp"
 #include "daemon/settings/http_config.hpp"
 #include "daemon/settings/local_clock.hpp"
 #include "daemon/settings/log_config.hpp"
@@ -22,9 +19,11 @@
 #include "daemon/settings/sensor_config.hpp"
 #include "daemon/settings/shaping_config.hpp"
 #include "daemon/settings/stream_config.hpp"
+#include "daemon/settings/table_of.hpp"
 #include "daemon/settings/wind_config.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "engine/base/parameter.hpp"
+#include "engine/look/camera.hpp"
 #include "engine/look/look.hpp"
 #include "engine/output/output.hpp"
 
@@ -34,8 +33,21 @@ namespace yuragi::daemon::settings {
 inline constexpr std::size_t kMostSensors = 255;
 inline constexpr std::size_t kMostScenes = 64;
 
+/// [animation]: tick rate and threads.
+struct AnimationConfig {
+  double rate_hz = 0.0;     ///< ticks per second, of the wind and of the scenes
+  std::size_t threads = 1;  ///< that share the work of a tick
+};
+
+/// A [[camera]].
+struct CameraConfig {
+  std::string name;
+  ParameterValues values{};  ///< of look::camera_parameters()
+  look::Camera camera{};     ///< made of these
+};
+
 /// The configuration of an installation, parsed from TOML. Every value is within its range; what the file leaves out
-/// has its default. The keys are described in config_tables.hpp, shaping_config.hpp and sensor_blend.hpp.
+/// has its default. The keys are those of config_tables(), sensor_tables() and of the lists.
 struct Config {
   std::uint64_t seed = 1;
   StreamConfig stream;
@@ -53,11 +65,21 @@ struct Config {
   std::vector<output::OutputTable> outputs;  ///< the viewers', who read the file themselves; here they are checked
   LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC where no camera has a time
 
-  /// The values of the tables by key, from which the members above were made. For to_toml() and plan_reload() only.
-  struct ByName {
-    ParameterValues stream, http, recording, animation, wind, shaping, look, log;
-  } by_name;
+  /// The values of config_tables(), from which members above were made. For what writes, compares or changes them only.
+  TablesByName by_name;
 };
+
+/// The tables that occur once in the file, and the keys at its top, whose name is empty: of each what its keys are, and
+/// what they make of a Config. All that reads, writes, describes, compares or changes a configuration goes through
+/// them.
+using ConfigTable = TableOf<Config>;
+std::span<const ConfigTable> config_tables();
+
+/// One of them. Throws std::logic_error where there is none.
+const ConfigTable& config_table(std::string_view name);
+
+/// The names of the lists of tables: sensor, scene, camera, alert, output.
+std::span<const std::string_view> config_lists();
 
 /// What `yuragi run` does without a file: one synthetic sensor, a grass scene and the ground around it.
 Config default_config();

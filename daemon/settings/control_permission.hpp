@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,14 +11,6 @@ namespace yuragi::daemon::settings {
 /// Where clients may control scenes and recordings, and see raw messages, from: [stream] control.
 enum class ControlPermission : std::uint8_t { kLoopback, kAnywhere, kNobody };
 inline constexpr std::array<std::string_view, 3> kControlPermissionNames = {"loopback", "anywhere", "nobody"};
-
-/// The permission of this name; kNobody for an unknown name.
-constexpr ControlPermission control_permission_named(std::string_view name) noexcept {
-  for (std::size_t index = 0; index < kControlPermissionNames.size(); ++index) {
-    if (name == kControlPermissionNames[index]) return static_cast<ControlPermission>(index);
-  }
-  return ControlPermission::kNobody;
-}
 
 /// The reason for refusing a client, which begins with `what` ("scenes cannot be switched"); nothing where `allowed`
 /// permits it. `is_local`: the client is on this machine.

@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/parameter.hpp"
-#include "engine/base/result.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::daemon::settings {
 
@@ -17,7 +16,9 @@ struct HttpConfig {
   std::vector<std::string> proxies;  ///< addresses whose X-Forwarded-For is believed
 };
 
-/// From the values of http_parameters(). An error names the key.
-Result<HttpConfig, ParameterError> http_config_of(const ParameterValues& values);
+const Fields<HttpConfig>& http_fields();
+
+/// Fills it from the values of http_fields(). Returns what they contradict.
+std::vector<ParameterError> fill_http(HttpConfig& http, const ParameterValues& values);
 
 }  // namespace yuragi::daemon::settings

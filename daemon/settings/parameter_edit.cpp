@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/settings/reload_plan.hpp"
+#include "daemon/settings/config.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
@@ -31,19 +31,30 @@ Result<ParameterValues, ParameterError> with_edit(std::span<const Parameter> tab
   return ParameterValues::resolve(table, given);
 }
 
+/// Why a key is not changed while the daemon runs; nothing: it is, or it is not known.
+std::optional<ParameterError> refusal(std::string_view table, std::span<const Parameter> parameters,
+                                      KeyChange otherwise, const ParameterEdit& edit) {
+  const auto parameter = std::ranges::find(parameters, edit.key, &Parameter::name);
+  if (parameter == parameters.end()) return std::nullopt;
+  const KeyChange change = parameter->change.value_or(otherwise);
+  if (change == KeyChange::kTakesRestart) {
+    return error_in(table, {edit.key, "takes a restart: write it into the configuration"});
+  }
+  if (change == KeyChange::kTakesReload) {
+    return error_in(table, {edit.key, "is read with the configuration: write it there, then: yuragi reload"});
+  }
+  return std::nullopt;
+}
+
 std::optional<ParameterError> edit_look(Config& config, const Config& configured, const ParameterEdit& edit) {
-  if (change_of("look", edit.key) == KeyChange::kTakesRestart) {
-    return ParameterError{"look." + edit.key, "takes a restart: write it into the configuration"};
-  }
-  if (look::names_file(edit.key)) {
-    return ParameterError{"look." + edit.key, "is read with the configuration: write it there, then: yuragi reload"};
-  }
-  auto values = with_edit(look::look_parameters(), config.by_name.look, &configured.by_name.look, edit);
+  const ConfigTable& table = config_table("look");
+  if (auto refused = refusal("look", table.parameters, table.change, edit)) return refused;
+  ParameterValues& running = config.by_name.at(table.name);
+  auto values = with_edit(table.parameters, running, &configured.by_name.at(table.name), edit);
   if (!values) return error_in("look", values.error());
-  const auto look = look::look_of(*values);
-  if (!look) return error_in("look", look.error());
-  config.by_name.look = std::move(*values);
-  config.look = *look;
+  running = std::move(*values);
+  const std::vector<ParameterError> errors = table.fill(config, running);
+  if (!errors.empty()) return error_in("look", errors.front());
   return std::nullopt;
 }
 
@@ -56,13 +67,11 @@ std::optional<ParameterError> edit_scene(Config& config, const Config& configure
   }
   const auto gone = std::ranges::find(scene->kind->retired, edit.key, &scenes::RetiredParameter::name);
   if (gone != scene->kind->retired.end()) return ParameterError{"scene." + edit.key, std::string(gone->now)};
-  if (names_file(edit.key)) {
-    return ParameterError{"scene." + edit.key, "is read with the configuration: write it there, then: yuragi reload"};
-  }
+  const std::vector<Parameter> parameters = scene_parameters(*scene->kind);
+  if (auto refused = refusal("scene", parameters, kSceneKeyChange, edit)) return refused;
   const auto before = std::ranges::find(configured.scenes, edit.scene, &SceneConfig::name);
   const bool is_configured = before != configured.scenes.end() && before->kind == scene->kind;
-  auto values =
-      with_edit(scene_parameters(*scene->kind), scene->values, is_configured ? &before->values : nullptr, edit);
+  auto values = with_edit(parameters, scene->values, is_configured ? &before->values : nullptr, edit);
   if (!values) return error_in("scene", values.error());
   auto cloth = cloth_look_of(*values, std::nullopt);
   if (!cloth) return error_in("scene", cloth.error().front());

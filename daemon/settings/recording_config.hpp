@@ -1,17 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string_view>
 
-#include "engine/base/parameter.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::daemon::settings {
-
-/// When a new file is begun: [recording] rotate.
-inline constexpr std::array<std::string_view, 2> kRotationNames = {"never", "day"};
 
 /// [recording]: where readings are recorded, and how much of that is kept.
 struct RecordingConfig {
@@ -23,7 +18,6 @@ struct RecordingConfig {
   std::uint64_t least_free_bytes = 0;  ///< on the disk: the oldest are deleted below, and then nothing is recorded
 };
 
-/// From the values of recording_parameters().
-RecordingConfig recording_config_of(const ParameterValues& values);
+const Fields<RecordingConfig>& recording_fields();
 
 }  // namespace yuragi::daemon::settings

@@ -1,27 +1,11 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "daemon/settings/config.hpp"
 
 namespace yuragi::daemon::settings {
-
-/// What a running daemon does with a key that has another value in the configuration that it reads again.
-enum class KeyChange : std::uint8_t {
-  kApplied,       ///< takes effect while it runs
-  kTakesRestart,  ///< takes effect when the daemon is started again
-};
-
-/// Of a key of config_tables() (`table` as ConfigTable::name), of "sensor.calibration", "sensor.judge" or
-/// "sensor.blend". Nothing for a key that is in none of them. Pure.
-std::optional<KeyChange> change_of(std::string_view table, std::string_view key);
-
-/// Of a driver's own key. Pure.
-KeyChange driver_key_change_of(const drivers::sensor::DriverDescription& driver, std::string_view key);
 
 /// The way from the configuration that runs to another.
 struct ReloadPlan {

@@ -1,15 +1,68 @@
 #include "daemon/settings/scene_config.hpp"
 
 #include <charconv>
+#include <cstdint>
 #include <span>
 #include <string_view>
 #include <utility>
 
 #include "daemon/pictures/picture_file.hpp"
-#include "daemon/settings/config_tables.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
+
+auto of(double scenes::ScenePlacement::*member) {
+  return [member](SceneConfig& scene) -> double& { return scene.placement.*member; };
+}
+
+const Fields<SceneConfig>& common_scene_fields() {
+  static const Fields<SceneConfig> kFields{
+      {{.name = "x",
+        .unit = "m",
+        .default_value = 0.0,
+        .min = -1000.0,
+        .max = 1000.0,
+        .help = "position of the scene to the east"},
+       of(&scenes::ScenePlacement::x_m)},
+      {{.name = "y",
+        .unit = "m",
+        .default_value = 0.0,
+        .min = -1000.0,
+        .max = 1000.0,
+        .help = "position of the scene upward"},
+       of(&scenes::ScenePlacement::y_m)},
+      {{.name = "z",
+        .unit = "m",
+        .default_value = 0.0,
+        .min = -1000.0,
+        .max = 1000.0,
+        .help = "position of the scene to the south"},
+       of(&scenes::ScenePlacement::z_m)},
+      {{.name = "heading",
+        .unit = "deg",
+        .default_value = 0.0,
+        .min = -360.0,
+        .max = 360.0,
+        .help = "rotation of the scene, clockwise from north; the wind is not rotated with it"},
+       of(&scenes::ScenePlacement::heading_deg)},
+      {{.name = "gain",
+        .unit = "",
+        .default_value = 1.0,
+        .min = 0.0,
+        .max = 10.0,
+        .help = "factor on the wind speed for this scene",
+        .change = KeyChange::kAtOnce},
+       &SceneConfig::wind_gain},
+      {{.name = "shown",
+        .unit = "",
+        .default_value = true,
+        .help = "false: hidden until `yuragi scene show` or `yuragi scene switch` shows it",
+        .change = KeyChange::kAtOnce},
+       &SceneConfig::is_shown},
+  };
+  return kFields;
+}
 
 /// "#1b2a49".
 std::optional<look::Color> color_of(std::string_view text) {
@@ -25,6 +78,10 @@ std::optional<look::Color> color_of(std::string_view text) {
 
 }  // namespace
 
+std::span<const Parameter> common_scene_parameters() {
+  return common_scene_fields().parameters();
+}
+
 std::vector<Parameter> scene_parameters(const scenes::SceneDescription& kind) {
   std::vector<Parameter> all(kind.parameters.begin(), kind.parameters.end());
   const std::span<const Parameter> common = common_scene_parameters();
@@ -32,22 +89,9 @@ std::vector<Parameter> scene_parameters(const scenes::SceneDescription& kind) {
   return all;
 }
 
-bool remakes_scene(std::string_view key) noexcept {
-  return key != "gain" && key != "shown";
-}
-
-bool names_file(std::string_view key) noexcept {
-  return key == "image";
-}
-
 SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values) {
   SceneConfig scene{.name = std::move(name), .kind = &kind, .values = std::move(values)};
-  scene.placement = {.x_m = scene.values.number("x"),
-                     .y_m = scene.values.number("y"),
-                     .z_m = scene.values.number("z"),
-                     .heading_deg = scene.values.number("heading")};
-  scene.wind_gain = scene.values.number("gain");
-  scene.is_shown = scene.values.flag("shown");
+  common_scene_fields().fill(scene, scene.values.all());
   return scene;
 }
 

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "engine/base/parameter.hpp"
@@ -24,14 +24,14 @@ struct SceneConfig {
   look::ClothLook cloth{};  ///< of a flag, a banner or a curtain
 };
 
+/// The keys that scenes of every kind have: place, gain, whether it is shown.
+std::span<const Parameter> common_scene_parameters();
+
+/// What a new value of a key of a [[scene]] does, unless the key states it.
+inline constexpr KeyChange kSceneKeyChange = KeyChange::kCrossFade;
+
 /// All keys of a [[scene]] of this kind, besides name and kind: its own, and common_scene_parameters().
 std::vector<Parameter> scene_parameters(const scenes::SceneDescription& kind);
-
-/// Is a scene made anew where this key of it changes? Otherwise it goes on as it is.
-bool remakes_scene(std::string_view key) noexcept;
-
-/// Is it a file, which is read with the configuration alone?
-bool names_file(std::string_view key) noexcept;
 
 /// `values`: of common_scene_parameters() and of the kind's own parameters.
 SceneConfig scene_config_of(std::string name, const scenes::SceneDescription& kind, ParameterValues values);

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "daemon/settings/each_value.hpp"
+
 namespace yuragi::daemon::settings {
 namespace {
 
@@ -17,33 +19,17 @@ bool is_read_by_everybody(const std::filesystem::path& file) {
 
 std::vector<std::string> exposed_secrets(const Config& config, const std::filesystem::path& file) {
   std::vector<std::string> warnings;
-  const auto warn = [&](const SensorConfig& sensor, const Parameter& parameter, const std::string& exposed) {
-    warnings.push_back(fmt::format("{}: sensor.{}: everybody on this machine can read {}; chmod 640 {}", sensor.origin,
-                                   parameter.name, exposed, exposed));
-  };
-  for (const SensorConfig& sensor : config.sensors) {
-    for (const Parameter& parameter : sensor.driver->parameters) {
-      if (!sensor.values.has(parameter.name)) continue;
-      const ParameterValue& value = sensor.values.all().find(parameter.name)->second;
-      const auto* secret = std::get_if<Secret>(&value);
-      const auto* text = std::get_if<std::string>(&value);
-      if (secret != nullptr && !secret->is_empty() && is_read_by_everybody(file)) {
-        warn(sensor, parameter, file.string());
-      } else if (text != nullptr && parameter.is_secret_file && !text->empty() && is_read_by_everybody(*text)) {
-        warn(sensor, parameter, *text);
-      }
-    }
-  }
-  for (const AlertConfig& alert : config.alerts) {
-    if (!alert.webhook.is_empty() && is_read_by_everybody(file)) {
-      warnings.push_back(fmt::format("alert {}: webhook: everybody on this machine can read {}; chmod 640 {}",
-                                     alert.name, file.string(), file.string()));
-    }
-  }
-  if (const std::string& token = config.http.token_file; !token.empty() && is_read_by_everybody(token)) {
-    warnings.push_back(
-        fmt::format("http.token_file: everybody on this machine can read {}; chmod 640 {}", token, token));
-  }
+  for_each_value(config, [&](const std::string& where, const Parameter& parameter, const ParameterValue& value) {
+    const auto* secret = std::get_if<Secret>(&value);
+    const auto* text = std::get_if<std::string>(&value);
+    std::filesystem::path exposed;
+    // A command may hold a secret, and mostly holds none.
+    if (secret != nullptr && !secret->is_empty() && !parameter.takes_control_characters) exposed = file;
+    if (text != nullptr && parameter.is_secret_file) exposed = *text;
+    if (exposed.empty() || !is_read_by_everybody(exposed)) return;
+    warnings.push_back(fmt::format("{}{}: everybody on this machine can read {}; chmod 640 {}", where, parameter.name,
+                                   exposed.string(), exposed.string()));
+  });
   return warnings;
 }
 

@@ -3,65 +3,91 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <fmt/format.h>
+
+#include "engine/base/fields.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
 
+using wind::blend::BlendSourceSettings;
+
 constexpr std::string_view kOfDriver = "auto";
-constexpr std::string_view kRelative = "relative";
 constexpr std::string_view kAtTheEdge =
     "its gusts enter at the windward edge of the scenes, wherever the wind comes from, and cross all of them";
 constexpr std::array<std::string_view, 4> kValues = {kOfDriver, wind::kReadingValueNames[0],
                                                      wind::kReadingValueNames[1], wind::kReadingValueNames[2]};
-constexpr std::array<std::string_view, 3> kRoles = {kOfDriver, "absolute", kRelative};
+constexpr std::array<std::string_view, 3> kRoles = {kOfDriver, "absolute", "relative"};
 
-const std::array kSensorBlendParameters = {
-    Parameter{.name = "role",
-              .unit = "",
-              .default_value = std::string(kOfDriver),
-              .help = "relative: only its fluctuations are used, for the gusts that the absolute sensors are too slow "
-                      "for, scaled to theirs. auto: relative for a microphone, absolute for all others",
-              .choices = kRoles},
-    Parameter{.name = "priority",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = 1000,
-              .help = "of the live sensors those with the lowest number make the wind, equal ones together; 0: its "
-                      "position in the file, from 1"},
-    Parameter{.name = "weight",
-              .unit = "",
-              .default_value = 1.0,
-              .min = 0.01,
-              .max = 100.0,
-              .help = "weight among sensors of the same priority"},
-    Parameter{.name = "x",
-              .unit = "m",
-              .default_value = 0.0,
-              .min = -1000.0,
-              .max = 1000.0,
-              .help = "position to the east of the middle of the scenes; measured gusts travel from there with the "
-                      "wind; scenes upwind of it have generated gusts",
-              .left_out = kAtTheEdge},
-    Parameter{
-        .name = "z",
+enum class Role : std::uint8_t { kOfDriver, kAbsolute, kRelative };
+
+/// [sensor.blend] as it is written.
+struct BlendTable {
+  BlendSourceSettings settings;
+  Role role = Role::kOfDriver;
+  std::optional<double> east_m;
+  std::optional<double> south_m;
+  std::string value;
+  double averaging_s = 0.0;
+};
+
+template <class Member>
+auto of(Member BlendSourceSettings::*member) {
+  return [member](BlendTable& table) -> Member& { return table.settings.*member; };
+}
+
+const Fields<BlendTable>& blend_fields() {
+  static const Fields<BlendTable> kFields{
+      {{.name = "role",
+        .unit = "",
+        .default_value = std::string(kOfDriver),
+        .help = "relative: only its fluctuations are used, for the gusts that the absolute sensors are too slow "
+                "for, scaled to theirs. auto: relative for a microphone, absolute for all others",
+        .choices = kRoles},
+       &BlendTable::role},
+      {{.name = "priority",
+        .unit = "",
+        .default_value = std::int64_t{0},
+        .min = 0,
+        .max = 1000,
+        .help = "of the live sensors those with the lowest number make the wind, equal ones together; 0: its "
+                "position in the file, from 1"},
+       of(&BlendSourceSettings::priority)},
+      {{.name = "weight",
+        .unit = "",
+        .default_value = 1.0,
+        .min = 0.01,
+        .max = 100.0,
+        .help = "weight among sensors of the same priority"},
+       of(&BlendSourceSettings::weight)},
+      {{.name = "x",
+        .unit = "m",
+        .default_value = 0.0,
+        .min = -1000.0,
+        .max = 1000.0,
+        .help = "position to the east of the middle of the scenes; measured gusts travel from there with the "
+                "wind; scenes upwind of it have generated gusts",
+        .left_out = kAtTheEdge},
+       &BlendTable::east_m},
+      {{.name = "z",
         .unit = "m",
         .default_value = 0.0,
         .min = -1000.0,
         .max = 1000.0,
         .help = "position to the south of the middle of the scenes; where only one of x and z is set, the other is 0",
         .left_out = kAtTheEdge},
-    Parameter{.name = "lead",
-              .unit = "m",
-              .default_value = 0.0,
-              .min = 0.0,
-              .max = 1000.0,
-              .help = "with x or z: its gusts enter the scenes this far upwind of its position. More of the scenes has "
-                      "measured gusts, but later, by lead over wind speed"},
-    Parameter{
-        .name = "value",
+       &BlendTable::south_m},
+      {{.name = "lead",
+        .unit = "m",
+        .default_value = 0.0,
+        .min = 0.0,
+        .max = 1000.0,
+        .help = "with x or z: its gusts enter the scenes this far upwind of its position. More of the scenes has "
+                "measured gusts, but later, by lead over wind speed"},
+       of(&BlendSourceSettings::lead_m)},
+      {{.name = "value",
         .unit = "",
         .default_value = std::string(kOfDriver),
         .help =
@@ -71,34 +97,39 @@ const std::array kSensorBlendParameters = {
             "that is nothing, what half an hour of readings shows, if they are close enough; until then instant for "
             "readings at most 30 s apart, otherwise mean. `yuragi sensors watch` shows it",
         .choices = kValues},
-    Parameter{
-        .name = "averaging",
+       &BlendTable::value},
+      {{.name = "averaging",
         .unit = "s",
         .default_value = 0.0,
         .min = 0.0,
         .max = 3600.0,
         .help = "averaging time of each reading; above 0 the reading is a mean, unless value is set; 0: the time that "
                 "the driver or profile states, or the interval between readings, which is measured"},
-    Parameter{.name = "direction_step",
-              .unit = "deg",
-              .default_value = 0.0,
-              .min = 0.0,
-              .max = 90.0,
-              .help = "step of a vane with few directions (16: 22.5, 8: 45); 0: determined from its readings"},
-};
+       &BlendTable::averaging_s},
+      {{.name = "direction_step",
+        .unit = "deg",
+        .default_value = 0.0,
+        .min = 0.0,
+        .max = 90.0,
+        .help = "step of a vane with few directions (16: 22.5, 8: 45); 0: determined from its readings"},
+       of(&BlendSourceSettings::direction_step_deg)},
+  };
+  return kFields;
+}
 
 }  // namespace
 
 std::span<const Parameter> sensor_blend_parameters() {
-  return kSensorBlendParameters;
+  return blend_fields().parameters();
 }
 
 drivers::sensor::StatedValue sensor_value_of(const ParameterValues& values,
                                              const std::optional<drivers::sensor::StatedValue>& stated) {
   constexpr const char* kHere = "[sensor.blend]";
-  const auto name = std::ranges::find(wind::kReadingValueNames, values.text("value"));
+  const BlendTable table = blend_fields().of(values);
+  const auto name = std::ranges::find(wind::kReadingValueNames, table.value);
   const bool is_set = name != wind::kReadingValueNames.end();
-  const double averaging_s = values.number("averaging");
+  const double averaging_s = table.averaging_s;
   drivers::sensor::StatedValue value = stated.value_or(drivers::sensor::StatedValue{});
   if (is_set) {
     value.value = static_cast<wind::ReadingValue>(name - wind::kReadingValueNames.begin());
@@ -113,7 +144,7 @@ drivers::sensor::StatedValue sensor_value_of(const ParameterValues& values,
   return value;
 }
 
-std::string place_text(const wind::blend::BlendSourceSettings& source) {
+std::string place_text(const BlendSourceSettings& source) {
   if (!source.has_place) return "at the windward edge of the scenes";
   const auto way = [](double way_m, const char* to, const char* back) {
     return way_m == 0.0 ? std::string() : fmt::format("{:g} m {}", std::abs(way_m), way_m > 0.0 ? to : back);
@@ -126,25 +157,19 @@ std::string place_text(const wind::blend::BlendSourceSettings& source) {
   return text;
 }
 
-Result<wind::blend::BlendSourceSettings, ParameterError> blend_source_of(
-    const ParameterValues& values, const drivers::sensor::DriverDescription& driver) {
-  const std::string& role = values.text("role");
-  const bool is_relative = role == kRelative || (role == kOfDriver && driver.is_relative);
-  const bool has_place = values.has("x") || values.has("z");
-  const double lead_m = values.number("lead");
-  if (lead_m > 0.0 && !has_place) {
+Result<BlendSourceSettings, ParameterError> blend_source_of(const ParameterValues& values,
+                                                            const drivers::sensor::DriverDescription& driver) {
+  const BlendTable table = blend_fields().of(values);
+  BlendSourceSettings settings = table.settings;
+  settings.has_place = table.east_m || table.south_m;
+  settings.east_m = table.east_m.value_or(0.0);
+  settings.south_m = table.south_m.value_or(0.0);
+  settings.is_relative = table.role == Role::kRelative || (table.role == Role::kOfDriver && driver.is_relative);
+  settings.fits_site = !settings.is_relative && !driver.plays_recordings;
+  if (settings.lead_m > 0.0 && !settings.has_place) {
     return ParameterError{"lead", "is counted from where the sensor stands; give x or z, too, or leave it out"};
   }
-  const auto number_or_0 = [&values](std::string_view name) { return values.has(name) ? values.number(name) : 0.0; };
-  return wind::blend::BlendSourceSettings{.is_relative = is_relative,
-                                          .priority = static_cast<int>(values.integer("priority")),
-                                          .weight = values.number("weight"),
-                                          .has_place = has_place,
-                                          .east_m = number_or_0("x"),
-                                          .south_m = number_or_0("z"),
-                                          .lead_m = lead_m,
-                                          .fits_site = !is_relative && !driver.plays_recordings,
-                                          .direction_step_deg = values.number("direction_step")};
+  return settings;
 }
 
 }  // namespace yuragi::daemon::settings

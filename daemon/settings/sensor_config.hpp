@@ -4,12 +4,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
+#include "daemon/settings/table_of.hpp"
 #include "daemon/settings/wind_config.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "engine/base/parameter.hpp"
-#include "engine/base/result.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 #include "engine/wind/judging/calibration.hpp"
 #include "engine/wind/judging/reading_judge.hpp"
@@ -20,13 +22,6 @@ namespace yuragi::daemon::settings {
 struct SensorHeights {
   std::optional<double> sensor_m{};  ///< none: unknown
   double scene_m = 10.0;             ///< the height whose wind moves the scenes
-};
-
-/// The values of a sensor's tables by key, for writing and editing the configuration.
-struct SensorTables {
-  ParameterValues calibration;  ///< calibration_parameters()
-  ParameterValues judge;        ///< judge_parameters()
-  ParameterValues blend;        ///< sensor_blend_parameters()
 };
 
 /// What plays a sensor's part where a recording is replayed as it was.
@@ -49,7 +44,7 @@ struct SensorConfig {
   wind::blend::BlendSourceSettings blend{};  ///< [sensor.blend]; length_m from the height, 0 if that is unknown
   drivers::sensor::StatedValue value{};      ///< what its speed is, with the source; also in `blend`
 
-  SensorTables by_name{};  ///< from which the members above were made
+  TablesByName by_name{};  ///< of sensor_tables(), from which the members above were made
 
   std::optional<StandIn> stand_in{};  ///< in place of its device, which is not opened; none: the device
 };
@@ -64,18 +59,19 @@ const std::string& place_of(const SensorConfig& sensor) noexcept;
 /// is set; else from the sensor's height; else that of the default wind. Pure.
 double gust_length_m(const WindConfig& wind, const SensorConfig& sensor) noexcept;
 
-/// The integral length at a sensor's height, m: 8.1 * 0.7 times the height, up to 60 m (IEC 61400-1), at least
-/// kShortestGusts_m. Where the calibration scales speeds to another height, the length is scaled by the same factor, so
-/// that the time scale is unchanged. Pure.
-double gust_length_at_height_m(double height_m, const wind::judging::Calibration& calibration) noexcept;
+/// Sets the integral length of the gusts from the sensor's height, where that is known: 8.1 * 0.7 times the height, up
+/// to 60 m (IEC 61400-1), at least kShortestGusts_m. Where the calibration scales speeds to another height, the length
+/// is scaled by the same factor, so that the time scale is unchanged.
+void set_gust_length(SensorConfig& sensor) noexcept;
 
-/// From the values of calibration_parameters(). An error names the key.
-Result<wind::judging::Calibration, ParameterError> calibration_of(const ParameterValues& values);
-SensorHeights sensor_heights_of(const ParameterValues& values);
+/// The tables below a [[sensor]] of any kind. Their values make the members of a SensorConfig that has its driver.
+using SensorTable = TableOf<SensorConfig>;
+std::span<const SensorTable> sensor_tables();
 
-/// From the values of judge_parameters(): the settings of the sensor's judge, none where its readings are not judged;
-/// and whether the sensor is compared with others.
-std::optional<wind::judging::JudgeSettings> judge_settings_of(const ParameterValues& values);
-bool is_compared(const ParameterValues& values);
+/// How a sensor shares in the wind: [sensor.blend].
+inline constexpr std::string_view kBlendTable = "blend";
+
+/// From values of [sensor.calibration] that are in no file. Throws std::runtime_error where they contradict each other.
+wind::judging::Calibration calibration_of(const ParameterValues& values);
 
 }  // namespace yuragi::daemon::settings

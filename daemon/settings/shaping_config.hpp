@@ -7,7 +7,6 @@
 #include "daemon/settings/opening_hours.hpp"
 #include "daemon/settings/wind_config.hpp"
 #include "engine/base/parameter.hpp"
-#include "engine/base/result.hpp"
 #include "engine/wind/shaping/wind_shaping.hpp"
 
 namespace yuragi::daemon::settings {
@@ -22,9 +21,8 @@ struct ShapingConfig {
 /// What the table [shaping] may hold.
 std::span<const Parameter> shaping_parameters();
 
-/// From the values of shaping_parameters(); the breeze that the floor adds has the turbulence of `wind`. Each error
-/// (values that contradict each other, invalid hours) names its key.
-Result<ShapingConfig, std::vector<ParameterError>> shaping_config_of(const ParameterValues& values,
-                                                                     const WindConfig& wind);
+/// Fills it from the values of shaping_parameters(); the breeze that the floor adds has the turbulence of `wind`.
+/// Returns what they contradict, and invalid hours.
+std::vector<ParameterError> fill_shaping(ShapingConfig& shaping, const ParameterValues& values, const WindConfig& wind);
 
 }  // namespace yuragi::daemon::settings

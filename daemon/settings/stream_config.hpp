@@ -4,8 +4,7 @@
 #include <string>
 
 #include "daemon/settings/control_permission.hpp"
-#include "engine/base/parameter.hpp"
-#include "engine/base/result.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::daemon::settings {
 
@@ -18,7 +17,9 @@ struct StreamConfig {
       ControlPermission::kNobody;  ///< who may switch scenes, control recordings, see raw messages
 };
 
-/// From the values of stream_parameters(). An error names the key.
-Result<StreamConfig, ParameterError> stream_config_of(const ParameterValues& values);
+const Fields<StreamConfig>& stream_fields();
+
+/// Returns "HOST:PORT" as it is, or why it is none (parse_address()).
+Result<std::string, Failure> checked_address(const std::string& text);
 
 }  // namespace yuragi::daemon::settings

@@ -1,38 +1,151 @@
 #include "daemon/settings/wind_config.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <string>
 #include <utility>
 
 #include "daemon/settings/site_octaves.hpp"
+#include "engine/base/fields.hpp"
 #include "engine/wind/blend/blend_settings.hpp"
 
 namespace yuragi::daemon::settings {
+namespace {
+
+/// [wind] as it is written.
+struct WindTable {
+  WindConfig wind;
+  std::string fallback_recording;
+  double fallback_after_s = 0.0;
+};
+
+template <class Member>
+auto of(Member WindConfig::*member) {
+  return [member](WindTable& table) -> Member& { return table.wind.*member; };
+}
+
+std::optional<double> length_unless_0(double length_m) {
+  if (length_m == 0.0) return std::nullopt;
+  return std::max(length_m, kShortestGusts_m);
+}
+
+const Fields<WindTable>& wind_fields() {
+  static const Fields<WindTable> kFields{
+      {{.name = "default_speed",
+        .unit = "m/s",
+        .default_value = 3.0,
+        .min = 0.0,
+        .max = 40.0,
+        .help = "mean speed of the wind that is used while no sensor is live"},
+       of(&WindConfig::default_speed_m_s)},
+      {{.name = "default_direction",
+        .unit = "deg",
+        .default_value = 240.0,
+        .min = 0.0,
+        .max = 360.0,
+        .help = "where that wind comes from, clockwise from north; also used for sensors without a vane"},
+       of(&WindConfig::default_direction_deg)},
+      {{.name = "default_turbulence",
+        .unit = "",
+        .default_value = 0.3,
+        .min = 0.0,
+        .max = 1.0,
+        .help = "its turbulence intensity: standard deviation over mean speed"},
+       of(&WindConfig::default_turbulence_intensity)},
+      {{.name = "default_length",
+        .unit = "m",
+        .default_value = 0.0,
+        .min = 0.0,
+        .max = 1000.0,
+        .help = "integral length scale of the gusts, of the default wind and between a sensor's readings; 0: "
+                "from the height in each sensor's calibration, 5.7 m per metre up to 60 m (25 m at 4.4 m, 85 m "
+                "at 15 m); without a height 57 m, as over open land at 10 m"},
+       of(&WindConfig::default_length_m),
+       length_unless_0},
+      {{.name = "gustiness",
+        .unit = "",
+        .default_value = 0.3,
+        .min = 0.0,
+        .max = 0.6,
+        .help = "variation of the strength of generated gusts over some hundred metres of wind; about 0.3 in "
+                "real wind, 0: none. Measured gusts are not changed"},
+       of(&WindConfig::gustiness)},
+      {{.name = "site_octaves",
+        .unit = "dB",
+        .default_value = std::string(""),
+        .help = "power of this site's gusts relative to the fit to a slow sensor, at 0.0375 to 0.075 Hz, 0.075 "
+                "to 0.15 Hz and so on, up to 7 numbers; `yuragi report` prints them for a recording of a fast "
+                "sensor. The daemon also fits them while a sensor with an interval of at most 1 s is live, and "
+                "keeps them in site_file of [shaping]"},
+       of(&WindConfig::site_octaves_db),
+       parse_site_octaves},
+      {{.name = "evolving",
+        .unit = "",
+        .default_value = true,
+        .help = "gusts change while they travel; false: they travel unchanged (frozen turbulence)"},
+       of(&WindConfig::is_evolving)},
+      {{.name = "handover",
+        .unit = "s",
+        .default_value = 3.0,
+        .min = 0.2,
+        .max = 60.0,
+        .help = "duration of the transition from one source of wind to another"},
+       of(&WindConfig::handover_s)},
+      {{.name = "stale_intervals",
+        .unit = "",
+        .default_value = 5.0,
+        .min = 2.0,
+        .max = 100.0,
+        .help = "a sensor that is silent for this many of its own intervals is stale"},
+       of(&WindConfig::stale_intervals)},
+      {{.name = "return_after",
+        .unit = "s",
+        .default_value = 10.0,
+        .min = 0.0,
+        .max = 3600.0,
+        .help = "a stale sensor is used again after it has sent readings for this long; twice as long each time"},
+       of(&WindConfig::return_after_s)},
+      {{.name = "relative_gains",
+        .unit = "",
+        .default_value = true,
+        .help = "several sensors that differ by a constant factor, up to 1.5, are levelled to their common mean: "
+                "a sheltered and an exposed one, too, and what each reads times the group is shown. Learnt in "
+                "hours of wind, kept in site_file of [shaping]; false: no sensor is levelled"},
+       of(&WindConfig::has_relative_gains)},
+      {{.name = "fallback_recording",
+        .unit = "",
+        .default_value = std::string{},
+        .help = "a recording (.windlog) that is played while every sensor is silent; empty: none, the default "
+                "wind is used"},
+       &WindTable::fallback_recording},
+      {{.name = "fallback_after",
+        .unit = "s",
+        .default_value = 60.0,
+        .min = 1.0,
+        .max = 86400.0,
+        .help = "for how long every sensor must have been silent before it is played"},
+       &WindTable::fallback_after_s},
+  };
+  return kFields;
+}
+
+}  // namespace
 
 double WindConfig::gust_length_m() const noexcept {
   return default_length_m.value_or(wind::blend::BlendSettings{}.length_m);
 }
 
-Result<WindConfig, ParameterError> wind_config_of(const ParameterValues& values) {
-  auto octaves_db = parse_site_octaves(values.text("site_octaves"));
-  if (!octaves_db) return ParameterError{"site_octaves", octaves_db.error().message};
-  WindConfig wind{.default_speed_m_s = values.number("default_speed"),
-                  .default_direction_deg = values.number("default_direction"),
-                  .default_turbulence_intensity = values.number("default_turbulence"),
-                  .default_length_m = std::nullopt,
-                  .gustiness = values.number("gustiness"),
-                  .site_octaves_db = std::move(*octaves_db),
-                  .is_evolving = values.flag("evolving"),
-                  .handover_s = values.number("handover"),
-                  .stale_intervals = values.number("stale_intervals"),
-                  .return_after_s = values.number("return_after"),
-                  .has_relative_gains = values.flag("relative_gains")};
-  if (const double length_m = values.number("default_length"); length_m > 0.0) {
-    wind.default_length_m = std::max(length_m, kShortestGusts_m);
-  }
-  if (const std::string& recording = values.text("fallback_recording"); !recording.empty()) {
-    wind.fallback = {.recording = recording, .after_s = values.number("fallback_after")};
-  }
-  return wind;
+std::span<const Parameter> wind_parameters() {
+  return wind_fields().parameters();
+}
+
+std::vector<ParameterError> fill_wind(WindConfig& wind, const ParameterValues& values) {
+  WindTable table;
+  std::vector<ParameterError> errors = wind_fields().fill(table, values.all());
+  wind = std::move(table.wind);
+  if (!table.fallback_recording.empty())
+    wind.fallback = {.recording = table.fallback_recording, .after_s = table.fallback_after_s};
+  return errors;
 }
 
 }  // namespace yuragi::daemon::settings

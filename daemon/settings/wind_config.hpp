@@ -2,12 +2,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "drivers/sensor/stated_value.hpp"
 #include "engine/base/parameter.hpp"
-#include "engine/base/result.hpp"
 
 namespace yuragi::daemon::settings {
 
@@ -43,7 +43,10 @@ struct WindConfig {
   double gust_length_m() const noexcept;
 };
 
-/// From the values of wind_parameters(). An error names the key.
-Result<WindConfig, ParameterError> wind_config_of(const ParameterValues& values);
+/// The keys of [wind].
+std::span<const Parameter> wind_parameters();
+
+/// Fills it from the values of wind_parameters(). Returns what they contradict.
+std::vector<ParameterError> fill_wind(WindConfig& wind, const ParameterValues& values);
 
 }  // namespace yuragi::daemon::settings

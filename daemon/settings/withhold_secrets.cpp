@@ -9,7 +9,7 @@
 
 #include <toml++/toml.h>
 
-#include "daemon/settings/alert_config.hpp"
+#include "daemon/settings/config.hpp"
 #include "daemon/settings/config_edit.hpp"
 #include "daemon/settings/toml_places.hpp"
 #include "drivers/sensor/driver.hpp"
@@ -40,9 +40,9 @@ Keys secret_keys_of(std::string_view driver) {
   return is_known ? keys : keys_of_all;
 }
 
-Keys secret_keys_of_alerts() {
+Keys secret_keys(std::span<const Parameter> parameters) {
   Keys keys;
-  add_secret_keys(alert_parameters(), keys);
+  add_secret_keys(parameters, keys);
   return keys;
 }
 
@@ -113,16 +113,31 @@ Result<WithheldText, Failure> withhold_in(std::string_view toml_text, const With
 
 Result<WithheldText, Failure> withhold_in_configuration(std::string_view toml_text) {
   return withhold_in(toml_text, [](SecretWithholder& withholder) {
-    const auto withhold_of_each = [&](const char* list, const auto& keys_of) {
-      toml::array* const tables = withholder.root()[list].as_array();
-      if (tables == nullptr) return;
-      for (toml::node& element : *tables) {
-        if (toml::table* const table = element.as_table()) withholder.withhold(*table, keys_of(*table));
+    toml::table& root = withholder.root();
+    const auto withhold_of_table = [&withholder](toml::table& around, std::string_view name,
+                                                 std::span<const Parameter> parameters) {
+      toml::table* const table = name.empty() ? &around : around[name].as_table();
+      if (table != nullptr) withholder.withhold(*table, secret_keys(parameters));
+    };
+    const auto for_each_entry = [&root](std::string_view list, const auto& use) {
+      toml::array* const entries = root[list].as_array();
+      if (entries == nullptr) return;
+      for (toml::node& element : *entries) {
+        if (toml::table* const entry = element.as_table()) use(*entry);
       }
     };
-    withhold_of_each(
-        "sensor", [](const toml::table& sensor) { return secret_keys_of(sensor["driver"].value_or(std::string())); });
-    withhold_of_each("alert", [](const toml::table&) { return secret_keys_of_alerts(); });
+    for (const ConfigTable& table : config_tables()) withhold_of_table(root, table.name, table.parameters);
+    for_each_entry("sensor", [&](toml::table& sensor) {
+      withholder.withhold(sensor, secret_keys_of(sensor["driver"].value_or(std::string())));
+      for (const SensorTable& table : sensor_tables()) withhold_of_table(sensor, table.name, table.parameters);
+    });
+    for_each_entry("scene", [&](toml::table& scene) {
+      for (const scenes::SceneDescription* const kind : scenes::scene_table())
+        withhold_of_table(scene, "", scene_parameters(*kind));
+    });
+    for_each_entry("camera", [&](toml::table& camera) { withhold_of_table(camera, "", look::camera_parameters()); });
+    for_each_entry("alert", [&](toml::table& alert) { withhold_of_table(alert, "", alert_parameters()); });
+    for_each_entry("output", [&](toml::table& output) { withhold_of_table(output, "", output::output_parameters()); });
   });
 }
 

@@ -203,4 +203,9 @@ void ParameterValues::set(std::string_view name, const ParameterValue& value) {
   found->second = value;
 }
 
+void ParameterValues::take_over(const std::string& name, const ParameterValues& other) {
+  values_.erase(name);
+  if (const auto found = other.values_.find(name); found != other.values_.end()) values_.insert(*found);
+}
+
 }  // namespace yuragi

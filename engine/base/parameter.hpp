@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -21,6 +22,14 @@ using ParameterValue = std::variant<bool, std::int64_t, double, std::string, Sec
 using PrintableValue = std::variant<bool, std::int64_t, double, std::string>;
 PrintableValue printable(const ParameterValue& value);
 
+/// What a running daemon does with a new value of a key.
+enum class KeyChange : std::uint8_t {
+  kAtOnce,        ///< it takes effect
+  kCrossFade,     ///< what it belongs to is made anew, and the old one fades out
+  kTakesRestart,  ///< it takes effect when the daemon is started again
+  kTakesReload,   ///< it names a file, which is read only together with the configuration
+};
+
 /// A parameter that describes itself: config checking, --help, the viewer's sliders and the reference page all read
 /// this one description. Constants of this type stand beside what they set.
 struct Parameter {
@@ -34,6 +43,8 @@ struct Parameter {
   /// What it means where it is not given, which none of its values can express ("at the windward edge"). Then it has no
   /// default, and values have it only if it was given. Empty: default_value, of which otherwise only the type counts.
   std::string_view left_out = {};
+  /// What a new value does; nothing: what the table says of its keys.
+  std::optional<KeyChange> change = {};
   /// texts only: the path of a file with a secret in it, which other users of the machine are not to read
   bool is_secret_file = false;
   /// texts only: a script or the bytes for a device, in which control characters and line breaks are allowed
@@ -76,6 +87,9 @@ class ParameterValues {
 
   /// Replaces a value with one of the same type, which the caller vouches for (a command-line option, say).
   void set(std::string_view name, const ParameterValue& value);
+
+  /// Takes over the value that `other`, of the same table, has of this name; none if it has none.
+  void take_over(const std::string& name, const ParameterValues& other);
 
  private:
   Map values_;

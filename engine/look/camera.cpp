@@ -1,10 +1,12 @@
 #include "engine/look/camera.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include "engine/base/fields.hpp"
 #include "engine/look/time_of_day.hpp"
 
 namespace yuragi::look {
@@ -12,175 +14,162 @@ namespace {
 
 constexpr double kFarthest_m = 1000.0;  // as far as scenes may stand
 
-/// A number of a camera: its key, and the member that it sets.
-struct CameraNumber {
-  std::string_view name;
-  double Camera::*member;
-};
-constexpr std::array kNumbers{
-    CameraNumber{"target_x", &Camera::target_x_m}, CameraNumber{"target_y", &Camera::target_y_m},
-    CameraNumber{"target_z", &Camera::target_z_m}, CameraNumber{"heading", &Camera::heading_deg},
-    CameraNumber{"pitch", &Camera::pitch_deg},     CameraNumber{"fov", &Camera::fov_deg},
-    CameraNumber{"turn", &Camera::turn_deg_min},   CameraNumber{"sway", &Camera::sway_deg},
-    CameraNumber{"pan", &Camera::pan_deg},         CameraNumber{"dolly", &Camera::dolly_m},
-    CameraNumber{"track", &Camera::track_m},       CameraNumber{"period", &Camera::period_s},
-    CameraNumber{"fade", &Camera::fade_s}};
-
 const Camera& default_camera() {
   static const Camera camera;
   return camera;
 }
 
-const std::array<Parameter, 17> kCameraParameters{{
-    {.name = "scene",
-     .unit = "",
-     .default_value = std::string(),
-     .help = "The scene that it looks at, by its name: its middle",
-     .left_out = "it looks at x = 0, y = 0, z = 0"},
-    {.name = "target_x",
-     .unit = "m",
-     .default_value = default_camera().target_x_m,
-     .min = -kFarthest_m,
-     .max = kFarthest_m,
-     .help = "What it looks at: so far to the east of there"},
-    {.name = "target_y",
-     .unit = "m",
-     .default_value = default_camera().target_y_m,
-     .min = -kFarthest_m,
-     .max = kFarthest_m,
-     .help = "So far above there"},
-    {.name = "target_z",
-     .unit = "m",
-     .default_value = default_camera().target_z_m,
-     .min = -kFarthest_m,
-     .max = kFarthest_m,
-     .help = "So far to the south of there"},
-    {.name = "heading",
-     .unit = "deg",
-     .default_value = default_camera().heading_deg,
-     .min = -360.0,
-     .max = 360.0,
-     .help = "Direction of view: 0 north, 90 east"},
-    {.name = "wind_angle",
-     .unit = "deg",
-     .default_value = 75.0,
-     .min = -180.0,
-     .max = 180.0,
-     .help = "Follows the mean wind instead of `heading`: the view goes so far to the right of where the wind comes "
-             "from; 0 "
-             "looks into it, 90 and -90 across it. It turns by at most 0.5 deg/s, and never through a scene",
-     .left_out = "`heading` is the direction of view"},
-    {.name = "pitch",
-     .unit = "deg",
-     .default_value = default_camera().pitch_deg,
-     .min = -45.0,
-     .max = 89.0,
-     .help = "How far the view goes downward; below 0 it goes up. The eye stays above the ground"},
-    {.name = "distance",
-     .unit = "m",
-     .default_value = 10.0,
-     .min = 0.2,
-     .max = 200.0,
-     .help = "Of the eye from what it looks at",
-     .left_out = "so far that all of the scene is in the picture; without a scene 10"},
-    {.name = "fov",
-     .unit = "deg",
-     .default_value = default_camera().fov_deg,
-     .min = 5.0,
-     .max = 100.0,
-     .help = "Field of view from bottom to top in a picture of 16:9; an upright picture has more of it, a broader one "
-             "less"},
-    {.name = "turn",
-     .unit = "deg/min",
-     .default_value = default_camera().turn_deg_min,
-     .min = -360.0,
-     .max = 360.0,
-     .help = "Goes around the target for ever; above 0 the heading grows"},
-    {.name = "sway",
-     .unit = "deg",
-     .default_value = default_camera().sway_deg,
-     .min = -90.0,
-     .max = 90.0,
-     .help = "Goes around the target, so far to either side"},
-    {.name = "pan",
-     .unit = "deg",
-     .default_value = default_camera().pan_deg,
-     .min = -90.0,
-     .max = 90.0,
-     .help = "The eye stands, and the view turns so far to either side"},
-    {.name = "dolly",
-     .unit = "m",
-     .default_value = default_camera().dolly_m,
-     .min = -100.0,
-     .max = 100.0,
-     .help = "Goes so much nearer to the target, and so much farther"},
-    {.name = "track",
-     .unit = "m",
-     .default_value = default_camera().track_m,
-     .min = -100.0,
-     .max = 100.0,
-     .help = "Goes so far to the right, and to the left, and so does what it looks at"},
-    {.name = "period",
-     .unit = "s",
-     .default_value = default_camera().period_s,
-     .min = 10.0,
-     .max = 86400.0,
-     .help = "How long sway, pan, dolly and track take there and back"},
-    {.name = "from",
-     .unit = "",
-     .default_value = std::string(),
-     .help = "The time of day from which it is on, HH:MM in the time zone of [shaping]",
-     .left_out = "only where it is asked for; where no camera has it, the first is always on"},
-    {.name = "fade",
-     .unit = "s",
-     .default_value = default_camera().fade_s,
-     .min = 0.0,
-     .max = 600.0,
-     .help = "Duration of the cross-fade to it, when its time comes"},
-}};
+Result<double, Failure> hour_of(const std::string& text) {
+  const std::optional<double> hour = time_of_day_h(text);
+  if (!hour || *hour == 24.0) return Failure{"is \"" + text + "\"; allowed: a time of the day such as \"06:30\""};
+  return *hour;
+}
 
-double limited_number(double value, std::string_view name, double fallback) {
-  if (!std::isfinite(value)) return fallback;
-  const auto found = std::ranges::find(kCameraParameters, name, &Parameter::name);
-  return std::clamp(value, found->min, found->max);
+const Fields<Camera>& camera_fields() {
+  static const Fields<Camera> kFields{
+      {{.name = "scene",
+        .unit = "",
+        .default_value = std::string(),
+        .help = "The scene that it looks at, by its name: its middle",
+        .left_out = "it looks at x = 0, y = 0, z = 0"},
+       &Camera::scene},
+      {{.name = "target_x",
+        .unit = "m",
+        .default_value = default_camera().target_x_m,
+        .min = -kFarthest_m,
+        .max = kFarthest_m,
+        .help = "What it looks at: so far to the east of there"},
+       &Camera::target_x_m},
+      {{.name = "target_y",
+        .unit = "m",
+        .default_value = default_camera().target_y_m,
+        .min = -kFarthest_m,
+        .max = kFarthest_m,
+        .help = "So far above there"},
+       &Camera::target_y_m},
+      {{.name = "target_z",
+        .unit = "m",
+        .default_value = default_camera().target_z_m,
+        .min = -kFarthest_m,
+        .max = kFarthest_m,
+        .help = "So far to the south of there"},
+       &Camera::target_z_m},
+      {{.name = "heading",
+        .unit = "deg",
+        .default_value = default_camera().heading_deg,
+        .min = -360.0,
+        .max = 360.0,
+        .help = "Direction of view: 0 north, 90 east"},
+       &Camera::heading_deg},
+      {{.name = "wind_angle",
+        .unit = "deg",
+        .default_value = 75.0,
+        .min = -180.0,
+        .max = 180.0,
+        .help = "Follows the mean wind instead of `heading`: the view goes so far to the right of where the wind comes "
+                "from; 0 "
+                "looks into it, 90 and -90 across it. It turns by at most 0.5 deg/s, and never through a scene",
+        .left_out = "`heading` is the direction of view"},
+       &Camera::wind_angle_deg},
+      {{.name = "pitch",
+        .unit = "deg",
+        .default_value = default_camera().pitch_deg,
+        .min = -45.0,
+        .max = 89.0,
+        .help = "How far the view goes downward; below 0 it goes up. The eye stays above the ground"},
+       &Camera::pitch_deg},
+      {{.name = "distance",
+        .unit = "m",
+        .default_value = 10.0,
+        .min = 0.2,
+        .max = 200.0,
+        .help = "Of the eye from what it looks at",
+        .left_out = "so far that all of the scene is in the picture; without a scene 10"},
+       &Camera::distance_m},
+      {{.name = "fov",
+        .unit = "deg",
+        .default_value = default_camera().fov_deg,
+        .min = 5.0,
+        .max = 100.0,
+        .help =
+            "Field of view from bottom to top in a picture of 16:9; an upright picture has more of it, a broader one "
+            "less"},
+       &Camera::fov_deg},
+      {{.name = "turn",
+        .unit = "deg/min",
+        .default_value = default_camera().turn_deg_min,
+        .min = -360.0,
+        .max = 360.0,
+        .help = "Goes around the target for ever; above 0 the heading grows"},
+       &Camera::turn_deg_min},
+      {{.name = "sway",
+        .unit = "deg",
+        .default_value = default_camera().sway_deg,
+        .min = -90.0,
+        .max = 90.0,
+        .help = "Goes around the target, so far to either side"},
+       &Camera::sway_deg},
+      {{.name = "pan",
+        .unit = "deg",
+        .default_value = default_camera().pan_deg,
+        .min = -90.0,
+        .max = 90.0,
+        .help = "The eye stands, and the view turns so far to either side"},
+       &Camera::pan_deg},
+      {{.name = "dolly",
+        .unit = "m",
+        .default_value = default_camera().dolly_m,
+        .min = -100.0,
+        .max = 100.0,
+        .help = "Goes so much nearer to the target, and so much farther"},
+       &Camera::dolly_m},
+      {{.name = "track",
+        .unit = "m",
+        .default_value = default_camera().track_m,
+        .min = -100.0,
+        .max = 100.0,
+        .help = "Goes so far to the right, and to the left, and so does what it looks at"},
+       &Camera::track_m},
+      {{.name = "period",
+        .unit = "s",
+        .default_value = default_camera().period_s,
+        .min = 10.0,
+        .max = 86400.0,
+        .help = "How long sway, pan, dolly and track take there and back"},
+       &Camera::period_s},
+      {{.name = "from",
+        .unit = "",
+        .default_value = std::string(),
+        .help = "The time of day from which it is on, HH:MM in the time zone of [shaping]",
+        .left_out = "only where it is asked for; where no camera has it, the first is always on"},
+       &Camera::from_h,
+       hour_of},
+      {{.name = "fade",
+        .unit = "s",
+        .default_value = default_camera().fade_s,
+        .min = 0.0,
+        .max = 600.0,
+        .help = "Duration of the cross-fade to it, when its time comes"},
+       &Camera::fade_s},
+  };
+  return kFields;
 }
 
 }  // namespace
 
 std::span<const Parameter> camera_parameters() {
-  return kCameraParameters;
+  return camera_fields().parameters();
 }
 
 Result<Camera, ParameterError> camera_of(std::string name, const ParameterValues& values) {
   Camera camera{.name = std::move(name)};
-  for (const CameraNumber& number : kNumbers) camera.*number.member = values.number(number.name);
-  if (values.has("scene")) camera.scene = values.text("scene");
-  if (values.has("distance")) camera.distance_m = values.number("distance");
-  if (values.has("wind_angle")) camera.wind_angle_deg = values.number("wind_angle");
-  if (values.has("from")) {
-    const std::string& from = values.text("from");
-    camera.from_h = time_of_day_h(from);
-    if (!camera.from_h || *camera.from_h == 24.0) {
-      return ParameterError{"from", "is \"" + from + "\"; allowed: a time of the day such as \"06:30\""};
-    }
-  }
+  const std::vector<ParameterError> errors = camera_fields().fill(camera, values.all());
+  if (!errors.empty()) return errors.front();
   return camera;
 }
 
 Camera within_limits(const Camera& camera) {
-  Camera to = camera;
-  for (const CameraNumber& number : kNumbers) {
-    to.*number.member = limited_number(camera.*number.member, number.name, default_camera().*number.member);
-  }
-  if (to.distance_m) {
-    to.distance_m.reset();
-    if (std::isfinite(*camera.distance_m)) to.distance_m = limited_number(*camera.distance_m, "distance", 0.0);
-  }
-  if (to.wind_angle_deg) {
-    to.wind_angle_deg.reset();
-    if (std::isfinite(*camera.wind_angle_deg))
-      to.wind_angle_deg = limited_number(*camera.wind_angle_deg, "wind_angle", 0.0);
-  }
+  Camera to = camera_fields().within_limits(camera, default_camera());
   if (to.from_h && !(*to.from_h >= 0.0 && *to.from_h < 24.0)) to.from_h.reset();
   return to;
 }

@@ -63,9 +63,6 @@ struct Look {
 /// What the table [look] may hold, and `--look KEY=VALUE` of the viewer.
 std::span<const Parameter> look_parameters();
 
-/// Is the value of this key a file, which is read with the configuration?
-bool names_file(std::string_view key) noexcept;
-
 /// From values of look_parameters(). Where they do not say which sun it is, a place or a time means kTime, a height or
 /// an azimuth kFixed.
 Result<Look, ParameterError> look_of(const ParameterValues& values);

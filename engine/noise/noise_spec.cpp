@@ -18,16 +18,6 @@ std::string_view name_of(NoiseError error) noexcept {
   return "?";
 }
 
-std::string_view name_of(BetaMeaning meaning) noexcept {
-  switch (meaning) {
-    case BetaMeaning::kRadial:
-      return "radial";
-    case BetaMeaning::kTransect:
-      return "transect";
-  }
-  return "?";
-}
-
 std::string_view explain(NoiseError error) noexcept {
   switch (error) {
     case NoiseError::kSizeNotAllowed:

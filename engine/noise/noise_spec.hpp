@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -13,9 +14,10 @@ namespace yuragi::noise {
 
 /// What an exponent beta is the exponent of. In one dimension the two are the same.
 enum class BetaMeaning : std::uint8_t {
-  kRadial,    ///< of each Fourier mode's power, |k|^-beta: the paper read literally
   kTransect,  ///< of the spectrum that a straight line through the field has: what an anemometer sees
+  kRadial,    ///< of each Fourier mode's power, |k|^-beta: the paper read literally
 };
+inline constexpr std::array<std::string_view, 2> kBetaMeaningNames = {"transect", "radial"};
 
 /// Which noise is wanted. Everything but the size has a default; later members will have one as well.
 struct NoiseSpec {
@@ -55,7 +57,6 @@ enum class NoiseError : std::uint8_t {
 };
 
 std::string_view name_of(NoiseError error) noexcept;
-std::string_view name_of(BetaMeaning meaning) noexcept;
 
 /// One sentence for people: what is allowed.
 std::string_view explain(NoiseError error) noexcept;

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/base/fields.hpp"
+
 namespace yuragi::output {
 namespace {
 
@@ -14,89 +16,6 @@ constexpr double kLeastCrop = 0.001;
 constexpr double kFarthestPlace_m = 1000.0;
 constexpr double kLeastSide_m = 0.01;      // of a screen, and the least distance to the eye
 constexpr double kLeastSquareness = 0.01;  // the most cosine between a screen's sides
-
-const std::array<Parameter, 6> kOutputParameters{{
-    {.name = "size",
-     .unit = "",
-     .default_value = std::string(),
-     .help = "Pixels of the whole picture, WIDTHxHEIGHT, of which each window shows its crop",
-     .left_out = "as many as its windows have, so that each pixel of the picture is one of a monitor"},
-    {.name = "refreshes",
-     .unit = "",
-     .default_value = std::int64_t{1},
-     .min = 1,
-     .max = 4,
-     .help =
-         "Refreshes of the display for each picture: 2 makes even 30 pictures a second on a display of 60 Hz, where "
-         "the machine is too slow for 60"},
-    {.name = "screen_lower_left",
-     .unit = "",
-     .default_value = std::string(),
-     .help = "For a picture that is right for somebody at a fixed place, as if the screen were a window: X Y Z of its "
-             "lower left corner, in meters, in any axes of the room. The camera stands where the eye is, and looks at "
-             "right angles to the screen",
-     .left_out = "the field of view is the camera's"},
-    {.name = "screen_lower_right",
-     .unit = "",
-     .default_value = std::string(),
-     .help = "X Y Z of its lower right corner",
-     .left_out = "as above"},
-    {.name = "screen_upper_left",
-     .unit = "",
-     .default_value = std::string(),
-     .help = "X Y Z of its upper left corner",
-     .left_out = "as above"},
-    {.name = "eye", .unit = "", .default_value = std::string(), .help = "X Y Z of the eye", .left_out = "as above"},
-}};
-
-const std::array<Parameter, 9> kWindowParameters{{
-    {.name = "monitor",
-     .unit = "",
-     .default_value = std::string(),
-     .help = "The monitor that it fills: its name, such as \"HDMI-1\", or its number, from \"0\" on; `yuragi-viewer "
-             "--list-monitors` lists them",
-     .left_out = "the primary one"},
-    {.name = "crop",
-     .unit = "",
-     .default_value = std::string("0 0 1 1"),
-     .help = "The part of the picture that it shows: X Y of the upper left corner, WIDTH, HEIGHT, as parts of the "
-             "picture's width and height. \"0.5 0 0.5 1\" is the right half"},
-    {.name = "rotation",
-     .unit = "deg",
-     .default_value = std::int64_t{0},
-     .min = 0,
-     .max = 270,
-     .help = "How far the picture is turned clockwise on the monitor: 0, 90, 180 or 270. 90 is for a monitor that "
-             "hangs with its right side up"},
-    {.name = "corners",
-     .unit = "",
-     .default_value = std::string("0 0 1 0 1 1 0 1"),
-     .help =
-         "Where its corners are on the monitor, as X Y of upper left, upper right, lower right, lower left, as parts "
-         "of the monitor's width and height as one sees them: straightens what a projector throws aslant. See "
-         "`yuragi-viewer --test-card`"},
-    {.name = "blend_left",
-     .unit = "",
-     .default_value = 0.0,
-     .min = 0.0,
-     .max = 1.0,
-     .help = "How broad the strip at this side is that another projector shows, too: there it fades out. As part of "
-             "the picture's width"},
-    {.name = "blend_right", .unit = "", .default_value = 0.0, .min = 0.0, .max = 1.0, .help = "The same"},
-    {.name = "blend_top",
-     .unit = "",
-     .default_value = 0.0,
-     .min = 0.0,
-     .max = 1.0,
-     .help = "The same, as part of the picture's height"},
-    {.name = "blend_bottom", .unit = "", .default_value = 0.0, .min = 0.0, .max = 1.0, .help = "The same"},
-    {.name = "gamma",
-     .unit = "",
-     .default_value = 2.2,
-     .min = 1.0,
-     .max = 4.0,
-     .help = "The projector's gamma, for the blend: less where the strip is too bright, more where it is too dark"},
-}};
 
 /// Numbers with spaces or commas between them. Nothing where they are not `count` finite ones.
 std::optional<std::vector<double>> read_numbers(std::string_view text, std::size_t count) {
@@ -117,40 +36,48 @@ std::optional<std::vector<double>> read_numbers(std::string_view text, std::size
   return numbers;
 }
 
-ParameterError refused(std::string_view key, const std::string& text, std::string_view allowed) {
-  return {std::string(key), "is \"" + text + "\"; allowed: " + std::string(allowed)};
+Failure refused(std::string_view text, std::string_view allowed) {
+  return {"is \"" + std::string(text) + "\"; allowed: " + std::string(allowed)};
 }
 
-std::optional<Size> read_size(std::string_view text) {
+Result<Size, Failure> read_size(std::string_view text) {
+  const Failure refusal = refused(text, "WIDTHxHEIGHT in pixels, 16 to 16384, such as \"3840x1080\"");
   Size size;
   const char* const end = text.data() + text.size();
   const auto width = std::from_chars(text.data(), end, size.width_px);
-  if (width.ec != std::errc{} || width.ptr == end || *width.ptr != 'x') return std::nullopt;
+  if (width.ec != std::errc{} || width.ptr == end || *width.ptr != 'x') return refusal;
   const auto height = std::from_chars(width.ptr + 1, end, size.height_px);
   const auto is_possible = [](int side_px) { return side_px >= 16 && side_px <= kLargestSide_px; };
-  if (height.ec != std::errc{} || height.ptr != end) return std::nullopt;
-  return is_possible(size.width_px) && is_possible(size.height_px) ? std::optional(size) : std::nullopt;
+  if (height.ec != std::errc{} || height.ptr != end) return refusal;
+  if (!is_possible(size.width_px) || !is_possible(size.height_px)) return refusal;
+  return size;
 }
 
-std::optional<Crop> read_crop(std::string_view text) {
+Result<Crop, Failure> read_crop(std::string_view text) {
+  const Failure refusal = refused(text, "X Y WIDTH HEIGHT within the picture, from 0 to 1, such as \"0.5 0 0.5 1\"");
   const auto numbers = read_numbers(text, 4);
-  if (!numbers) return std::nullopt;
+  if (!numbers) return refusal;
   const Crop crop{.x = (*numbers)[0], .y = (*numbers)[1], .width = (*numbers)[2], .height = (*numbers)[3]};
   constexpr double kRounding = 1e-6;
   const bool is_inside = crop.x >= 0.0 && crop.y >= 0.0 && crop.width >= kLeastCrop && crop.height >= kLeastCrop &&
                          crop.x + crop.width <= 1.0 + kRounding && crop.y + crop.height <= 1.0 + kRounding;
-  return is_inside ? std::optional(crop) : std::nullopt;
+  if (!is_inside) return refusal;
+  return crop;
 }
 
 /// Corners go around clockwise, and each is convex: otherwise the picture would be mirrored, or lie over itself.
-std::optional<Corners> read_corners(std::string_view text) {
+Result<Corners, Failure> read_corners(std::string_view text) {
+  const Failure refusal =
+      refused(text,
+              "X Y of upper left, upper right, lower right, lower left, each corner convex, from -1 to 2, such as "
+              "\"0 0 1 0 1 1 0 1\"");
   const auto numbers = read_numbers(text, 8);
-  if (!numbers) return std::nullopt;
+  if (!numbers) return refusal;
   Corners corners;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     corners.at(i) = {.x = numbers->at(2 * i), .y = numbers->at(2 * i + 1)};
     const auto is_near = [](double part) { return part >= -kFarthestCorner && part <= 1.0 + kFarthestCorner; };
-    if (!is_near(corners.at(i).x) || !is_near(corners.at(i).y)) return std::nullopt;
+    if (!is_near(corners.at(i).x) || !is_near(corners.at(i).y)) return refusal;
   }
   constexpr double kLeastTurn = 1e-4;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -158,9 +85,23 @@ std::optional<Corners> read_corners(std::string_view text) {
     const Place& at = corners.at((i + 1) % 4);
     const Place& after = corners.at((i + 2) % 4);
     const double turn = (at.x - before.x) * (after.y - at.y) - (at.y - before.y) * (after.x - at.x);
-    if (turn < kLeastTurn) return std::nullopt;
+    if (turn < kLeastTurn) return refusal;
   }
   return corners;
+}
+
+Result<int, Failure> quarter_turns(std::int64_t degrees) {
+  if (degrees % 90 != 0) return Failure{"is " + std::to_string(degrees) + "; allowed: 0, 90, 180, 270"};
+  return static_cast<int>(degrees);
+}
+
+Result<RoomPlace, Failure> read_place(std::string_view text) {
+  const auto numbers = read_numbers(text, 3);
+  const auto is_far = [](double number_m) { return std::abs(number_m) > kFarthestPlace_m; };
+  if (!numbers || std::ranges::any_of(*numbers, is_far)) {
+    return refused(text, "X Y Z in meters, such as \"-1.2 0.8 0\"");
+  }
+  return RoomPlace{(*numbers)[0], (*numbers)[1], (*numbers)[2]};
 }
 
 double dot(const RoomPlace& a, const RoomPlace& b) {
@@ -192,27 +133,148 @@ std::optional<ParameterError> mistake_of(const Screen& screen) {
   return std::nullopt;
 }
 
-Result<std::optional<Screen>, ParameterError> screen_of(const ParameterValues& values) {
-  Screen screen;
-  const std::array<std::pair<const char*, RoomPlace*>, 4> places{{{"screen_lower_left", &screen.lower_left_m},
-                                                                  {"screen_lower_right", &screen.lower_right_m},
-                                                                  {"screen_upper_left", &screen.upper_left_m},
-                                                                  {"eye", &screen.eye_m}}};
-  const auto is_given = [&values](const auto& place) { return values.has(place.first); };
+/// An [[output]] as it is written.
+struct OutputKeys {
+  std::optional<Size> size;
+  int refreshes = 1;
+  std::optional<RoomPlace> lower_left_m, lower_right_m, upper_left_m, eye_m;
+};
+
+const Fields<OutputKeys>& output_fields() {
+  static const Fields<OutputKeys> kFields{
+      {{.name = "size",
+        .unit = "",
+        .default_value = std::string(),
+        .help = "Pixels of the whole picture, WIDTHxHEIGHT, of which each window shows its crop",
+        .left_out = "as many as its windows have, so that each pixel of the picture is one of a monitor"},
+       &OutputKeys::size,
+       read_size},
+      {{.name = "refreshes",
+        .unit = "",
+        .default_value = std::int64_t{1},
+        .min = 1,
+        .max = 4,
+        .help =
+            "Refreshes of the display for each picture: 2 makes even 30 pictures a second on a display of 60 Hz, where "
+            "the machine is too slow for 60"},
+       &OutputKeys::refreshes},
+      {{.name = "screen_lower_left",
+        .unit = "",
+        .default_value = std::string(),
+        .help =
+            "For a picture that is right for somebody at a fixed place, as if the screen were a window: X Y Z of its "
+            "lower left corner, in meters, in any axes of the room. The camera stands where the eye is, and looks at "
+            "right angles to the screen",
+        .left_out = "the field of view is the camera's"},
+       &OutputKeys::lower_left_m,
+       read_place},
+      {{.name = "screen_lower_right",
+        .unit = "",
+        .default_value = std::string(),
+        .help = "X Y Z of its lower right corner",
+        .left_out = "as above"},
+       &OutputKeys::lower_right_m,
+       read_place},
+      {{.name = "screen_upper_left",
+        .unit = "",
+        .default_value = std::string(),
+        .help = "X Y Z of its upper left corner",
+        .left_out = "as above"},
+       &OutputKeys::upper_left_m,
+       read_place},
+      {{.name = "eye", .unit = "", .default_value = std::string(), .help = "X Y Z of the eye", .left_out = "as above"},
+       &OutputKeys::eye_m,
+       read_place},
+  };
+  return kFields;
+}
+
+auto of(double Sides::*member) {
+  return [member](Window& window) -> double& { return window.blend.*member; };
+}
+
+const Fields<Window>& window_fields() {
+  static const Fields<Window> kFields{
+      {{.name = "monitor",
+        .unit = "",
+        .default_value = std::string(),
+        .help = "The monitor that it fills: its name, such as \"HDMI-1\", or its number, from \"0\" on; `yuragi-viewer "
+                "--list-monitors` lists them",
+        .left_out = "the primary one"},
+       &Window::monitor},
+      {{.name = "crop",
+        .unit = "",
+        .default_value = std::string("0 0 1 1"),
+        .help = "The part of the picture that it shows: X Y of the upper left corner, WIDTH, HEIGHT, as parts of the "
+                "picture's width and height. \"0.5 0 0.5 1\" is the right half"},
+       &Window::crop,
+       read_crop},
+      {{.name = "rotation",
+        .unit = "deg",
+        .default_value = std::int64_t{0},
+        .min = 0,
+        .max = 270,
+        .help = "How far the picture is turned clockwise on the monitor: 0, 90, 180 or 270. 90 is for a monitor that "
+                "hangs with its right side up"},
+       &Window::rotation_deg,
+       quarter_turns},
+      {{.name = "corners",
+        .unit = "",
+        .default_value = std::string("0 0 1 0 1 1 0 1"),
+        .help = "Where its corners are on the monitor, as X Y of upper left, upper right, lower right, lower left, as "
+                "parts "
+                "of the monitor's width and height as one sees them: straightens what a projector throws aslant. See "
+                "`yuragi-viewer --test-card`"},
+       &Window::corners,
+       read_corners},
+      {{.name = "blend_left",
+        .unit = "",
+        .default_value = 0.0,
+        .min = 0.0,
+        .max = 1.0,
+        .help = "How broad the strip at this side is that another projector shows, too: there it fades out. As part of "
+                "the picture's width"},
+       of(&Sides::left)},
+      {{.name = "blend_right", .unit = "", .default_value = 0.0, .min = 0.0, .max = 1.0, .help = "The same"},
+       of(&Sides::right)},
+      {{.name = "blend_top",
+        .unit = "",
+        .default_value = 0.0,
+        .min = 0.0,
+        .max = 1.0,
+        .help = "The same, as part of the picture's height"},
+       of(&Sides::top)},
+      {{.name = "blend_bottom", .unit = "", .default_value = 0.0, .min = 0.0, .max = 1.0, .help = "The same"},
+       of(&Sides::bottom)},
+      {{.name = "gamma",
+        .unit = "",
+        .default_value = 2.2,
+        .min = 1.0,
+        .max = 4.0,
+        .help = "The projector's gamma, for the blend: less where the strip is too bright, more where it is too dark"},
+       &Window::gamma},
+  };
+  return kFields;
+}
+
+Result<std::optional<Screen>, ParameterError> screen_of(const OutputKeys& keys) {
+  const std::array<std::pair<const char*, const std::optional<RoomPlace>*>, 4> places{
+      {{"screen_lower_left", &keys.lower_left_m},
+       {"screen_lower_right", &keys.lower_right_m},
+       {"screen_upper_left", &keys.upper_left_m},
+       {"eye", &keys.eye_m}}};
+  const auto is_given = [](const auto& place) { return place.second->has_value(); };
   if (std::ranges::none_of(places, is_given)) return std::optional<Screen>();
-  for (const auto& [key, place] : places) {
-    if (!values.has(key)) {
-      return ParameterError{key,
-                            "is missing; a screen takes screen_lower_left, screen_lower_right, screen_upper_left "
-                            "and eye"};
-    }
-    const auto numbers = read_numbers(values.text(key), 3);
-    const auto is_far = [](double number_m) { return std::abs(number_m) > kFarthestPlace_m; };
-    if (!numbers || std::ranges::any_of(*numbers, is_far)) {
-      return refused(key, values.text(key), "X Y Z in meters, such as \"-1.2 0.8 0\"");
-    }
-    std::ranges::copy(*numbers, place->begin());
+  const auto missing = std::ranges::find_if_not(places, is_given);
+  if (missing != places.end()) {
+    return ParameterError{missing->first,
+                          "is missing; a screen takes screen_lower_left, screen_lower_right, screen_upper_left "
+                          "and eye"};
   }
+  const Screen screen{.lower_left_m = *keys.lower_left_m,
+                      .lower_right_m = *keys.lower_right_m,
+                      .upper_left_m = *keys.upper_left_m,
+                      .eye_m = *keys.eye_m};
   if (auto mistake = mistake_of(screen)) return *mistake;
   return std::optional(screen);
 }
@@ -220,51 +282,25 @@ Result<std::optional<Screen>, ParameterError> screen_of(const ParameterValues& v
 }  // namespace
 
 std::span<const Parameter> output_parameters() {
-  return kOutputParameters;
+  return output_fields().parameters();
 }
 std::span<const Parameter> window_parameters() {
-  return kWindowParameters;
+  return window_fields().parameters();
 }
 
 Result<Output, ParameterError> output_of(std::string name, const ParameterValues& values) {
-  Output output{.name = std::move(name)};
-  if (values.has("size")) {
-    output.size = read_size(values.text("size"));
-    if (!output.size) {
-      return refused("size", values.text("size"), "WIDTHxHEIGHT in pixels, 16 to 16384, such as \"3840x1080\"");
-    }
-  }
-  output.refreshes = static_cast<int>(values.integer("refreshes"));
-  auto screen = screen_of(values);
+  OutputKeys keys;
+  const std::vector<ParameterError> errors = output_fields().fill(keys, values.all());
+  if (!errors.empty()) return errors.front();
+  auto screen = screen_of(keys);
   if (!screen) return screen.error();
-  output.screen = *screen;
-  return output;
+  return Output{.name = std::move(name), .size = keys.size, .refreshes = keys.refreshes, .screen = *screen};
 }
 
 Result<Window, ParameterError> window_of(const ParameterValues& values) {
   Window window;
-  if (values.has("monitor")) window.monitor = values.text("monitor");
-  const auto crop = read_crop(values.text("crop"));
-  if (!crop) {
-    return refused("crop", values.text("crop"),
-                   "X Y WIDTH HEIGHT within the picture, from 0 to 1, such as \"0.5 0 0.5 1\"");
-  }
-  window.crop = *crop;
-  window.rotation_deg = static_cast<int>(values.integer("rotation"));
-  if (window.rotation_deg % 90 != 0) {
-    return ParameterError{"rotation", "is " + std::to_string(window.rotation_deg) + "; allowed: 0, 90, 180, 270"};
-  }
-  const auto corners = read_corners(values.text("corners"));
-  if (!corners) {
-    return refused("corners", values.text("corners"),
-                   "X Y of upper left, upper right, lower right, lower left, each corner convex, from -1 to 2, such as "
-                   "\"0 0 1 0 1 1 0 1\"");
-  }
-  window.corners = *corners;
-  window.blend = {.left = values.number("blend_left"),
-                  .right = values.number("blend_right"),
-                  .top = values.number("blend_top"),
-                  .bottom = values.number("blend_bottom")};
+  const std::vector<ParameterError> errors = window_fields().fill(window, values.all());
+  if (!errors.empty()) return errors.front();
   const auto exceeds = [](double one, double other, double all) { return one + other > all + 1e-6; };
   if (exceeds(window.blend.left, window.blend.right, window.crop.width)) {
     return ParameterError{"blend_right", "is too broad: with blend_left it is more than the crop's width"};
@@ -272,7 +308,6 @@ Result<Window, ParameterError> window_of(const ParameterValues& values) {
   if (exceeds(window.blend.top, window.blend.bottom, window.crop.height)) {
     return ParameterError{"blend_bottom", "is too broad: with blend_top it is more than the crop's height"};
   }
-  window.gamma = values.number("gamma");
   return window;
 }
 

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/base/fields.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/math/philox.hpp"
@@ -40,19 +41,42 @@
 namespace yuragi::scenes {
 namespace {
 
-const std::array kBannerParameters = {
-    Parameter{"columns", "", std::int64_t{64}, 2, 4000, "threads from the pole to the free side"},
-    Parameter{"rows", "", std::int64_t{256}, 2, 4000, "joints from the cross-arm down"},
-    Parameter{"width", "m", 0.6, 0.05, 20, "of the cloth"},
-    Parameter{"height", "m", 2.7, 0.1, 50, "of the cloth"},
-    Parameter{"clearance", "m", 0.5, 0, 50, "between the cloth and the ground"},
-    Parameter{"turns", "", true, 0, 0, "the arm turns downwind, as a vane; if not, it points to the scene's east"},
-    Parameter{"belly", "", 0.08, 0, 0.5, "how far a wind from the side bows the free side, as a part of the width"},
-    Parameter{"max_flutter", "deg", 50.0, 0, 80, "how far the strongest waves turn the free side away from the pole's"},
-    Parameter{"half_flutter_speed", "m/s", 2.8, 0.1, 60, "the wind that makes its waves half as high"},
-    Parameter{"wave_length", "m", 2.4, 0.2, 100, "of the longest waves; shorter ones make it flutter faster"},
-    Parameter{"wave_speed", "", 0.55, 0, 2, "how fast the waves run down, as a part of the wind's speed"},
-    Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
+/// kBannerFields says what each means.
+struct BannerSettings {
+  std::size_t columns;
+  std::size_t rows;
+  double width_m;
+  double height_m;
+  double clearance_m;
+  bool turns;
+  double belly;
+  double max_flutter_deg;
+  double half_flutter_speed_m_s;
+  double wave_length_m;
+  double wave_speed;
+  double hybrid;
+};
+
+const Fields<BannerSettings> kBannerFields = {
+    {{"columns", "", std::int64_t{64}, 2, 4000, "threads from the pole to the free side"}, &BannerSettings::columns},
+    {{"rows", "", std::int64_t{256}, 2, 4000, "joints from the cross-arm down"}, &BannerSettings::rows},
+    {{"width", "m", 0.6, 0.05, 20, "of the cloth"}, &BannerSettings::width_m},
+    {{"height", "m", 2.7, 0.1, 50, "of the cloth"}, &BannerSettings::height_m},
+    {{"clearance", "m", 0.5, 0, 50, "between the cloth and the ground"}, &BannerSettings::clearance_m},
+    {{"turns", "", true, 0, 0, "the arm turns downwind, as a vane; if not, it points to the scene's east"},
+     &BannerSettings::turns},
+    {{"belly", "", 0.08, 0, 0.5, "how far a wind from the side bows the free side, as a part of the width"},
+     &BannerSettings::belly},
+    {{"max_flutter", "deg", 50.0, 0, 80, "how far the strongest waves turn the free side away from the pole's"},
+     &BannerSettings::max_flutter_deg},
+    {{"half_flutter_speed", "m/s", 2.8, 0.1, 60, "the wind that makes its waves half as high"},
+     &BannerSettings::half_flutter_speed_m_s},
+    {{"wave_length", "m", 2.4, 0.2, 100, "of the longest waves; shorter ones make it flutter faster"},
+     &BannerSettings::wave_length_m},
+    {{"wave_speed", "", 0.55, 0, 2, "how fast the waves run down, as a part of the wind's speed"},
+     &BannerSettings::wave_speed},
+    {{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
+     &BannerSettings::hybrid},
     kClothColor,
     kClothColor2,
     kClothImage,
@@ -90,36 +114,6 @@ constexpr double kDragHalfSpeed_m_s = 4.5;
 /// How quickly the belly changes over, and the sine of the wind's angle to the arm that fills it.
 constexpr double kBellyOmega_rad_s = 2.0;
 constexpr double kFullBelly = 0.2;
-
-/// The values of kBannerParameters, which says what each means.
-struct BannerSettings {
-  std::size_t columns;
-  std::size_t rows;
-  double width_m;
-  double height_m;
-  double clearance_m;
-  bool turns;
-  double belly;
-  double max_flutter_deg;
-  double half_flutter_speed_m_s;
-  double wave_length_m;
-  double wave_speed;
-  double hybrid;
-};
-BannerSettings banner_settings(const ParameterValues& values) {
-  return {.columns = static_cast<std::size_t>(values.integer("columns")),
-          .rows = static_cast<std::size_t>(values.integer("rows")),
-          .width_m = values.number("width"),
-          .height_m = values.number("height"),
-          .clearance_m = values.number("clearance"),
-          .turns = values.flag("turns"),
-          .belly = values.number("belly"),
-          .max_flutter_deg = values.number("max_flutter"),
-          .half_flutter_speed_m_s = values.number("half_flutter_speed"),
-          .wave_length_m = values.number("wave_length"),
-          .wave_speed = values.number("wave_speed"),
-          .hybrid = values.number("hybrid")};
-}
 
 /// In the hybrid the cloth is taut from the pole to the free side, and by its loops the pole takes most of the wind.
 ClothSpec banner_spec(const BannerSettings& settings) {
@@ -341,10 +335,10 @@ extern const SceneDescription kBannerScene;
 const SceneDescription kBannerScene = {
     .name = "banner",
     .summary = "a nobori, held by its pole and cross-arm, that flutters in the wind",
-    .parameters = kBannerParameters,
+    .parameters = kBannerFields.parameters(),
     .make =
         [](const ParameterValues& values, const SceneSetup& setup) {
-          return std::unique_ptr<Scene>(std::make_unique<Banner>(banner_settings(values), setup));
+          return std::unique_ptr<Scene>(std::make_unique<Banner>(kBannerFields.of(values), setup));
         },
     .retired = kRetiredBannerParameters};
 

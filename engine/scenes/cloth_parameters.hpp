@@ -30,6 +30,7 @@ inline const Parameter kClothImage = {
         "a PNG or JPEG file that covers the cloth, from this file's folder on; larger pictures are scaled down to a "
         "million pixels, and clear parts show color, or white",
     .left_out = "none",
+    .change = KeyChange::kTakesReload,
 };
 
 }  // namespace yuragi::scenes

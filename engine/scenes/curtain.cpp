@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/base/fields.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/operators/propagation_job.hpp"
@@ -46,27 +47,58 @@
 namespace yuragi::scenes {
 namespace {
 
-const std::array kCurtainParameters = {
-    Parameter{"columns", "", std::int64_t{200}, 2, 4000, "threads from one side to the other"},
-    Parameter{"rows", "", std::int64_t{150}, 2, 4000, "joints from the top to the hem"},
-    Parameter{"width", "m", 3.0, 0.1, 100, "from one side to the other"},
-    Parameter{"height", "m", 2.4, 0.1, 50, "from the top to the hem; a longer one swings more slowly"},
-    Parameter{"clearance", "m", 0.1, 0, 50, "between the hem and the ground"},
-    Parameter{"folds", "", 11.0, 0, 200, "folds that it is gathered in"},
-    Parameter{"fold_depth", "m", 0.07, 0, 1, "of a fold, from crest to trough, at the top"},
-    Parameter{"max_sway", "deg", 75.0, 0, 75, "how far from straight down the strongest wind blows its upper part"},
-    Parameter{"half_sway_speed", "m/s", 5.0, 0.1, 60,
-              "the wind that blows it up to 45 degrees; heavier cloth needs more"},
-    Parameter{"give_sideways", "", 0.25, 0, 1, "how far it gives way along itself, as a part of how far across"},
-    Parameter{"bulges", "", 0.22, 0, 0.45,
-              "how unequally gusts fill it, from place to place and in time; 0: it swings as a board"},
-    Parameter{"max_flutter", "deg", 40.0, 0, 80, "how far the strongest wind makes the hem flutter about that"},
-    Parameter{"half_flutter_speed", "m/s", 3.6, 0.1, 60, "the wind that makes it flutter half as much"},
-    Parameter{"wave_length", "m", 2.0, 0.2, 100,
-              "of the longest bulges; the hem's waves are somewhat shorter, and shorter ones pass faster"},
-    Parameter{"wave_speed", "", 0.36, 0, 1, "how fast bulges and waves pass, as a part of the wind's speed"},
-    Parameter{"damping", "", 0.36, 0.01, 1, "how soon it hangs still again; 0.1: it swings on for long"},
-    Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
+/// kCurtainFields says what each means.
+struct CurtainSettings {
+  std::size_t columns;
+  std::size_t rows;
+  double width_m;
+  double height_m;
+  double clearance_m;
+  double folds;
+  double fold_depth_m;
+  double max_sway_deg;
+  double half_sway_speed_m_s;
+  double give_sideways;
+  double bulges;
+  double max_flutter_deg;
+  double half_flutter_speed_m_s;
+  double wave_length_m;
+  double wave_speed;
+  double damping;
+  double hybrid;
+};
+
+const Fields<CurtainSettings> kCurtainFields = {
+    {{"columns", "", std::int64_t{200}, 2, 4000, "threads from one side to the other"}, &CurtainSettings::columns},
+    {{"rows", "", std::int64_t{150}, 2, 4000, "joints from the top to the hem"}, &CurtainSettings::rows},
+    {{"width", "m", 3.0, 0.1, 100, "from one side to the other"}, &CurtainSettings::width_m},
+    {{"height", "m", 2.4, 0.1, 50, "from the top to the hem; a longer one swings more slowly"},
+     &CurtainSettings::height_m},
+    {{"clearance", "m", 0.1, 0, 50, "between the hem and the ground"}, &CurtainSettings::clearance_m},
+    {{"folds", "", 11.0, 0, 200, "folds that it is gathered in"}, &CurtainSettings::folds},
+    {{"fold_depth", "m", 0.07, 0, 1, "of a fold, from crest to trough, at the top"}, &CurtainSettings::fold_depth_m},
+    {{"max_sway", "deg", 75.0, 0, 75, "how far from straight down the strongest wind blows its upper part"},
+     &CurtainSettings::max_sway_deg},
+    {{"half_sway_speed", "m/s", 5.0, 0.1, 60, "the wind that blows it up to 45 degrees; heavier cloth needs more"},
+     &CurtainSettings::half_sway_speed_m_s},
+    {{"give_sideways", "", 0.25, 0, 1, "how far it gives way along itself, as a part of how far across"},
+     &CurtainSettings::give_sideways},
+    {{"bulges", "", 0.22, 0, 0.45,
+      "how unequally gusts fill it, from place to place and in time; 0: it swings as a board"},
+     &CurtainSettings::bulges},
+    {{"max_flutter", "deg", 40.0, 0, 80, "how far the strongest wind makes the hem flutter about that"},
+     &CurtainSettings::max_flutter_deg},
+    {{"half_flutter_speed", "m/s", 3.6, 0.1, 60, "the wind that makes it flutter half as much"},
+     &CurtainSettings::half_flutter_speed_m_s},
+    {{"wave_length", "m", 2.0, 0.2, 100,
+      "of the longest bulges; the hem's waves are somewhat shorter, and shorter ones pass faster"},
+     &CurtainSettings::wave_length_m},
+    {{"wave_speed", "", 0.36, 0, 1, "how fast bulges and waves pass, as a part of the wind's speed"},
+     &CurtainSettings::wave_speed},
+    {{"damping", "", 0.36, 0.01, 1, "how soon it hangs still again; 0.1: it swings on for long"},
+     &CurtainSettings::damping},
+    {{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
+     &CurtainSettings::hybrid},
     kClothColor,
     kClothColor2,
     kClothImage,
@@ -103,46 +135,6 @@ constexpr double kHemWeight = 0.25;
 
 /// How much of the wind's force its sides take, which spills past them; the middle takes all.
 constexpr double kSideForce = 0.75;
-
-/// The values of kCurtainParameters, which says what each means.
-struct CurtainSettings {
-  std::size_t columns;
-  std::size_t rows;
-  double width_m;
-  double height_m;
-  double clearance_m;
-  double folds;
-  double fold_depth_m;
-  double max_sway_deg;
-  double half_sway_speed_m_s;
-  double give_sideways;
-  double bulges;
-  double max_flutter_deg;
-  double half_flutter_speed_m_s;
-  double wave_length_m;
-  double wave_speed;
-  double damping;
-  double hybrid;
-};
-CurtainSettings curtain_settings(const ParameterValues& values) {
-  return {.columns = static_cast<std::size_t>(values.integer("columns")),
-          .rows = static_cast<std::size_t>(values.integer("rows")),
-          .width_m = values.number("width"),
-          .height_m = values.number("height"),
-          .clearance_m = values.number("clearance"),
-          .folds = values.number("folds"),
-          .fold_depth_m = values.number("fold_depth"),
-          .max_sway_deg = values.number("max_sway"),
-          .half_sway_speed_m_s = values.number("half_sway_speed"),
-          .give_sideways = values.number("give_sideways"),
-          .bulges = values.number("bulges"),
-          .max_flutter_deg = values.number("max_flutter"),
-          .half_flutter_speed_m_s = values.number("half_flutter_speed"),
-          .wave_length_m = values.number("wave_length"),
-          .wave_speed = values.number("wave_speed"),
-          .damping = values.number("damping"),
-          .hybrid = values.number("hybrid")};
-}
 
 ClothSpec curtain_spec(const CurtainSettings& settings) {
   return {.rows = settings.rows,
@@ -388,10 +380,10 @@ extern const SceneDescription kCurtainScene;
 const SceneDescription kCurtainScene = {
     .name = "curtain",
     .summary = "a curtain that billows, and waves that run down and along it",
-    .parameters = kCurtainParameters,
+    .parameters = kCurtainFields.parameters(),
     .make =
         [](const ParameterValues& values, const SceneSetup& setup) {
-          return std::unique_ptr<Scene>(std::make_unique<Curtain>(curtain_settings(values), setup));
+          return std::unique_ptr<Scene>(std::make_unique<Curtain>(kCurtainFields.of(values), setup));
         },
     .retired = kRetiredCurtainParameters};
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/base/fields.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/math/portable.hpp"
@@ -53,25 +54,55 @@
 namespace yuragi::scenes {
 namespace {
 
-const std::array kFlagParameters = {
-    Parameter{"columns", "", std::int64_t{200}, 2, 4000, "threads from the top to the bottom"},
-    Parameter{"rows", "", std::int64_t{150}, 2, 4000, "joints from the hoist to the fly"},
-    Parameter{"length", "m", 1.8, 0.1, 50, "from the hoist to the fly"},
-    Parameter{"hoist", "m", 1.2, 0.1, 50, "along the pole"},
-    Parameter{"pole_height", "m", 5.0, 0, 200, "of the flag's top above the ground"},
-    Parameter{"droop", "deg", 20.0, 0, 60, "how far from straight down it hangs in calm air, on average"},
-    Parameter{"folds", "", 1.5, 0, 50, "folds that it hangs in"},
-    Parameter{"fold_angle", "deg", 4.0, 0, 45, "how far the folds stand out to the sides"},
-    Parameter{"half_lift_speed", "m/s", 3.0, 0.1, 60, "the wind that lifts it half way; heavier cloth needs more"},
-    Parameter{"lift_rate", "Hz", 1.0, 0.05, 10, "how quickly it rises and sinks; less: it lags behind the gusts"},
-    Parameter{"max_flutter", "deg", 84.0, 0, 120, "how far the strongest waves turn the fly to the sides"},
-    Parameter{"half_flutter_speed", "m/s", 4.0, 0.1, 60, "the wind that makes its waves half as high"},
-    Parameter{"wave_length", "m", 2.1, 0.2, 100, "of the longest waves; shorter ones make it flutter faster"},
-    Parameter{"wave_speed", "", 0.6, 0, 2, "how fast the waves run to the fly, as a part of the wind's speed"},
-    Parameter{"growth", "", 0.8, 0.1, 4,
-              "the waves grow as the way from the hoist to this power; more: a calmer hoist"},
-    Parameter{"edge_flutter", "", 0.25, 0, 1, "how high the short waves near the fly are, as a part of the long ones"},
-    Parameter{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
+/// kFlagFields says what each means.
+struct FlagSettings {
+  std::size_t columns;
+  std::size_t rows;
+  double length_m;
+  double hoist_m;
+  double pole_height_m;
+  double droop_deg;
+  double folds;
+  double fold_angle_deg;
+  double half_lift_speed_m_s;
+  double lift_rate_hz;
+  double max_flutter_deg;
+  double half_flutter_speed_m_s;
+  double wave_length_m;
+  double wave_speed;
+  double growth;
+  double edge_flutter;
+  double hybrid;
+};
+
+const Fields<FlagSettings> kFlagFields = {
+    {{"columns", "", std::int64_t{200}, 2, 4000, "threads from the top to the bottom"}, &FlagSettings::columns},
+    {{"rows", "", std::int64_t{150}, 2, 4000, "joints from the hoist to the fly"}, &FlagSettings::rows},
+    {{"length", "m", 1.8, 0.1, 50, "from the hoist to the fly"}, &FlagSettings::length_m},
+    {{"hoist", "m", 1.2, 0.1, 50, "along the pole"}, &FlagSettings::hoist_m},
+    {{"pole_height", "m", 5.0, 0, 200, "of the flag's top above the ground"}, &FlagSettings::pole_height_m},
+    {{"droop", "deg", 20.0, 0, 60, "how far from straight down it hangs in calm air, on average"},
+     &FlagSettings::droop_deg},
+    {{"folds", "", 1.5, 0, 50, "folds that it hangs in"}, &FlagSettings::folds},
+    {{"fold_angle", "deg", 4.0, 0, 45, "how far the folds stand out to the sides"}, &FlagSettings::fold_angle_deg},
+    {{"half_lift_speed", "m/s", 3.0, 0.1, 60, "the wind that lifts it half way; heavier cloth needs more"},
+     &FlagSettings::half_lift_speed_m_s},
+    {{"lift_rate", "Hz", 1.0, 0.05, 10, "how quickly it rises and sinks; less: it lags behind the gusts"},
+     &FlagSettings::lift_rate_hz},
+    {{"max_flutter", "deg", 84.0, 0, 120, "how far the strongest waves turn the fly to the sides"},
+     &FlagSettings::max_flutter_deg},
+    {{"half_flutter_speed", "m/s", 4.0, 0.1, 60, "the wind that makes its waves half as high"},
+     &FlagSettings::half_flutter_speed_m_s},
+    {{"wave_length", "m", 2.1, 0.2, 100, "of the longest waves; shorter ones make it flutter faster"},
+     &FlagSettings::wave_length_m},
+    {{"wave_speed", "", 0.6, 0, 2, "how fast the waves run to the fly, as a part of the wind's speed"},
+     &FlagSettings::wave_speed},
+    {{"growth", "", 0.8, 0.1, 4, "the waves grow as the way from the hoist to this power; more: a calmer hoist"},
+     &FlagSettings::growth},
+    {{"edge_flutter", "", 0.25, 0, 1, "how high the short waves near the fly are, as a part of the long ones"},
+     &FlagSettings::edge_flutter},
+    {{"hybrid", "", 0.0, 0, 1, "0: the noise alone; 1: dynamics of a coarse cloth, with the noise as detail"},
+     &FlagSettings::hybrid},
     kClothColor,
     kClothColor2,
     kClothImage,
@@ -102,46 +133,6 @@ constexpr double kCurlBegins = 0.72;
 constexpr double kKnotsAWave = 32.0;
 
 constexpr double kFlagLiftDamping = 0.7;
-
-/// The values of kFlagParameters, which says what each means.
-struct FlagSettings {
-  std::size_t columns;
-  std::size_t rows;
-  double length_m;
-  double hoist_m;
-  double pole_height_m;
-  double droop_deg;
-  double folds;
-  double fold_angle_deg;
-  double half_lift_speed_m_s;
-  double lift_rate_hz;
-  double max_flutter_deg;
-  double half_flutter_speed_m_s;
-  double wave_length_m;
-  double wave_speed;
-  double growth;
-  double edge_flutter;
-  double hybrid;
-};
-FlagSettings flag_settings(const ParameterValues& values) {
-  return {.columns = static_cast<std::size_t>(values.integer("columns")),
-          .rows = static_cast<std::size_t>(values.integer("rows")),
-          .length_m = values.number("length"),
-          .hoist_m = values.number("hoist"),
-          .pole_height_m = values.number("pole_height"),
-          .droop_deg = values.number("droop"),
-          .folds = values.number("folds"),
-          .fold_angle_deg = values.number("fold_angle"),
-          .half_lift_speed_m_s = values.number("half_lift_speed"),
-          .lift_rate_hz = values.number("lift_rate"),
-          .max_flutter_deg = values.number("max_flutter"),
-          .half_flutter_speed_m_s = values.number("half_flutter_speed"),
-          .wave_length_m = values.number("wave_length"),
-          .wave_speed = values.number("wave_speed"),
-          .growth = values.number("growth"),
-          .edge_flutter = values.number("edge_flutter"),
-          .hybrid = values.number("hybrid")};
-}
 
 ClothSpec flag_spec(const FlagSettings& settings) {
   return {.rows = settings.rows,
@@ -375,10 +366,10 @@ extern const SceneDescription kFlagScene;
 const SceneDescription kFlagScene = {
     .name = "flag",
     .summary = "a flag that hangs limp in calm air, and flies downwind of its pole",
-    .parameters = kFlagParameters,
+    .parameters = kFlagFields.parameters(),
     .make =
         [](const ParameterValues& values, const SceneSetup& setup) {
-          return std::unique_ptr<Scene>(std::make_unique<Flag>(flag_settings(values), setup));
+          return std::unique_ptr<Scene>(std::make_unique<Flag>(kFlagFields.of(values), setup));
         },
     .retired = kRetiredFlagParameters};
 

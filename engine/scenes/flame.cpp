@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/fields.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/math/philox.hpp"
@@ -88,40 +89,7 @@ constexpr std::array<std::string_view, 2> kFlameForms = {"texture", "shape"};
 
 using namespace std::string_literals;
 
-const std::array kFlameParameters = {
-    Parameter{"form",
-              "",
-              "shape"s,
-              {},
-              {},
-              "texture: colors on an upright panel; shape: a body of three shells that the noise displaces",
-              kFlameForms},
-    Parameter{"columns", "", std::int64_t{126}, 9, 1000,
-              "points across the panel; of a body, around its three shells together: more is smoother"},
-    Parameter{"rows", "", std::int64_t{96}, 8, 1000, "points from the foot to the top: more shows finer tongues"},
-    Parameter{"height", "m", 1.2, 0.05, 50, "of the flame in calm air; in a wind it is shorter"},
-    Parameter{"width", "m", 0.5, 0.02, 20, "of its thickest part; a wider fire leans less, and puffs more slowly"},
-    Parameter{"foot", "m", 0.35, 0, 10, "how high over the ground its foot is: it burns in a bowl"},
-    Parameter{"rise_speed", "m/s", 2.5, 0.05, 20,
-              "how fast its tongues rise, and a gust bends it from the foot upward"},
-    Parameter{"flicker", "", 0.3, 0, 0.8,
-              "how far the noise moves the shape, as a part of its radius, and lets it sway: 0 burns like a candle"},
-    Parameter{
-        "puffing", "", 0.13, 0, 0.4,
-        "how much brighter and darker the whole flame gets twice a second as it breathes: its standard deviation, "
-        "as a part of its light"},
-    Parameter{"exposure", "", 1.0, 0, 3,
-              "how much of the wind reaches it: 1 lets it lean as a fire in the open does, less stands as if behind a "
-              "screen, 0 never leans"},
-    Parameter{"beta", "", 3.0, 1, 6, "exponent of the noise's spectrum, 1/f^beta: less is rougher"},
-};
-
-constexpr std::array kRetiredFlameParameters = {
-    RetiredParameter{"max_lean", "is now exposure: it lies over as fires of its size do; below 1 it leans less"},
-    RetiredParameter{"half_speed", "is now exposure: how much of the wind reaches it"},
-};
-
-/// The values of kFlameParameters, which says what each means.
+/// kFlameFields says what each means.
 struct FlameSettings {
   bool is_panel;
   std::size_t columns;
@@ -135,19 +103,46 @@ struct FlameSettings {
   double exposure;
   double beta;
 };
-FlameSettings flame_settings(const ParameterValues& values) {
-  return {.is_panel = values.text("form") == "texture",
-          .columns = static_cast<std::size_t>(values.integer("columns")),
-          .rows = static_cast<std::size_t>(values.integer("rows")),
-          .height_m = values.number("height"),
-          .width_m = values.number("width"),
-          .foot_m = values.number("foot"),
-          .rise_speed_m_s = values.number("rise_speed"),
-          .flicker = values.number("flicker"),
-          .puffing = values.number("puffing"),
-          .exposure = values.number("exposure"),
-          .beta = values.number("beta")};
-}
+
+const Fields<FlameSettings> kFlameFields = {
+    {{"form",
+      "",
+      "shape"s,
+      {},
+      {},
+      "texture: colors on an upright panel; shape: a body of three shells that the noise displaces",
+      kFlameForms},
+     &FlameSettings::is_panel,
+     [](const std::string& form) { return form == "texture"; }},
+    {{"columns", "", std::int64_t{126}, 9, 1000,
+      "points across the panel; of a body, around its three shells together: more is smoother"},
+     &FlameSettings::columns},
+    {{"rows", "", std::int64_t{96}, 8, 1000, "points from the foot to the top: more shows finer tongues"},
+     &FlameSettings::rows},
+    {{"height", "m", 1.2, 0.05, 50, "of the flame in calm air; in a wind it is shorter"}, &FlameSettings::height_m},
+    {{"width", "m", 0.5, 0.02, 20, "of its thickest part; a wider fire leans less, and puffs more slowly"},
+     &FlameSettings::width_m},
+    {{"foot", "m", 0.35, 0, 10, "how high over the ground its foot is: it burns in a bowl"}, &FlameSettings::foot_m},
+    {{"rise_speed", "m/s", 2.5, 0.05, 20, "how fast its tongues rise, and a gust bends it from the foot upward"},
+     &FlameSettings::rise_speed_m_s},
+    {{"flicker", "", 0.3, 0, 0.8,
+      "how far the noise moves the shape, as a part of its radius, and lets it sway: 0 burns like a candle"},
+     &FlameSettings::flicker},
+    {{"puffing", "", 0.13, 0, 0.4,
+      "how much brighter and darker the whole flame gets twice a second as it breathes: its standard deviation, "
+      "as a part of its light"},
+     &FlameSettings::puffing},
+    {{"exposure", "", 1.0, 0, 3,
+      "how much of the wind reaches it: 1 lets it lean as a fire in the open does, less stands as if behind a "
+      "screen, 0 never leans"},
+     &FlameSettings::exposure},
+    {{"beta", "", 3.0, 1, 6, "exponent of the noise's spectrum, 1/f^beta: less is rougher"}, &FlameSettings::beta},
+};
+
+constexpr std::array kRetiredFlameParameters = {
+    RetiredParameter{"max_lean", "is now exposure: it lies over as fires of its size do; below 1 it leans less"},
+    RetiredParameter{"half_speed", "is now exposure: how much of the wind reaches it"},
+};
 
 /// The points' coordinates along the tiles: two noises at right angles to each other through a body, both across a
 /// panel.
@@ -399,10 +394,10 @@ extern const SceneDescription kFlameScene;
 const SceneDescription kFlameScene = {
     .name = "flame",
     .summary = "a flame: tongues of noise rise, it breathes, and the wind lays it over",
-    .parameters = kFlameParameters,
+    .parameters = kFlameFields.parameters(),
     .make =
         [](const ParameterValues& values, const SceneSetup& setup) {
-          return std::unique_ptr<Scene>(std::make_unique<Flame>(flame_settings(values), setup));
+          return std::unique_ptr<Scene>(std::make_unique<Flame>(kFlameFields.of(values), setup));
         },
     .is_still_in_calm = false,
     .retired = kRetiredFlameParameters};

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/fields.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/math/portable.hpp"
@@ -44,30 +45,50 @@ constexpr float kElsewhere_m = 1618.034F;
 /// How much less the wind bends hairs on the side that faces away from it.
 constexpr double kSheltered = 0.6;
 
-const std::array kFurParameters = {
-    Parameter{"hairs_along", "", std::int64_t{200}, 1, 4096, "rows of hairs from one end of the body to the other"},
-    Parameter{"hairs_around", "", std::int64_t{150}, 1, 4096,
-              "hairs in a row over the body, from the ground to the ground"},
-    Parameter{"links", "", std::int64_t{10}, 1, 64, "links of a hair"},
-    Parameter{"body_length", "m", 3.0, 0.05, 20, "the body from end to end; it lies from west to east"},
-    Parameter{"body_height", "m", 0.75, 0.05, 20, "the body from the ground up: a back that rises out of the grass"},
-    Parameter{"body_width", "m", 2.0, 0.05, 20, "the body from flank to flank"},
-    Parameter{"hair_length", "m", 0.09, 0.002, 1, "length of a hair, on average"},
-    Parameter{"hair_length_variation", "", 0.2, 0, 0.5, "standard deviation of the length, as a part of it"},
-    Parameter{"lie", "deg", 55.0, 0, 85, "how far a hair's foot lies over in calm air"},
-    Parameter{"curl", "deg", 30.0, 0, 180, "how much farther it curls to its tip"},
-    Parameter{"parting", "deg", 20.0, 0, 90, "standard deviation of where hairs lie to"},
-    Parameter{"max_bend", "deg", 80.0, 0, 170, "how far the strongest wind lays a tip over"},
-    Parameter{"half_bend_speed", "m/s", 5.5, 0.1, 60, "the wind along the skin that bends a tip half as far"},
-    Parameter{"strokes", "deg", 16.0, 0, 60,
-              "how much a strong wind's strokes bend hairs besides: partings that open, run on and close"},
-    Parameter{"carry", "", 0.145, 0, 1, "strokes run over the coat with this part of the wind's speed"},
-    Parameter{"fastest_stroke", "m/s", 1.5, 0.01, 20, "and never faster than this, however strong the wind"},
-    Parameter{"hybrid", "", 1.0, 0, 1,
-              "0: hairs follow the wind at once; 1: each is a damped oscillator that sways on"},
-    Parameter{"natural_frequency", "Hz", 4.0, 0.1, 20, "how fast a hair sways by itself"},
-    Parameter{"damping", "", 0.35, 0.02, 0.95, "how soon that dies away: the damping ratio"},
+const Fields<CoatSpec> kCoatFields = {
+    {{"hairs_along", "", std::int64_t{200}, 1, 4096, "rows of hairs from one end of the body to the other"},
+     &CoatSpec::hairs_along},
+    {{"hairs_around", "", std::int64_t{150}, 1, 4096, "hairs in a row over the body, from the ground to the ground"},
+     &CoatSpec::hairs_around},
+    {{"links", "", std::int64_t{10}, 1, 64, "links of a hair"}, &CoatSpec::links},
+    {{"body_length", "m", 3.0, 0.05, 20, "the body from end to end; it lies from west to east"},
+     &CoatSpec::body_length_m},
+    {{"body_height", "m", 0.75, 0.05, 20, "the body from the ground up: a back that rises out of the grass"},
+     &CoatSpec::body_height_m},
+    {{"body_width", "m", 2.0, 0.05, 20, "the body from flank to flank"}, &CoatSpec::body_width_m},
+    {{"hair_length", "m", 0.09, 0.002, 1, "length of a hair, on average"}, &CoatSpec::length_m},
+    {{"hair_length_variation", "", 0.2, 0, 0.5, "standard deviation of the length, as a part of it"},
+     &CoatSpec::length_variation},
+    {{"lie", "deg", 55.0, 0, 85, "how far a hair's foot lies over in calm air"}, &CoatSpec::lie_deg},
+    {{"curl", "deg", 30.0, 0, 180, "how much farther it curls to its tip"}, &CoatSpec::curl_deg},
+    {{"parting", "deg", 20.0, 0, 90, "standard deviation of where hairs lie to"}, &CoatSpec::parting_deg},
 };
+
+/// How the hairs sway.
+struct FurSway {
+  double max_bend_rad, half_bend_speed_m_s, stroke_rad;
+  double carry, fastest_stroke_m_s;
+  double hybrid, natural_hz, damping_ratio;
+};
+const Fields<FurSway> kFurSwayFields = {
+    {{"max_bend", "deg", 80.0, 0, 170, "how far the strongest wind lays a tip over"},
+     &FurSway::max_bend_rad,
+     radians_of},
+    {{"half_bend_speed", "m/s", 5.5, 0.1, 60, "the wind along the skin that bends a tip half as far"},
+     &FurSway::half_bend_speed_m_s},
+    {{"strokes", "deg", 16.0, 0, 60,
+      "how much a strong wind's strokes bend hairs besides: partings that open, run on and close"},
+     &FurSway::stroke_rad,
+     radians_of},
+    {{"carry", "", 0.145, 0, 1, "strokes run over the coat with this part of the wind's speed"}, &FurSway::carry},
+    {{"fastest_stroke", "m/s", 1.5, 0.01, 20, "and never faster than this, however strong the wind"},
+     &FurSway::fastest_stroke_m_s},
+    {{"hybrid", "", 1.0, 0, 1, "0: hairs follow the wind at once; 1: each is a damped oscillator that sways on"},
+     &FurSway::hybrid},
+    {{"natural_frequency", "Hz", 4.0, 0.1, 20, "how fast a hair sways by itself"}, &FurSway::natural_hz},
+    {{"damping", "", 0.35, 0.02, 0.95, "how soon that dies away: the damping ratio"}, &FurSway::damping_ratio},
+};
+const std::vector<Parameter> kFurParameters = together(kCoatFields.parameters(), kFurSwayFields.parameters());
 
 const std::array kRetiredFurParameters = {
     RetiredParameter{"gusts", "is gone: gusts are longer than a body, so all hairs have those of the wind outside"},
@@ -80,18 +101,9 @@ const std::array kRetiredFurParameters = {
 };
 
 Coat placed_coat(const ParameterValues& values, const SceneSetup& setup) {
-  Coat coat = make_coat({.hairs_along = static_cast<std::size_t>(values.integer("hairs_along")),
-                         .hairs_around = static_cast<std::size_t>(values.integer("hairs_around")),
-                         .links = static_cast<std::size_t>(values.integer("links")),
-                         .body_length_m = values.number("body_length"),
-                         .body_height_m = values.number("body_height"),
-                         .body_width_m = values.number("body_width"),
-                         .length_m = values.number("hair_length"),
-                         .length_variation = values.number("hair_length_variation"),
-                         .lie_deg = values.number("lie"),
-                         .curl_deg = values.number("curl"),
-                         .parting_deg = values.number("parting"),
-                         .seed = setup.seed});
+  CoatSpec spec = kCoatFields.of(values);
+  spec.seed = setup.seed;
+  Coat coat = make_coat(spec);
   place(setup.placement, coat.skeleton);
   turn(setup.placement, coat.normal_x, coat.normal_z);
   return coat;
@@ -99,7 +111,8 @@ Coat placed_coat(const ParameterValues& values, const SceneSetup& setup) {
 
 class Fur final : public Scene {
  public:
-  Fur(const ParameterValues& values, const SceneSetup& setup) : Fur(placed_coat(values, setup), values, setup) {}
+  Fur(const ParameterValues& values, const SceneSetup& setup)
+      : Fur(placed_coat(values, setup), kFurSwayFields.of(values), setup) {}
 
   const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
   const pose::Pose& pose() const noexcept override { return pose_; }
@@ -108,7 +121,7 @@ class Fur final : public Scene {
     wind_.step(wind, dt_s);
     // Strokes run over the coat as it lies unrolled: along the body, and around it.
     const double speed_m_s = wind_.speed_m_s();
-    const double carry = speed_m_s > 0.0 ? std::min(carry_, fastest_stroke_m_s_ / speed_m_s) : 0.0;
+    const double carry = speed_m_s > 0.0 ? std::min(sway_.carry, sway_.fastest_stroke_m_s / speed_m_s) : 0.0;
     const double east_m_s = carry * wind_.east_m_s();
     const double south_m_s = carry * wind_.south_m_s();
     strokes_.shift(heading_cos_ * east_m_s + heading_sin_ * south_m_s,
@@ -140,16 +153,16 @@ class Fur final : public Scene {
                               .stroke_along = strands_of(part, std::span<const float>(along_)),
                               .stroke_across = strands_of(part, std::span<const float>(across_)),
                               .flexibility = strands_of(part, std::span<const float>(flexibility_)),
-                              .half_bend_speed_m_s = half_bend_speed_m_s_,
-                              .max_bend_rad = max_bend_rad_,
-                              .stroke_rad = stroke_rad_,
+                              .half_bend_speed_m_s = sway_.half_bend_speed_m_s,
+                              .max_bend_rad = sway_.max_bend_rad,
+                              .stroke_rad = sway_.stroke_rad,
                               .sheltered = kSheltered,
                               .row = row_,
                               .bend_east_rad = bend_east_rad,
                               .bend_south_rad = bend_south_rad}
         .run();
-    operators::OscillatorJob{.step = operators::OscillatorStep::exact(natural_hz_, damping_ratio_, dt_s),
-                             .blend = hybrid_,
+    operators::OscillatorJob{.step = operators::OscillatorStep::exact(sway_.natural_hz, sway_.damping_ratio, dt_s),
+                             .blend = sway_.hybrid,
                              .row = row_,
                              .oscillators = &oscillators_,
                              .first = static_cast<std::size_t>(bend_east_rad.data() - pose.bend_east_rad.data()),
@@ -165,30 +178,23 @@ class Fur final : public Scene {
   /// more than from one extreme to the other; an oscillator and the joints as in StrandSway.
   double largest_joint_step_m(double dt_s) const noexcept override {
     const double largest_stroke = math::length(1.0, kStrokeAcross) * kLargestStroke;
-    const double largest_bend_rad = max_bend_rad_ + stroke_rad_ * largest_stroke;
-    const double s = largest_flexibility_ / half_bend_speed_m_s_ * SceneWind::largest_step_m_s(dt_s);
-    const double slope = operators::kSteepestBendShare * largest_bend_rad + 0.5 * kSheltered * max_bend_rad_;
-    const double stroke_step =
-        math::length(1.0, kStrokeAcross) * strokes_.largest_change(fastest_stroke_m_s_, fastest_stroke_m_s_, dt_s);
+    const double largest_bend_rad = sway_.max_bend_rad + sway_.stroke_rad * largest_stroke;
+    const double s = largest_flexibility_ / sway_.half_bend_speed_m_s * SceneWind::largest_step_m_s(dt_s);
+    const double slope = operators::kSteepestBendShare * largest_bend_rad + 0.5 * kSheltered * sway_.max_bend_rad;
+    const double stroke_step = math::length(1.0, kStrokeAcross) *
+                               strokes_.largest_change(sway_.fastest_stroke_m_s, sway_.fastest_stroke_m_s, dt_s);
     const double bend_rad =
-        std::min(slope * s + stroke_rad_ * std::min(stroke_step, 2.0 * largest_stroke), 2.0 * largest_bend_rad);
-    const double swaying_rad =
-        std::min(operators::OscillatorStep::largest_gain(damping_ratio_) * bend_rad,
-                 operators::OscillatorStep::largest_rate_per_s(natural_hz_, damping_ratio_) * dt_s * largest_bend_rad);
-    return lever_m_ * ((1.0 - hybrid_) * bend_rad + hybrid_ * swaying_rad);
+        std::min(slope * s + sway_.stroke_rad * std::min(stroke_step, 2.0 * largest_stroke), 2.0 * largest_bend_rad);
+    const double swaying_rad = std::min(
+        operators::OscillatorStep::largest_gain(sway_.damping_ratio) * bend_rad,
+        operators::OscillatorStep::largest_rate_per_s(sway_.natural_hz, sway_.damping_ratio) * dt_s * largest_bend_rad);
+    return lever_m_ * ((1.0 - sway_.hybrid) * bend_rad + sway_.hybrid * swaying_rad);
   }
 
  private:
-  Fur(Coat coat, const ParameterValues& values, const SceneSetup& setup)
+  Fur(Coat coat, const FurSway& sway, const SceneSetup& setup)
       : row_(setup.row),
-        max_bend_rad_(values.number("max_bend") * kRadPerDeg),
-        half_bend_speed_m_s_(values.number("half_bend_speed")),
-        stroke_rad_(values.number("strokes") * kRadPerDeg),
-        carry_(values.number("carry")),
-        fastest_stroke_m_s_(values.number("fastest_stroke")),
-        hybrid_(values.number("hybrid")),
-        natural_hz_(values.number("natural_frequency")),
-        damping_ratio_(values.number("damping")),
+        sway_(sway),
         heading_cos_(std::cos(setup.placement.heading_deg * kRadPerDeg)),
         heading_sin_(std::sin(setup.placement.heading_deg * kRadPerDeg)),
         wind_(setup.placement, setup.gusts),
@@ -216,9 +222,7 @@ class Fur final : public Scene {
   }
 
   SimdRow row_;
-  double max_bend_rad_, half_bend_speed_m_s_, stroke_rad_;
-  double carry_, fastest_stroke_m_s_;
-  double hybrid_, natural_hz_, damping_ratio_;
+  FurSway sway_;
   double heading_cos_, heading_sin_;
 
   SceneWind wind_;

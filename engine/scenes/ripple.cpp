@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/base/fields.hpp"
 #include "engine/math/critically_damped.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/noise/von_karman_corner.hpp"
@@ -72,27 +73,7 @@ constexpr double kMostLong = 0.8;
 /// Gusts of the water's own, where the wind brings none: their standard deviation, as a part of the wind.
 constexpr double kOwnGusts = 0.2;
 
-const std::array kRippleParameters = {
-    Parameter{"columns", "", std::int64_t{200}, 2, 1000, "points from west to east"},
-    Parameter{"rows", "", std::int64_t{200}, 2, 1000, "points from north to south"},
-    Parameter{"width", "m", 8.0, 0.1, 200, "the water from west to east"},
-    Parameter{"depth", "m", 8.0, 0.1, 200, "the water from north to south"},
-    Parameter{"steepness", "", 0.6, 0, 3,
-              "of the waves: the variance of their slope, as a part of the sea's: 0.6 leaves out the finest, which the "
-              "grid cannot hold; more is choppier"},
-    Parameter{"wave_length", "m", 1.2, 0.3, 100, "of the strongest waves; it sets their speed too, as on deep water"},
-    Parameter{"onset", "m/s", 1.2, 0.1, 20, "the wind that raises the first ripples: a weaker one leaves a mirror"},
-    Parameter{"gustiness", "", 1.0, 0, 3,
-              "how much darker and rougher the water is where gusts pass: 1 as it is, 0 everywhere the same"},
-    Parameter{"beta", "", 4.0, 2, 6, "exponent of the waves' spectrum beyond the strongest: less is rougher"},
-};
-
-constexpr std::array kRetiredRippleParameters = {
-    RetiredParameter{"height", "is now steepness: the variance of the slope, as a part of the sea's"},
-    RetiredParameter{"half_speed", "is now onset: the wind that raises the first ripples"},
-};
-
-/// The values of kRippleParameters, which says what each means.
+/// kRippleFields says what each means.
 struct RippleSettings {
   std::size_t columns;
   std::size_t rows;
@@ -104,17 +85,31 @@ struct RippleSettings {
   double gustiness;
   double beta;
 };
-RippleSettings ripple_settings(const ParameterValues& values) {
-  return {.columns = static_cast<std::size_t>(values.integer("columns")),
-          .rows = static_cast<std::size_t>(values.integer("rows")),
-          .width_m = values.number("width"),
-          .depth_m = values.number("depth"),
-          .steepness = values.number("steepness"),
-          .wave_length_m = values.number("wave_length"),
-          .onset_m_s = values.number("onset"),
-          .gustiness = values.number("gustiness"),
-          .beta = values.number("beta")};
-}
+
+const Fields<RippleSettings> kRippleFields = {
+    {{"columns", "", std::int64_t{200}, 2, 1000, "points from west to east"}, &RippleSettings::columns},
+    {{"rows", "", std::int64_t{200}, 2, 1000, "points from north to south"}, &RippleSettings::rows},
+    {{"width", "m", 8.0, 0.1, 200, "the water from west to east"}, &RippleSettings::width_m},
+    {{"depth", "m", 8.0, 0.1, 200, "the water from north to south"}, &RippleSettings::depth_m},
+    {{"steepness", "", 0.6, 0, 3,
+      "of the waves: the variance of their slope, as a part of the sea's: 0.6 leaves out the finest, which the "
+      "grid cannot hold; more is choppier"},
+     &RippleSettings::steepness},
+    {{"wave_length", "m", 1.2, 0.3, 100, "of the strongest waves; it sets their speed too, as on deep water"},
+     &RippleSettings::wave_length_m},
+    {{"onset", "m/s", 1.2, 0.1, 20, "the wind that raises the first ripples: a weaker one leaves a mirror"},
+     &RippleSettings::onset_m_s},
+    {{"gustiness", "", 1.0, 0, 3,
+      "how much darker and rougher the water is where gusts pass: 1 as it is, 0 everywhere the same"},
+     &RippleSettings::gustiness},
+    {{"beta", "", 4.0, 2, 6, "exponent of the waves' spectrum beyond the strongest: less is rougher"},
+     &RippleSettings::beta},
+};
+
+constexpr std::array kRetiredRippleParameters = {
+    RetiredParameter{"height", "is now steepness: the variance of the slope, as a part of the sea's"},
+    RetiredParameter{"half_speed", "is now onset: the wind that raises the first ripples"},
+};
 
 /// A level grid around the world's origin, rows along x from north to south.
 pose::SurfaceSkeleton level_water(const RippleSettings& settings, std::size_t columns, std::size_t rows) {
@@ -322,10 +317,10 @@ extern const SceneDescription kRippleScene;
 const SceneDescription kRippleScene = {
     .name = "ripple",
     .summary = "water under the wind: waves rise, and gusts roughen it as they pass",
-    .parameters = kRippleParameters,
+    .parameters = kRippleFields.parameters(),
     .make =
         [](const ParameterValues& values, const SceneSetup& setup) {
-          return std::unique_ptr<Scene>(std::make_unique<Ripple>(ripple_settings(values), setup));
+          return std::unique_ptr<Scene>(std::make_unique<Ripple>(kRippleFields.of(values), setup));
         },
     .retired = kRetiredRippleParameters};
 

@@ -26,8 +26,6 @@ constexpr std::array<std::string_view, 2> kGusts = {"outside", "own"};
 /// How many standard deviations the canopy's waves reach.
 constexpr double kLargestCanopyWave = 2.2;
 
-constexpr std::array<std::string_view, 2> kBetaMeanings = {"transect", "radial"};
-
 /// The shorter, the faster: each strand's own rate against that of one of mean length.
 std::vector<float> natural_rates_hz(const pose::StrandSkeleton& strands, double mean_hz) {
   const auto all = std::span(strands.link_length_m).first(strands.strand_count);
@@ -200,65 +198,67 @@ double StrandSway::largest_joint_step_m(double dt_s) const noexcept {
   return lever_m_ * ((1.0 - spec_.hybrid) * bend_rad + spec_.hybrid * swaying_rad);
 }
 
-std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults) {
-  using namespace std::string_literals;
-  return {
-      {"max_bend", "deg", defaults.max_bend_rad / kRadPerDeg, 0, 170, "how far the strongest wind bends a tip"},
-      {"half_bend_speed", "m/s", defaults.half_bend_speed_m_s, 0.1, 60, "the wind that bends a tip half as far"},
-      {"gusts",
-       "",
-       std::string(kGusts[defaults.has_own_gusts ? 1 : 0]),
-       {},
-       {},
-       "outside: as the wind outside has them, passing over all scenes; own: a noise of the scene's own",
-       kGusts},
-      {"turbulence", "", defaults.turbulence, 0, 2,
-       "own gusts: how much the wind differs from place to place: its standard deviation, as a part of it"},
-      {"gust_strength", "", defaults.gust_strength, 0, 2,
-       "own gusts: how much it swells along its path, in the same measure; a wind with gusts swells enough"},
-      {"canopy_waves", "", defaults.canopy_waves, 0, 0.4,
-       "outside gusts: how much waves of the stand's own, 2 to 4 m long, vary the wind: the bands that run over a "
-       "meadow"},
-      {"hybrid", "", defaults.hybrid, 0, 1,
-       "0: bends follow the noise alone; 1: each strand is a damped oscillator that overshoots and sways on"},
-      {"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20,
-       "how fast a strand of mean length sways by itself; shorter ones are up to 15 % faster"},
-      {"damping", "", defaults.damping_ratio, 0.02, 0.95, "how soon that dies away: the damping ratio"},
-      {"carry", "", defaults.carry, 0, 1, "the noise travels with this part of the wind's speed"},
-      {"tile_period", "m", defaults.noise.period_m, 0.5, 4096,
-       "after how many metres the wind on the ground repeats; 512 samples"},
-      {"tiles", "", std::int64_t{defaults.noise.has_two_tiles ? 2 : 1}, 1, 2,
-       "2: a second tile is added, so that no repeat is seen; 1: the paper's letter"},
-      {"beta", "", defaults.noise.beta, noise::kMinTransectBeta2, 4,
-       "exponent of the wind's spectrum, 1/f^beta; 5/3 is Simiu's wind"},
-      {"beta_meaning",
-       "",
-       std::string(name_of(defaults.noise.meaning)),
-       {},
-       {},
-       "transect: of a line through the field, true to the wind; radial: of each mode, the paper's letter",
-       kBetaMeanings},
+Fields<StrandSwaySpec> strand_sway_fields(const StrandSwaySpec& defaults) {
+  const auto of_noise = [](auto CarriedNoiseSpec::*member) {
+    return [member](StrandSwaySpec & spec) -> auto& {
+      return spec.noise.*member;
+    };
   };
-}
-
-StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t seed) {
-  const bool has_own_gusts = values.text("gusts") == "own";
-  const bool is_radial = values.text("beta_meaning") == "radial";
-  return {.max_bend_rad = values.number("max_bend") * kRadPerDeg,
-          .half_bend_speed_m_s = values.number("half_bend_speed"),
-          .turbulence = values.number("turbulence"),
-          .gust_strength = values.number("gust_strength"),
-          .hybrid = values.number("hybrid"),
-          .natural_hz = values.number("natural_frequency"),
-          .damping_ratio = values.number("damping"),
-          .carry = values.number("carry"),
-          .has_own_gusts = has_own_gusts,
-          .canopy_waves = values.number("canopy_waves"),
-          .noise = {.period_m = values.number("tile_period"),
-                    .beta = values.number("beta"),
-                    .meaning = is_radial ? noise::BetaMeaning::kRadial : noise::BetaMeaning::kTransect,
-                    .has_two_tiles = values.integer("tiles") == 2,
-                    .seed = seed}};
+  const auto are_two = [](std::int64_t tiles) { return tiles == 2; };
+  return {
+      {{"max_bend", "deg", defaults.max_bend_rad / kRadPerDeg, 0, 170, "how far the strongest wind bends a tip"},
+       &StrandSwaySpec::max_bend_rad,
+       radians_of},
+      {{"half_bend_speed", "m/s", defaults.half_bend_speed_m_s, 0.1, 60, "the wind that bends a tip half as far"},
+       &StrandSwaySpec::half_bend_speed_m_s},
+      {{"gusts",
+        "",
+        std::string(kGusts[defaults.has_own_gusts ? 1 : 0]),
+        {},
+        {},
+        "outside: as the wind outside has them, passing over all scenes; own: a noise of the scene's own",
+        kGusts},
+       &StrandSwaySpec::has_own_gusts,
+       [](const std::string& word) { return word == kGusts[1]; }},
+      {{"turbulence", "", defaults.turbulence, 0, 2,
+        "own gusts: how much the wind differs from place to place: its standard deviation, as a part of it"},
+       &StrandSwaySpec::turbulence},
+      {{"gust_strength", "", defaults.gust_strength, 0, 2,
+        "own gusts: how much it swells along its path, in the same measure; a wind with gusts swells enough"},
+       &StrandSwaySpec::gust_strength},
+      {{"canopy_waves", "", defaults.canopy_waves, 0, 0.4,
+        "outside gusts: how much waves of the stand's own, 2 to 4 m long, vary the wind: the bands that run over a "
+        "meadow"},
+       &StrandSwaySpec::canopy_waves},
+      {{"hybrid", "", defaults.hybrid, 0, 1,
+        "0: bends follow the noise alone; 1: each strand is a damped oscillator that overshoots and sways on"},
+       &StrandSwaySpec::hybrid},
+      {{"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20,
+        "how fast a strand of mean length sways by itself; shorter ones are up to 15 % faster"},
+       &StrandSwaySpec::natural_hz},
+      {{"damping", "", defaults.damping_ratio, 0.02, 0.95, "how soon that dies away: the damping ratio"},
+       &StrandSwaySpec::damping_ratio},
+      {{"carry", "", defaults.carry, 0, 1, "the noise travels with this part of the wind's speed"},
+       &StrandSwaySpec::carry},
+      {{"tile_period", "m", defaults.noise.period_m, 0.5, 4096,
+        "after how many metres the wind on the ground repeats; 512 samples"},
+       of_noise(&CarriedNoiseSpec::period_m)},
+      {{"tiles", "", std::int64_t{defaults.noise.has_two_tiles ? 2 : 1}, 1, 2,
+        "2: a second tile is added, so that no repeat is seen; 1: the paper's letter"},
+       of_noise(&CarriedNoiseSpec::has_two_tiles),
+       are_two},
+      {{"beta", "", defaults.noise.beta, noise::kMinTransectBeta2, 4,
+        "exponent of the wind's spectrum, 1/f^beta; 5/3 is Simiu's wind"},
+       of_noise(&CarriedNoiseSpec::beta)},
+      {{"beta_meaning",
+        "",
+        std::string(noise::kBetaMeaningNames.at(static_cast<std::size_t>(defaults.noise.meaning))),
+        {},
+        {},
+        "transect: of a line through the field, true to the wind; radial: of each mode, the paper's letter",
+        noise::kBetaMeaningNames},
+       of_noise(&CarriedNoiseSpec::meaning)},
+  };
 }
 
 }  // namespace yuragi::scenes

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base/parameter.hpp"
+#include "engine/base/fields.hpp"
 #include "engine/base/part.hpp"
 #include "engine/noise/line_cut.hpp"
 #include "engine/noise/noise_tile.hpp"
@@ -120,11 +120,7 @@ class StrandSway final : public Scene {
   pose::Pose pose_;
 };
 
-/// The parameters that go with it (max_bend, half_bend_speed, turbulence ... beta_meaning): for a scene's own table,
-/// with these as its defaults.
-std::vector<Parameter> strand_sway_parameters(const StrandSwaySpec& defaults);
-
-/// Reads them back. `seed` is the noise's.
-StrandSwaySpec strand_sway_spec(const ParameterValues& values, std::uint64_t seed);
+/// The keys that go with it (max_bend, half_bend_speed, turbulence ... beta_meaning), with these as their defaults.
+Fields<StrandSwaySpec> strand_sway_fields(const StrandSwaySpec& defaults);
 
 }  // namespace yuragi::scenes

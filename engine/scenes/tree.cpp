@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/fields.hpp"
 #include "engine/base/units.hpp"
 #include "engine/math/philox.hpp"
 #include "engine/math/portable.hpp"
@@ -50,63 +51,120 @@
 namespace yuragi::scenes {
 namespace {
 
-constexpr std::array<std::string_view, 2> kTreeBetaMeanings = {"transect", "radial"};
-
 using namespace std::string_literals;
 
-const std::array kTreeParameters = {
-    Parameter{"species", "", "cherry"s, {}, {}, "how it grows, and how stiff wood and petioles are", kTreeSpeciesNames},
-    Parameter{"size", "", 1.0, 0.1, 10, "all lengths, against the species' own (8, 11 and 15 m high)"},
-    Parameter{"limbs", "", std::int64_t{15}, 1, 500, "branches on the trunk"},
-    Parameter{"twigs", "", std::int64_t{240}, 1, 20000, "branches on the limbs"},
-    Parameter{"leaves", "", std::int64_t{10000}, 1, 1000000, "leaves on the twigs, in sprays of 16"},
-    Parameter{"branch_links", "", std::int64_t{256}, 1, 256, "links of the trunk and of each branch"},
-    Parameter{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"},
-    Parameter{"foliage",
-              "",
-              "green"s,
-              {},
-              {},
-              "the colour of its leaves; bare: as in winter, with twigs in their place",
-              pose::kFoliageColorNames},
-    Parameter{"grove", "", std::int64_t{1}, 1, 256,
-              "trees in all: the others are this one, turned and scaled; they cost the stream nothing"},
-    Parameter{"grove_radius", "m", 20.0, 1, 500, "how far from it they stand"},
-    Parameter{"flexibility", "", 1.0, 0, 10,
-              "how far wood bends in every wind: 2 bends and sways it twice as far as its species does, 0 not at all"},
-    Parameter{"streamline_speed", "m/s", 6.0, 0.1, 60,
-              "the wind in which the crown begins to fold: the lower, the less a storm bends wood beyond a breeze"},
-    Parameter{"max_tilt", "deg", 60.0, 0, 120, "no wind bends a branch farther than this along the wind"},
-    Parameter{"max_swing", "deg", 60.0, 0, 120, "nor farther than this sideways"},
-    Parameter{"crown_gusts", "", 0.12, 0, 1,
-              "gusts that arise in the crown, as a part of the wind: the stronger, the less its limbs and leaves move "
-              "as one"},
-    Parameter{"turbulence", "", 0.2, 0, 2,
-              "gusts of its own where the wind brings none: their standard deviation, as a part of the wind"},
-    Parameter{"hybrid", "", 1.0, 0, 1, "0: wood follows the gusts alone; 1: each branch is a damped oscillator"},
-    Parameter{"natural_frequency", "Hz", 0.5, 0.05, 5,
-              "how fast the trunk sways by itself; limbs twice as fast and twigs 4 times, up to 30 percent off by "
-              "their length"},
-    Parameter{"damping", "", 0.12, 0.02, 0.95,
-              "how soon that dies away: the damping ratio; low, and limbs swing on long after a gust; of twigs a "
-              "quarter more"},
-    Parameter{"tile_period", "m", 64.0, 4, 4096, "after how many metres the wind on the ground repeats; 128 samples"},
-    Parameter{"tiles", "", std::int64_t{2}, 1, 2, "2: a second tile hides the repeat; 1: the paper's letter"},
-    Parameter{"beta", "", 5.0 / 3.0, noise::kMinTransectBeta2, 4,
-              "exponent of the wind's spectrum, 1/f^beta; 5/3 is Simiu's wind"},
-    Parameter{"beta_meaning",
-              "",
-              "transect"s,
-              {},
-              {},
-              "transect: of a line through the field, true to the wind; radial: of each mode, the paper's letter",
-              kTreeBetaMeanings},
-    Parameter{"leaf_lean", "deg", 70.0, 0, 120,
-              "how far a storm turns the softest leaf (a poplar's) downwind; a cherry's by 0.8 of it"},
-    Parameter{"half_lean_speed", "m/s", 8.0, 0.1, 60,
-              "the wind that turns leaves half as far: high, and only storms lay them over"},
-    Parameter{"leaf_flutter", "deg", 28.0, 0, 60,
-              "how far the liveliest leaves (a poplar's) flutter in a strong wind: the standard deviation"},
+/// kTreeFields says what each means.
+struct TreeSettings {
+  const TreeSpecies* species;
+  TreeSpec model;
+  pose::FoliageColor foliage;
+  std::size_t grove;
+  double grove_radius_m;
+  double flexibility, streamline_speed_m_s;
+  double max_tilt_rad, max_swing_rad;
+  double crown_gusts, turbulence;
+  double hybrid, natural_hz, damping_ratio;
+  CarriedNoiseSpec noise;
+  double leaf_lean_rad, half_lean_speed_m_s, leaf_flutter_rad;
+
+  bool is_bare() const noexcept { return foliage == pose::FoliageColor::kBare; }
+};
+
+template <class Member>
+auto of_model(Member TreeSpec::*member) {
+  return [member](TreeSettings& tree) -> Member& { return tree.model.*member; };
+}
+template <class Member>
+auto of_noise(Member CarriedNoiseSpec::*member) {
+  return [member](TreeSettings& tree) -> Member& { return tree.noise.*member; };
+}
+
+const TreeSpecies* species_named(const std::string& name) {
+  return &tree_species(name);
+}
+bool are_two(std::int64_t tiles) {
+  return tiles == 2;
+}
+
+const Fields<TreeSettings> kTreeFields = {
+    {{"species", "", "cherry"s, {}, {}, "how it grows, and how stiff wood and petioles are", kTreeSpeciesNames},
+     &TreeSettings::species,
+     species_named},
+    {{"size", "", 1.0, 0.1, 10, "all lengths, against the species' own (8, 11 and 15 m high)"},
+     of_model(&TreeSpec::size)},
+    {{"limbs", "", std::int64_t{15}, 1, 500, "branches on the trunk"}, of_model(&TreeSpec::limbs)},
+    {{"twigs", "", std::int64_t{240}, 1, 20000, "branches on the limbs"}, of_model(&TreeSpec::twigs)},
+    {{"leaves", "", std::int64_t{10000}, 1, 1000000, "leaves on the twigs, in sprays of 16"},
+     of_model(&TreeSpec::leaves)},
+    {{"branch_links", "", std::int64_t{256}, 1, 256, "links of the trunk and of each branch"},
+     of_model(&TreeSpec::branch_links)},
+    {{"leaf_links", "", std::int64_t{4}, 1, 64, "links of a leaf"}, of_model(&TreeSpec::leaf_links)},
+    {{"foliage",
+      "",
+      "green"s,
+      {},
+      {},
+      "the colour of its leaves; bare: as in winter, with twigs in their place",
+      pose::kFoliageColorNames},
+     &TreeSettings::foliage},
+    {{"grove", "", std::int64_t{1}, 1, 256,
+      "trees in all: the others are this one, turned and scaled; they cost the stream nothing"},
+     &TreeSettings::grove},
+    {{"grove_radius", "m", 20.0, 1, 500, "how far from it they stand"}, &TreeSettings::grove_radius_m},
+    {{"flexibility", "", 1.0, 0, 10,
+      "how far wood bends in every wind: 2 bends and sways it twice as far as its species does, 0 not at all"},
+     &TreeSettings::flexibility},
+    {{"streamline_speed", "m/s", 6.0, 0.1, 60,
+      "the wind in which the crown begins to fold: the lower, the less a storm bends wood beyond a breeze"},
+     &TreeSettings::streamline_speed_m_s},
+    {{"max_tilt", "deg", 60.0, 0, 120, "no wind bends a branch farther than this along the wind"},
+     &TreeSettings::max_tilt_rad,
+     radians_of},
+    {{"max_swing", "deg", 60.0, 0, 120, "nor farther than this sideways"}, &TreeSettings::max_swing_rad, radians_of},
+    {{"crown_gusts", "", 0.12, 0, 1,
+      "gusts that arise in the crown, as a part of the wind: the stronger, the less its limbs and leaves move "
+      "as one"},
+     &TreeSettings::crown_gusts},
+    {{"turbulence", "", 0.2, 0, 2,
+      "gusts of its own where the wind brings none: their standard deviation, as a part of the wind"},
+     &TreeSettings::turbulence},
+    {{"hybrid", "", 1.0, 0, 1, "0: wood follows the gusts alone; 1: each branch is a damped oscillator"},
+     &TreeSettings::hybrid},
+    {{"natural_frequency", "Hz", 0.5, 0.05, 5,
+      "how fast the trunk sways by itself; limbs twice as fast and twigs 4 times, up to 30 percent off by "
+      "their length"},
+     &TreeSettings::natural_hz},
+    {{"damping", "", 0.12, 0.02, 0.95,
+      "how soon that dies away: the damping ratio; low, and limbs swing on long after a gust; of twigs a "
+      "quarter more"},
+     &TreeSettings::damping_ratio},
+    {{"tile_period", "m", 64.0, 4, 4096, "after how many metres the wind on the ground repeats; 128 samples"},
+     of_noise(&CarriedNoiseSpec::period_m)},
+    {{"tiles", "", std::int64_t{2}, 1, 2, "2: a second tile hides the repeat; 1: the paper's letter"},
+     of_noise(&CarriedNoiseSpec::has_two_tiles),
+     are_two},
+    {{"beta", "", 5.0 / 3.0, noise::kMinTransectBeta2, 4,
+      "exponent of the wind's spectrum, 1/f^beta; 5/3 is Simiu's wind"},
+     of_noise(&CarriedNoiseSpec::beta)},
+    {{"beta_meaning",
+      "",
+      "transect"s,
+      {},
+      {},
+      "transect: of a line through the field, true to the wind; radial: of each mode, the paper's letter",
+      noise::kBetaMeaningNames},
+     of_noise(&CarriedNoiseSpec::meaning)},
+    {{"leaf_lean", "deg", 70.0, 0, 120,
+      "how far a storm turns the softest leaf (a poplar's) downwind; a cherry's by 0.8 of it"},
+     &TreeSettings::leaf_lean_rad,
+     radians_of},
+    {{"half_lean_speed", "m/s", 8.0, 0.1, 60,
+      "the wind that turns leaves half as far: high, and only storms lay them over"},
+     &TreeSettings::half_lean_speed_m_s},
+    {{"leaf_flutter", "deg", 28.0, 0, 60,
+      "how far the liveliest leaves (a poplar's) flutter in a strong wind: the standard deviation"},
+     &TreeSettings::leaf_flutter_rad,
+     radians_of},
 };
 
 /// The paper's dist_to_wind_side, in radii of the tree, is never below this.
@@ -169,45 +227,25 @@ constexpr double kLargestTwist_rad = 40.0 * kRadPerDeg;
 constexpr double kBareTwigAngle = 0.75;
 constexpr double kBareTwigGive = 0.12;
 
-const TreeSpecies& species_of(const ParameterValues& values) {
-  return tree_species(values.text("species"));
-}
-
-double leaf_give_of(const ParameterValues& values) {
-  return values.text("foliage") == "bare" ? kBareTwigGive : 1.0;
-}
-
-pose::TreeSkeleton placed_tree(const ParameterValues& values, const SceneSetup& setup) {
-  const auto count = [&values](std::string_view name) { return static_cast<std::size_t>(values.integer(name)); };
-  TreeHabit habit = species_of(values).habit;
-  if (values.text("foliage") ==
-      "bare") {  // twigs in the place of leaves: they go on along those that bear them, and do not hang
-    habit.leaf_angle_deg *= kBareTwigAngle;
-    habit.leaf_droop_deg = 0.0;
+pose::TreeSkeleton placed_tree(const TreeSettings& settings, const SceneSetup& setup) {
+  TreeSpec model = settings.model;
+  model.seed = setup.seed;
+  model.habit = settings.species->habit;
+  if (settings.is_bare()) {  // twigs in the place of leaves: they go on along those that bear them, and do not hang
+    model.habit.leaf_angle_deg *= kBareTwigAngle;
+    model.habit.leaf_droop_deg = 0.0;
   }
-  pose::TreeSkeleton tree = make_tree({.habit = habit,
-                                       .limbs = count("limbs"),
-                                       .twigs = count("twigs"),
-                                       .leaves = count("leaves"),
-                                       .branch_links = count("branch_links"),
-                                       .leaf_links = count("leaf_links"),
-                                       .size = values.number("size"),
-                                       .seed = setup.seed});
-  const auto* const color = std::ranges::find(pose::kFoliageColorNames, values.text("foliage"));
-  tree.foliage = static_cast<pose::FoliageColor>(color - pose::kFoliageColorNames.begin());
-  tree.copies = grove_of(count("grove"), values.number("grove_radius"), setup.seed);
+  pose::TreeSkeleton tree = make_tree(model);
+  tree.foliage = settings.foliage;
+  tree.copies = grove_of(settings.grove, settings.grove_radius_m, setup.seed);
   place(setup.placement, tree);
   return tree;
 }
 
-CarriedNoiseSpec tree_wind_noise(const ParameterValues& values, std::uint64_t seed) {
-  return {
-      .period_m = values.number("tile_period"),
-      .samples = 128,
-      .beta = values.number("beta"),
-      .meaning = values.text("beta_meaning") == "radial" ? noise::BetaMeaning::kRadial : noise::BetaMeaning::kTransect,
-      .has_two_tiles = values.integer("tiles") == 2,
-      .seed = seed ^ math::stream_id("tree wind on the ground")};
+CarriedNoiseSpec tree_wind_noise(CarriedNoiseSpec noise, std::uint64_t seed) {
+  noise.samples = 128;
+  noise.seed = seed ^ math::stream_id("tree wind on the ground");
+  return noise;
 }
 
 /// Read ten thousand times a tick: one small tile, which stays in the fast caches.
@@ -279,7 +317,7 @@ double median(std::vector<double> values) {
 
 class Tree final : public Scene {
  public:
-  Tree(const ParameterValues& values, const SceneSetup& setup) : Tree(placed_tree(values, setup), values, setup) {}
+  Tree(const TreeSettings& settings, const SceneSetup& setup) : Tree(placed_tree(settings, setup), settings, setup) {}
 
   const pose::Skeleton& skeleton() const noexcept override { return skeleton_; }
   const pose::Pose& pose() const noexcept override { return pose_; }
@@ -345,7 +383,7 @@ class Tree final : public Scene {
   }
 
  private:
-  Tree(pose::TreeSkeleton tree, const ParameterValues& values, const SceneSetup& setup);
+  Tree(pose::TreeSkeleton tree, const TreeSettings& settings, const SceneSetup& setup);
 
   /// Where branches are on the ground, x and z.
   using Places = std::array<std::vector<float>, 2>;
@@ -377,24 +415,24 @@ class Tree final : public Scene {
   pose::Pose pose_;
 };
 
-Tree::Tree(pose::TreeSkeleton tree, const ParameterValues& values, const SceneSetup& setup)
+Tree::Tree(pose::TreeSkeleton tree, const TreeSettings& settings, const SceneSetup& setup)
     : row_(setup.row),
-      species_(species_of(values)),
-      flexibility_(values.number("flexibility")),
-      streamline_speed_m_s_(values.number("streamline_speed")),
-      max_tilt_rad_(values.number("max_tilt") * kRadPerDeg),
-      max_swing_rad_(values.number("max_swing") * kRadPerDeg),
-      crown_gusts_(values.number("crown_gusts")),
-      turbulence_(values.number("turbulence")),
-      hybrid_(values.number("hybrid")),
-      natural_hz_(values.number("natural_frequency")),
-      damping_ratio_(values.number("damping")),
-      leaf_lean_rad_(values.number("leaf_lean") * kRadPerDeg * leaf_give_of(values)),
-      leaf_flutter_rad_(values.number("leaf_flutter") * kRadPerDeg * species_.flutter * leaf_give_of(values)),
-      half_lean_speed_m_s_(values.number("half_lean_speed")),
+      species_(*settings.species),
+      flexibility_(settings.flexibility),
+      streamline_speed_m_s_(settings.streamline_speed_m_s),
+      max_tilt_rad_(settings.max_tilt_rad),
+      max_swing_rad_(settings.max_swing_rad),
+      crown_gusts_(settings.crown_gusts),
+      turbulence_(settings.turbulence),
+      hybrid_(settings.hybrid),
+      natural_hz_(settings.natural_hz),
+      damping_ratio_(settings.damping_ratio),
+      leaf_lean_rad_(settings.leaf_lean_rad * (settings.is_bare() ? kBareTwigGive : 1.0)),
+      leaf_flutter_rad_(settings.leaf_flutter_rad * species_.flutter * (settings.is_bare() ? kBareTwigGive : 1.0)),
+      half_lean_speed_m_s_(settings.half_lean_speed_m_s),
       wind_(setup.placement, nullptr, setup.gusts ? WindPart::kMean : WindPart::kAll),
       middle_wind_(setup.placement, setup.gusts),
-      noise_(tree_wind_noise(values, setup.seed)),
+      noise_(tree_wind_noise(settings.noise, setup.seed)),
       crown_noise_(CarriedNoise::band(kCrownShortest_m, kCrownLongest_m,
                                       setup.seed ^ math::stream_id("tree gusts in the crown"))),
       leaf_noise_(leaf_noise(setup.seed)),
@@ -643,9 +681,11 @@ extern const SceneDescription kTreeScene;
 const SceneDescription kTreeScene = {
     .name = "tree",
     .summary = "a tree in the wind: branches sway, leaves flutter",
-    .parameters = kTreeParameters,
-    .make = [](const ParameterValues& values,
-               const SceneSetup& setup) { return std::unique_ptr<Scene>(std::make_unique<Tree>(values, setup)); },
+    .parameters = kTreeFields.parameters(),
+    .make =
+        [](const ParameterValues& values, const SceneSetup& setup) {
+          return std::unique_ptr<Scene>(std::make_unique<Tree>(kTreeFields.of(values), setup));
+        },
     .retired = kRetiredTreeParameters};
 
 }  // namespace yuragi::scenes

@@ -80,7 +80,7 @@ bool read_parameter(const fb::Parameter& from, ParameterState& to) {
   // What a newer server calls otherwise is shown, and not set.
   const bool is_known = from.kind() <= fb::ParameterKind_MAX && from.change() <= fb::ParameterChange_MAX;
   to.kind = is_known ? static_cast<ParameterKind>(from.kind()) : ParameterKind::kText;
-  to.change = is_known ? static_cast<ParameterChange>(from.change()) : ParameterChange::kTakesRestart;
+  to.change = is_known ? static_cast<KeyChange>(from.change()) : KeyChange::kTakesRestart;
   if (!read_limit(from.min(), to.min) || !read_limit(from.max(), to.max)) return false;
   if (to.min && to.max && *to.min > *to.max) return false;
   return read_list(from.choices(), kMaxParameterChoices, to.choices, read_text) && read_text(from.name(), to.name) &&

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/parameter.hpp"
+
 namespace yuragi::wire {
 
 // The values of [look] and of the scenes, as a client sees and sets them. A value is a text, as it stands in the
@@ -33,15 +35,6 @@ struct ParameterCommand {
 /// What a value is.
 enum class ParameterKind : std::uint8_t { kNumber, kWholeNumber, kYesNo, kText };
 
-/// What becomes of a value that is set while the server runs. A parameter with a kind or a change that this build does
-/// not know is decoded as a text that takes a restart.
-enum class ParameterChange : std::uint8_t {
-  kAtOnce,        ///< the picture follows without a jump
-  kCrossFade,     ///< the scene is made anew, and the old one cross-fades to it
-  kTakesRestart,  ///< it cannot be set
-  kTakesReload,   ///< nor can it: it is read with the configuration
-};
-
 /// A parameter, described by itself, and its value.
 struct ParameterState {
   std::string name;
@@ -55,7 +48,9 @@ struct ParameterState {
   std::optional<std::string> default_value = std::nullopt;  ///< nothing: left out
   std::optional<std::string> value = std::nullopt;          ///< now
   std::optional<std::string> configured = std::nullopt;     ///< by the configuration
-  ParameterChange change = ParameterChange::kAtOnce;
+  /// What a new value does. A parameter with a kind or a change that this build does not know is decoded as a text that
+  /// takes a restart.
+  KeyChange change = KeyChange::kAtOnce;
 };
 
 /// Those of [look], or of a scene.

@@ -218,6 +218,32 @@ class Json(unittest.TestCase):
         keys = set(re.findall(r"^\s*(\w+) = ", run("check-config", self.config, "--full").stdout, re.M))
         self.assertLessEqual(keys - {"name", "driver", "kind"}, values_in(config))
 
+    def test_every_key_that_describe_lists_is_among_the_values(self):
+        """With one entry in each list; a key that is left out without a default is no value."""
+        everything = os.path.join(self.folder, "everything.toml")
+        with open(everything, "w", encoding="utf-8") as file:
+            file.write('[[sensor]]\ndriver = "synthetic"\n[[scene]]\nkind = "grass"\n[[camera]]\nname = "a"\n'
+                       '[[alert]]\nname = "a"\ncommand = "true"\n[[output]]\n[[output.window]]\n')
+        config = json.loads(run("check-config", everything, "--full", "--json").stdout)
+        sensor, output = config["sensors"][0], config["outputs"][0]
+        values = {"[[camera]]": config["cameras"][0]["values"], "[[alert]]": config["alerts"][0]["values"],
+                  "[[output]]": output["values"], "[[output.window]]": output["windows"][0],
+                  "driver synthetic": sensor["values"], "kind grass": config["scenes"][0]["values"]}
+        for table in json.loads(run("describe", "--json").stdout):
+            name = table["table"]
+            if name in ("[[sensor]]", "[[scene]]"):
+                kind = re.match(r'(driver|kind) = "(\S+)"', table["summary"])
+                name = "kind grass" if kind is None else " ".join(kind.groups())
+                if name not in values:
+                    continue  # another kind's
+            elif name.startswith("[sensor."):
+                values[name] = sensor[name[len("[sensor."):-1]]
+            elif name not in values:
+                values[name] = config[name[1:-1]] if name else config
+            for parameter in table["parameters"]:
+                if not parameter["left_out"]:
+                    self.assertIn(parameter["name"], values[name], name)
+
     def test_the_exit_code_of_status_says_how_it_is(self):
         done = run("status", "--connect", self.places["ADDRESS"], "--json")
         status = json.loads(done.stdout)

@@ -160,18 +160,18 @@ std::string CalibrationSession::progress_line(double elapsed_s, const CollectedR
 }
 
 ParameterValue CalibrationSession::value_now(const settings::ConfigChange& change) const {
-  return (change.table.empty() ? sensor().values : sensor().by_name.calibration).all().at(change.key);
+  return (change.table.empty() ? sensor().values : sensor().by_name.at("calibration")).all().at(change.key);
 }
 
 std::vector<std::string> CalibrationSession::speed_effect(std::span<const settings::ConfigChange> wanted,
                                                           std::span<const double> indicated_m_s) const {
-  ParameterValues changed = sensor().by_name.calibration;
+  ParameterValues changed = sensor().by_name.at("calibration");
   for (const settings::ConfigChange& change : wanted) {
     if (!change.table.empty()) changed.set(change.key, change.value);
   }
   // At the height of the sensor: the height factor is applied afterwards, and does not change.
   wind::judging::Calibration now = calibration();
-  wind::judging::Calibration then = settings::calibration_of(changed).value();
+  wind::judging::Calibration then = settings::calibration_of(changed);
   now.height_factor = then.height_factor = 1.0;
   std::vector<std::string> lines = {"   reading          speed now        speed then"};
   for (const double indicated : indicated_m_s) {

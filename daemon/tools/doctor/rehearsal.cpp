@@ -290,8 +290,8 @@ std::vector<PathFacts> named_paths(const Rehearsal& rehearsal) {
     add("[wind] fallback_recording", config.wind.fallback->recording.parent_path(), PathUse::kList);
     add("[wind] fallback_recording", config.wind.fallback->recording, PathUse::kRead, true);
   }
-  if (config.by_name.look.has("ground_image"))
-    add("[look] ground_image", folder / config.by_name.look.text("ground_image"), PathUse::kRead);
+  if (const ParameterValues& look = config.by_name.at("look"); look.has("ground_image"))
+    add("[look] ground_image", folder / look.text("ground_image"), PathUse::kRead);
   for (const settings::SceneConfig& scene : config.scenes) {
     if (scene.values.has("image"))
       add("scene " + scene.name + " image", folder / scene.values.text("image"), PathUse::kRead);

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/settings/each_value.hpp"
 #include "drivers/sensor/secret_source.hpp"
 #include "engine/base/json_text.hpp"
 
@@ -115,24 +116,14 @@ std::vector<std::string> known_secrets(const settings::Config& config) {
   const auto add = [&](const Result<Secret, Failure>& secret) {
     if (secret) secrets.push_back(secret->reveal());
   };
-  if (!config.http.token_file.empty()) add(drivers::sensor::secret_in_file(config.http.token_file));
-  for (const settings::AlertConfig& alert : config.alerts) {
-    for (const std::string& secret : {alert.command, alert.webhook.reveal()}) {
-      if (!secret.empty()) secrets.push_back(secret);
-    }
-  }
-  for (const settings::SensorConfig& sensor : config.sensors) {
-    for (const auto& [name, value] : sensor.values.all()) {
-      const auto* secret = std::get_if<Secret>(&value);
-      const auto* text = std::get_if<std::string>(&value);
-      if (secret != nullptr && !secret->is_empty()) secrets.push_back(secret->reveal());
-      if (text == nullptr || text->empty()) continue;
-      const auto parameter = std::ranges::find(sensor.driver->parameters, name, &Parameter::name);
-      const bool is_file = parameter != sensor.driver->parameters.end() && parameter->is_secret_file;
-      if (is_file) add(drivers::sensor::secret_in_file(*text));
-      if (name.ends_with("_env")) add(drivers::sensor::secret_in_environment(*text));
-    }
-  }
+  settings::for_each_value(config, [&](const std::string&, const Parameter& parameter, const ParameterValue& value) {
+    const auto* secret = std::get_if<Secret>(&value);
+    const auto* text = std::get_if<std::string>(&value);
+    if (secret != nullptr && !secret->is_empty()) secrets.push_back(secret->reveal());
+    if (text == nullptr || text->empty()) return;
+    if (parameter.is_secret_file) add(drivers::sensor::secret_in_file(*text));
+    if (parameter.name.ends_with("_env")) add(drivers::sensor::secret_in_environment(*text));
+  });
   return secrets;
 }
 

@@ -258,8 +258,8 @@ TEST_F(SensorJudgement, LimitsComeFromTheConfiguration) {
 /// The configuration with another calibration of one sensor, as a file would have it.
 settings::Config recalibrated(settings::Config config, std::size_t sensor, double gain) {
   settings::SensorConfig& changed = config.sensors[sensor];
-  changed.by_name.calibration.set("gain", gain);
-  changed.calibration = settings::calibration_of(changed.by_name.calibration).value();
+  changed.by_name.at("calibration").set("gain", gain);
+  changed.calibration = settings::calibration_of(changed.by_name.at("calibration"));
   return config;
 }
 

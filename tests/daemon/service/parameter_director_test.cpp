@@ -96,16 +96,16 @@ TEST_F(ParameterTest, EveryParameterIsListedAsItsTableDescribesIt) {
   EXPECT_EQ(haze.value, "0.2");
   EXPECT_EQ(haze.configured, "0.2");
   EXPECT_EQ(haze.default_value, "0.15");
-  EXPECT_EQ(haze.change, wire::ParameterChange::kAtOnce);
+  EXPECT_EQ(haze.change, KeyChange::kAtOnce);
   const wire::ParameterState sun = listed("", "sun");
   EXPECT_EQ(sun.value, std::nullopt);
   EXPECT_THAT(sun.left_out, HasSubstr("evening"));
   EXPECT_FALSE(sun.choices.empty());
-  EXPECT_EQ(listed("", "ground_image").change, wire::ParameterChange::kTakesReload);
-  EXPECT_EQ(listed("banner", "gain").change, wire::ParameterChange::kAtOnce);
+  EXPECT_EQ(listed("", "ground_image").change, KeyChange::kTakesReload);
+  EXPECT_EQ(listed("banner", "gain").change, KeyChange::kAtOnce);
   EXPECT_EQ(listed("banner", "shown").kind, wire::ParameterKind::kYesNo);
   EXPECT_EQ(listed("grass", "blades_across").kind, wire::ParameterKind::kWholeNumber);
-  EXPECT_EQ(listed("grass", "blades_across").change, wire::ParameterChange::kCrossFade);
+  EXPECT_EQ(listed("grass", "blades_across").change, KeyChange::kCrossFade);
 }
 
 TEST_F(ParameterTest, WhatIsSetLastsUntilTheFileIsReadAgain) {

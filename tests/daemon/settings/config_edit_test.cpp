@@ -216,7 +216,7 @@ TEST(ConfigEdit, AnyLayoutIsChangedOnlyWhereItShould) {
     for (SensorConfig& sensor : expected.sensors) {
       if (sensor.name != "roof") continue;
       for (const ConfigChange& change : changes) {
-        (change.table.empty() ? sensor.values : sensor.by_name.calibration).set(change.key, change.value);
+        (change.table.empty() ? sensor.values : sensor.by_name.at("calibration")).set(change.key, change.value);
       }
     }
     ASSERT_EQ(to_toml(parse_config(*result, "wall.toml")), to_toml(expected));

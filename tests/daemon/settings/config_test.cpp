@@ -816,9 +816,7 @@ TEST(Config, EveryParameterHasAHelpAndADefaultWithinItsOwnRange) {
   };
   for (const ConfigTable& table : config_tables()) check(table.name, table.parameters);
   check("scene", common_scene_parameters());
-  check("sensor.calibration", calibration_parameters());
-  check("sensor.blend", sensor_blend_parameters());
-  check("sensor.judge", judge_parameters());
+  for (const SensorTable& table : sensor_tables()) check(table.name, table.parameters);
   for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table())
     check(driver->name, driver->parameters);
   for (const scenes::SceneDescription* scene : scenes::scene_table()) check(scene->name, scene->parameters);

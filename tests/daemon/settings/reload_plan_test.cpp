@@ -18,22 +18,6 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-/// A value of the same key that is allowed, and another one.
-ParameterValue another_value(const Parameter& parameter, const ParameterValue& present) {
-  if (const auto* flag = std::get_if<bool>(&present)) return !*flag;
-  if (const auto* whole = std::get_if<std::int64_t>(&present)) {
-    return static_cast<double>(*whole + 1) <= parameter.max ? *whole + 1 : *whole - 1;
-  }
-  if (const auto* number = std::get_if<double>(&present)) {
-    return *number < parameter.max ? std::min(parameter.max, *number + 0.125) : *number - 0.125;
-  }
-  if (std::holds_alternative<Secret>(present)) return Secret("another");
-  for (const std::string_view choice : parameter.choices) {
-    if (choice != std::get<std::string>(present)) return std::string(choice);
-  }
-  return std::get<std::string>(present) + "1";
-}
-
 /// A configuration in which much is set, with a sensor that says this in its tables.
 Config wall(const std::string& more = "") {
   return parse_config("[shaping]\nfloor = 1.5\n" + more, "wall.toml");
@@ -43,51 +27,6 @@ constexpr const char* kTwoSensors =
     "[[sensor]]\ndriver = \"synthetic\"\nname = \"roof\"\n[sensor.calibration]\ngain = 1.5\n"
     "[[sensor]]\ndriver = \"windlog\"\nname = \"tape\"\nfile = \"a.windlog\"\n"
     "[[scene]]\nkind = \"grass\"\n[[scene]]\nkind = \"flag\"\n";
-
-TEST(ReloadPlan, KnowsEveryKey) {
-  for (const ConfigTable& table : config_tables()) {
-    for (const Parameter& parameter : table.parameters) {
-      EXPECT_TRUE(change_of(table.name, parameter.name)) << table.name << " " << parameter.name;
-    }
-  }
-  const auto check = [](const char* table, std::span<const Parameter> parameters) {
-    for (const Parameter& parameter : parameters) {
-      EXPECT_TRUE(change_of(table, parameter.name)) << table << " " << parameter.name;
-    }
-  };
-  check("sensor.calibration", calibration_parameters());
-  check("sensor.judge", judge_parameters());
-  check("sensor.blend", sensor_blend_parameters());
-  EXPECT_FALSE(change_of("shaping", "no such key"));
-}
-
-/// Changes each key of a table alone: it is noted once, where its class says, and taken over only where it is applied.
-void expect_each_key_to_follow_its_class(const char* table, std::span<const Parameter> parameters,
-                                         ParameterValues Config::ByName::*values) {
-  for (const Parameter& parameter : parameters) {
-    const Config running = wall();
-    Config wanted = running;
-    const ParameterValue before = (running.by_name.*values).all().find(parameter.name)->second;
-    const ParameterValue after = another_value(parameter, before);
-    (wanted.by_name.*values).set(parameter.name, after);
-
-    const ReloadPlan plan = plan_reload(running, wanted, true);
-    const bool is_applied = change_of(table, parameter.name) == KeyChange::kApplied;
-    const std::string where = "[" + std::string(table) + "] " + std::string(parameter.name) + ": ";
-    EXPECT_EQ(plan.applied.size(), is_applied ? 1U : 0U) << where;
-    for (const std::string& change : plan.applied) EXPECT_THAT(change, StartsWith(where));
-    EXPECT_EQ(plan.takes_restart.size(), is_applied ? 0U : 1U) << where;
-    EXPECT_EQ((plan.next.by_name.*values).all().find(parameter.name)->second, is_applied ? after : before) << where;
-  }
-}
-
-TEST(ReloadPlan, NotesEachKeyOnceAndTakesOverWhatIsApplied) {
-  expect_each_key_to_follow_its_class("stream", stream_parameters(), &Config::ByName::stream);
-  expect_each_key_to_follow_its_class("recording", recording_parameters(), &Config::ByName::recording);
-  expect_each_key_to_follow_its_class("animation", animation_parameters(), &Config::ByName::animation);
-  expect_each_key_to_follow_its_class("wind", wind_parameters(), &Config::ByName::wind);
-  expect_each_key_to_follow_its_class("log", log_parameters(), &Config::ByName::log);
-}
 
 TEST(ReloadPlan, AppliesTheLookAlsoWhereAKeyComesOrGoes) {
   const Config evening = wall();

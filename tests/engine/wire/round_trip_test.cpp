@@ -277,20 +277,20 @@ TEST(WireRoundTrip, ParametersAndWhatIsSetOfThemComeBackAsTheyWere) {
   EXPECT_EQ(haze.default_value, "0.15");
   EXPECT_EQ(haze.value, "0.4");
   EXPECT_EQ(haze.configured, "0.2");
-  EXPECT_EQ(haze.change, ParameterChange::kAtOnce);
+  EXPECT_EQ(haze.change, KeyChange::kAtOnce);
   const ParameterState& species = reply.parameters->groups[1].parameters.at(0);
   EXPECT_EQ(species.kind, ParameterKind::kText);
   EXPECT_EQ(species.min, std::nullopt);
   EXPECT_EQ(species.choices, (std::vector<std::string>{"cherry", "zelkova"}));
   EXPECT_EQ(species.left_out, "as the season says");
   EXPECT_EQ(species.value, std::nullopt);
-  EXPECT_EQ(species.change, ParameterChange::kCrossFade);
+  EXPECT_EQ(species.change, KeyChange::kCrossFade);
 
   ControlReply newer = samples::parameter_reply();
   newer.parameters->groups[0].parameters[0].kind = static_cast<ParameterKind>(9);
   const ControlReply understood = decoded<ControlReply>(encode(newer));
   EXPECT_EQ(understood.parameters->groups[0].parameters[0].kind, ParameterKind::kText) << "of a newer server";
-  EXPECT_EQ(understood.parameters->groups[0].parameters[0].change, ParameterChange::kTakesRestart);
+  EXPECT_EQ(understood.parameters->groups[0].parameters[0].change, KeyChange::kTakesRestart);
 }
 
 TEST(WireRoundTrip, AReloadAndWhatCameOfItComeBackAsTheyWere) {

@@ -319,7 +319,7 @@ inline wire::ControlReply parameter_reply() {
                                      .choices = {"cherry", "zelkova"},
                                      .help = "of the tree",
                                      .left_out = "as the season says",
-                                     .change = wire::ParameterChange::kCrossFade};
+                                     .change = KeyChange::kCrossFade};
   return {.done = true,
           .message = "[look] haze: 0.2 -> 0.4",
           .scenes = {},
