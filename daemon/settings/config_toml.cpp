@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include "daemon/settings/config.hpp"
+#include "engine/output/output_tables.hpp"
 #include "engine/tables/parse_toml.hpp"
 #include "engine/tables/toml_values.hpp"
 

@@ -15,7 +15,8 @@ namespace {
 constexpr std::array<std::string_view, 2> kReaders = {"anyone", "token"};
 
 Result<std::string, Failure> address_or_empty(const std::string& text) {
-  return text.empty() ? Result<std::string, Failure>(text) : checked_address(text);
+  if (text.empty()) return {boost::system::in_place_value};
+  return checked_address(text);
 }
 
 std::vector<std::string> words_of(const std::string& text) {

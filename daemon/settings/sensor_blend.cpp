@@ -14,12 +14,12 @@ namespace {
 
 using wind::blend::BlendSourceSettings;
 
-constexpr std::string_view kOfDriver = "auto";
+constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAtTheEdge =
     "its gusts enter at the windward edge of the scenes, wherever the wind comes from, and cross all of them";
-constexpr std::array<std::string_view, 4> kValues = {kOfDriver, wind::kReadingValueNames[0],
+constexpr std::array<std::string_view, 4> kValues = {kAuto, wind::kReadingValueNames[0],
                                                      wind::kReadingValueNames[1], wind::kReadingValueNames[2]};
-constexpr std::array<std::string_view, 3> kRoles = {kOfDriver, "absolute", "relative"};
+constexpr std::array<std::string_view, 3> kRoles = {kAuto, "absolute", "relative"};
 
 enum class Role : std::uint8_t { kOfDriver, kAbsolute, kRelative };
 
@@ -42,7 +42,7 @@ const Fields<BlendTable>& blend_fields() {
   static const Fields<BlendTable> kFields{
       {{.name = "role",
         .unit = "",
-        .default_value = std::string(kOfDriver),
+        .default_value = std::string(kAuto),
         .help = "relative: only its fluctuations are used, for the gusts that the absolute sensors are too slow "
                 "for, scaled to theirs. auto: relative for a microphone, absolute for all others",
         .choices = kRoles},
@@ -89,7 +89,7 @@ const Fields<BlendTable>& blend_fields() {
        of(&BlendSourceSettings::lead_m)},
       {{.name = "value",
         .unit = "",
-        .default_value = std::string(kOfDriver),
+        .default_value = std::string(kAuto),
         .help =
             "what the station reports: mean, the mean wind over the averaging time; instant, the instantaneous wind: "
             "short gusts that it happens to sample then do not count as slow ones; maximum, the strongest wind "

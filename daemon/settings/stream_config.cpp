@@ -8,7 +8,7 @@ namespace yuragi::daemon::settings {
 
 Result<std::string, Failure> checked_address(const std::string& text) {
   if (const auto address = parse_address(text); !address) return address.error();
-  return text;
+  return {boost::system::in_place_value, text};
 }
 
 const Fields<StreamConfig>& stream_fields() {
