@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <stdexcept>
 #include <system_error>
@@ -54,14 +55,18 @@ class SocketPair {
 struct Rehearsal::Device {
   Device(std::string its_name, const std::vector<std::string>& command)
       : name(std::move(its_name)),
-        program(command, {.input = sockets.theirs(), .output = sockets.theirs(), .error = sockets.theirs()}),
+        program({.command = command,
+                 .input = sockets.theirs(),
+                 .output = sockets.theirs(),
+                 .error = sockets.theirs(),
+                 .patience_ms = 2000}),
         lines(sockets.ours()) {
     sockets.close_theirs();
   }
 
   std::string name;
   SocketPair sockets;
-  ChildProgram program;
+  platform::ChildProcess program;
   LineReader lines;
 };
 
@@ -72,7 +77,7 @@ Rehearsal::Rehearsal(const Scenario& scenario, const std::filesystem::path& prog
 }
 
 Rehearsal::~Rehearsal() {
-  for (const auto& device : devices_) device->program.terminate();  // all at once; each is then waited for
+  for (const auto& device : devices_) device->program.signal(SIGTERM);  // all at once; each is then waited for
 }
 
 std::vector<int> Rehearsal::descriptors() const {
@@ -94,10 +99,9 @@ void Rehearsal::serve(std::span<const int> ready, double time_s, std::optional<F
 
   // What a device says last is printed before its end is told.
   std::erase_if(devices_, [](const auto& device) {
-    const auto exit_code = device->lines.is_open() ? std::nullopt : device->program.exit_code();
-    if (exit_code && *exit_code != 0)
-      throw std::runtime_error(fmt::format("the device {} has failed, with exit code {}", device->name, *exit_code));
-    return exit_code.has_value();
+    const auto end = device->lines.is_open() ? std::nullopt : device->program.end();
+    if (end && !end->is_good()) throw std::runtime_error(fmt::format("the device {} {}", device->name, text_of(*end)));
+    return end.has_value();
   });
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "simulators/child_program.hpp"
+#include "engine/platform/child_process.hpp"
 #include "simulators/line_reader.hpp"
 #include "simulators/scenario_file.hpp"
 #include "simulators/simulator.hpp"

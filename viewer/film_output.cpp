@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "viewer/child_process.hpp"
 #include "viewer/picture_file.hpp"
+#include "viewer/piped_child.hpp"
 #include "viewer/viewer_exit.hpp"
 #include "viewer/write_all.hpp"
 
@@ -177,7 +177,7 @@ class Video final : public FilmOutput {
                                              format.width_px, format.height_px));
     }
     try {
-      ffmpeg_ = std::make_unique<ChildProcess>(ffmpeg_command(format, beside_), ChildProcess::Pipe::kStandardInput);
+      ffmpeg_ = std::make_unique<PipedChild>(ffmpeg_command(format, beside_), PipedChild::Pipe::kStandardInput);
     } catch (const std::system_error& error) {
       throw ViewerExit(EX_UNAVAILABLE,
                        fmt::format("cannot start ffmpeg, which makes mp4 films: {}.\nOn Debian it is in the package "
@@ -202,7 +202,7 @@ class Video final : public FilmOutput {
   }
 
   void finish() override {
-    if (const ChildProcess::End end = ffmpeg_->wait(); !end.is_good()) throw_failed(end);
+    if (const platform::ChildEnd end = ffmpeg_->wait(); !end.is_good()) throw_failed(end);
     std::error_code error;
     std::filesystem::rename(beside_, file_, error);
     if (error) throw ViewerExit(EX_CANTCREAT, "cannot write " + file_.string() + ": " + error.message());
@@ -210,15 +210,15 @@ class Video final : public FilmOutput {
   std::string text() const override { return file_.string(); }
 
  private:
-  [[noreturn]] void throw_failed(const ChildProcess::End& end) const {
+  [[noreturn]] void throw_failed(const platform::ChildEnd& end) const {
     throw ViewerExit(EX_CANTCREAT, "cannot write " + file_.string() + ": ffmpeg, which makes it, " +
-                                       (end.is_good() ? "has ended too early" : ChildProcess::text_of(end)));
+                                       (end.is_good() ? "has ended too early" : text_of(end)));
   }
 
   std::filesystem::path file_;
   std::filesystem::path beside_;  // until it is whole
   const std::atomic<bool>& is_stopping_;
-  std::unique_ptr<ChildProcess> ffmpeg_;
+  std::unique_ptr<PipedChild> ffmpeg_;
 };
 
 bool is_video(const std::filesystem::path& name) {

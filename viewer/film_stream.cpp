@@ -29,14 +29,14 @@ std::vector<std::string> replay_command(const std::vector<std::string>& argument
 }
 
 /// Exit codes of sysexits.h are passed on: 66, where there is no such recording.
-int exit_code_after(const ChildProcess::End& end) {
+int exit_code_after(const platform::ChildEnd& end) {
   return end.exit_code >= EX__BASE && end.exit_code <= EX__MAX ? end.exit_code : EX_SOFTWARE;
 }
 
 }  // namespace
 
 ReplayFilmStream::ReplayFilmStream(const std::vector<std::string>& arguments, const std::atomic<bool>& is_stopping) try
-    : is_stopping_(is_stopping), replay_(replay_command(arguments), ChildProcess::Pipe::kStandardOutput) {
+    : is_stopping_(is_stopping), replay_(replay_command(arguments), PipedChild::Pipe::kStandardOutput) {
 } catch (const std::system_error& error) {
   throw ViewerExit(
       EX_UNAVAILABLE,
@@ -70,10 +70,9 @@ bool ReplayFilmStream::receive() {
       reader_.feed(std::span(received_).first(static_cast<std::size_t>(count)));
       return true;
     }
-    const ChildProcess::End end = replay_.wait();
+    const platform::ChildEnd end = replay_.wait();
     if (!end.is_good()) {
-      throw ViewerExit(exit_code_after(end),
-                       "`yuragi replay`, which plays the recording, " + ChildProcess::text_of(end));
+      throw ViewerExit(exit_code_after(end), "`yuragi replay`, which plays the recording, " + text_of(end));
     }
     if (reader_.buffered_bytes() > 0) throw ViewerExit(EX_SOFTWARE, "`yuragi replay` ended in the middle of a message");
     return false;

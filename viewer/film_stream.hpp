@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/wire/message_reader.hpp"
-#include "viewer/child_process.hpp"
+#include "viewer/piped_child.hpp"
 
 namespace yuragi::viewer {
 
@@ -35,7 +35,7 @@ class ReplayFilmStream final : public FilmStream {
   bool receive();
 
   const std::atomic<bool>& is_stopping_;
-  ChildProcess replay_;
+  PipedChild replay_;
   wire::MessageReader reader_;
   std::array<std::uint8_t, 1u << 16> received_{};
 };

@@ -2,12 +2,11 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include "engine/base/secret_line.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::viewer {
 namespace {
@@ -21,18 +20,9 @@ Result<Secret, Failure> token_in_file(const std::filesystem::path& file) {
   const auto fail = [&file](const std::string& why) {
     return Failure{"\"" + file.string() + "\" " + why, FailureKind::kNoInput};
   };
-  std::error_code error;
-  // A pipe would be waited for.
-  if (!std::filesystem::is_regular_file(file, error))
-    return fail("is not a regular file that can be read; check its name and permissions");
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return fail("cannot be read; allow it to the user that the viewer runs as");
-  std::string text(kMaxFile_bytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (in.bad()) return fail("cannot be read");
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (text.size() > kMaxFile_bytes) return fail("is too long (maximum 4096 bytes)");
-  auto secret = secret_line(std::move(text));
+  auto text = platform::read_whole(file, kMaxFile_bytes);
+  if (!text) return fail(text.error().message);
+  auto secret = secret_line(std::move(*text));
   return secret ? std::move(secret) : fail(secret.error().message);
 }
 

@@ -160,7 +160,7 @@ endfunction()
 
 # yuragi_test(NAME SOURCES ... LINK ... [NEEDS ...] [LABELS ...] [UNSANITIZED ...] [LONG ...] [ALONE]): one GoogleTest program, each of
 # its cases a CTest test; with sanitizers, where a process costs more than a case, a part of its cases is one. Those of the engine are
-# labelled `engine`; where there are no threads (all but its base and its workers) `engine_threadless`. NEEDS names other programs that it
+# labelled `engine`; where there are no threads (all but its base, its platform and its workers) `engine_threadless`. NEEDS names other programs that it
 # runs. UNSANITIZED names cases that repeat for their statistics what shorter cases do once: a sanitizer sees the same memory accesses
 # there, and leaves the long ones out; and cases that cannot run with one. They are labelled `native`. LONG names cases that do on other
 # records what the others do on one: they are labelled `long`.
@@ -170,7 +170,7 @@ endfunction()
 # one, which replaces operator new or is compiled in another way.
 function(yuragi_test name)
   cmake_parse_arguments(ARG "ALONE" "" "SOURCES;LINK;NEEDS;LABELS;LONG;UNSANITIZED" ${ARGN})
-  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/(base|workers)")
+  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/(base|platform|workers)")
     set(ARG_LABELS engine)
   elseif(CMAKE_CURRENT_SOURCE_DIR MATCHES "/tests/engine/" AND NOT ARG_LABELS)
     set(ARG_LABELS engine_threadless) # one label, since CTest's list of them gets lost in a list of properties

@@ -8,8 +8,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include "daemon/settings/output_file.hpp"
 #include "engine/base/contain.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::alerts {
 
@@ -87,7 +87,7 @@ void AlertLedger::save(const AlertRecord& record) {
     if (is_empty) {
       std::error_code error;
       if (!std::filesystem::remove(file_, error) && error) failure = file_.string() + ": " + error.message();
-    } else if (const auto written = settings::write_whole(file_, text_of(record)); !written) {
+    } else if (const auto written = platform::write_whole(file_, text_of(record)); !written) {
       failure = written.error().message;
     }
   } catch (const std::exception& error) {

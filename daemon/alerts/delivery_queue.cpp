@@ -9,6 +9,7 @@
 
 #include "engine/base/contain.hpp"
 #include "engine/base/count_text.hpp"
+#include "engine/platform/backoff.hpp"
 
 namespace yuragi::daemon::alerts {
 
@@ -58,17 +59,16 @@ void DeliveryQueue::work(const std::stop_token& stop) {
 void DeliveryQueue::deliver(const AlertNews& news, const std::stop_token& stop) {
   using Clock = std::chrono::steady_clock;
   const auto first_try = Clock::now();
-  Nanoseconds pause{0};
-  while (true) {
+  platform::Backoff pauses(times_.first, times_.longest, 1);
+  for (bool is_first_try = true;; is_first_try = false) {
     const auto delivered = try_once(news, stop);
-    const bool is_first_try = pause == Nanoseconds::zero();
     if (delivered) {
       if (!is_first_try) calls_.report(news.alert, "was told at last");
       return calls_.settle(news);
     }
     if (stop.stop_requested()) return;
     const std::string& why = delivered.error().message;
-    pause = is_first_try ? times_.first : std::min(2 * pause, times_.longest);
+    const Nanoseconds pause = pauses.next();
     if (Clock::now() + pause - first_try > times_.give_up) {
       calls_.report(news.alert, why);
       return calls_.settle(news);

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -13,11 +14,10 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/eventfd.h>
-#include <sys/syscall.h>
-#include <sys/wait.h>
 #include <unistd.h>
+
+#include "engine/platform/child_process.hpp"
 
 namespace yuragi::daemon::alerts {
 namespace {
@@ -37,37 +37,6 @@ class Descriptor {
 
  private:
   int value_;
-};
-
-/// A process group of its own, no signal that this program blocks or ignores, nothing to read, `output` for both of its
-/// outputs, and no other open file.
-class SpawnPlan {
- public:
-  explicit SpawnPlan(int output) {
-    posix_spawn_file_actions_init(&actions);
-    posix_spawnattr_init(&attributes);
-    posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-    sigset_t none;
-    sigset_t all;
-    sigemptyset(&none);
-    sigfillset(&all);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setsigdefault(&attributes, &all);
-    posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  }
-  ~SpawnPlan() {
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-  }
-  SpawnPlan(const SpawnPlan&) = delete;
-  SpawnPlan& operator=(const SpawnPlan&) = delete;
-
-  posix_spawn_file_actions_t actions{};
-  posix_spawnattr_t attributes{};
 };
 
 /// This program's environment and what the command is told. A name may hold anything but a zero byte.
@@ -94,13 +63,13 @@ bool read_some(int pipe, std::string& output) {
 
 /// Waits until a process has ended and reads what it prints meanwhile; false: it has not ended after `most`, or a stop
 /// was requested.
-bool has_ended(pid_t process, int pipe, Nanoseconds most, const std::stop_token& stop, std::string& output) {
-  const Descriptor ended(static_cast<int>(::syscall(SYS_pidfd_open, process, 0)));
+bool has_ended(const platform::ChildProcess& process, int pipe, Nanoseconds most, const std::stop_token& stop,
+               std::string& output) {
   const Descriptor wake(::eventfd(0, EFD_CLOEXEC));
-  if (ended.get() < 0 || wake.get() < 0) return false;
+  if (wake.get() < 0) return false;
   const std::stop_callback wakes(stop, [&wake] { ::eventfd_write(wake.get(), 1); });
   const auto end = std::chrono::steady_clock::now() + most;
-  std::array<pollfd, 3> waits = {{{ended.get(), POLLIN, 0}, {wake.get(), POLLIN, 0}, {pipe, POLLIN, 0}}};
+  std::array<pollfd, 3> waits = {{{process.descriptor(), POLLIN, 0}, {wake.get(), POLLIN, 0}, {pipe, POLLIN, 0}}};
   while (true) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
     const int count = ::poll(waits.data(), waits.size(), static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
@@ -120,39 +89,31 @@ Failure cannot_start(int error) {
 
 Result<void, Failure> run_command(const AlertNews& news, Nanoseconds most, const std::stop_token& stop,
                                   std::string& output) {
-  std::array<std::string, 3> words = {"/bin/sh", "-c", news.command};
-  std::array<char*, 4> arguments = {words[0].data(), words[1].data(), words[2].data(), nullptr};
-  std::vector<std::string> environment = environment_for(news);
-  std::vector<char*> entries;
-  entries.reserve(environment.size() + 1);
-  for (std::string& entry : environment) entries.push_back(entry.data());
-  entries.push_back(nullptr);
-
   std::array<int, 2> ends{};
-  int error = ::pipe2(ends.data(), O_CLOEXEC) == 0 ? 0 : errno;
-  if (error != 0) return cannot_start(error);
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return cannot_start(errno);
   const Descriptor pipe(ends[0]);
   Descriptor print_end(ends[1]);
   ::fcntl(pipe.get(), F_SETFL, O_NONBLOCK);  // only here: its other end may wait
 
-  pid_t process = 0;
-  {
-    const SpawnPlan plan(print_end.get());
-    error = ::posix_spawn(&process, arguments[0], &plan.actions, &plan.attributes, arguments.data(), entries.data());
+  std::optional<platform::ChildProcess> process;
+  try {
+    process.emplace(platform::ChildProcess::Setup{.command = {"/bin/sh", "-c", news.command},
+                                                  .output = print_end.get(),
+                                                  .error = print_end.get(),
+                                                  .environment = environment_for(news),
+                                                  .has_own_group = true});
+  } catch (const std::system_error& error) {
+    return cannot_start(error.code().value());
   }
   print_end.reset();
-  if (error != 0) return cannot_start(error);
-  const bool ended = has_ended(process, pipe.get(), most, stop, output);
+  const bool ended = has_ended(*process, pipe.get(), most, stop, output);
   // Before it is waited for: until then no other process group has its number.
-  ::kill(-process, SIGKILL);
-  int status = 0;
-  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
+  process->signal(SIGKILL);
+  const platform::ChildEnd end = process->wait();
   while (output.size() < kMaxCommandOutput_bytes && read_some(pipe.get(), output)) {
   }
   if (!ended) return Failure{fmt::format("was killed, as it had not ended after {:.0f} s", seconds(most))};
-  if (WIFSIGNALED(status)) return Failure{fmt::format("was killed by signal {}", WTERMSIG(status))};
-  if (WEXITSTATUS(status) != 0) return Failure{fmt::format("has failed with exit code {}", WEXITSTATUS(status))};
+  if (!end.is_good()) return Failure{text_of(end)};
   return {};
 }
 

@@ -25,7 +25,6 @@
 #include "daemon/service/config_check.hpp"
 #include "daemon/service/daemon_log.hpp"
 #include "daemon/service/service.hpp"
-#include "daemon/settings/output_file.hpp"
 #include "daemon/settings/standard_output.hpp"
 #include "daemon/stream/stream_client.hpp"
 #include "daemon/tools/acceptance/acceptance.hpp"
@@ -33,6 +32,7 @@
 #include "daemon/tools/acceptance/simulated_sensor.hpp"
 #include "daemon/tools/doctor/local_port.hpp"
 #include "daemon/tools/doctor/machine_probe.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -211,7 +211,7 @@ void run_accept(const AcceptOptions& options) {
   const settings::Config config = file ? settings::load_config(*file) : settings::default_config();
   service::check(config);
   const auto lock = lock_output(options.output);
-  settings::OutputFile output(options.output, options.force);  // checked before the work
+  platform::OutputFile output(options.output, options.force);  // checked before the work
   refuse_beside_a_daemon(config);
 
   const tools::doctor::VersionFacts versions = tools::doctor::probe_versions("", std::nullopt);

@@ -13,7 +13,6 @@
 #include "daemon/commands/export_take.hpp"
 #include "daemon/commands/lock_recording.hpp"
 #include "daemon/commands/run_options.hpp"
-#include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_export.hpp"
 #include "daemon/tools/csv/csv_quantities.hpp"
 #include "daemon/tools/csv/csv_resample.hpp"
@@ -23,6 +22,7 @@
 #include "drivers/windlog/recording_parts.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/base/duration.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::commands {
 
@@ -169,7 +169,7 @@ void run_export(const ExportOptions& options) {
   if (options.output == "-") return export_as_csv(*reader, options, stdout);
 
   const auto lock = lock_output(options.output);
-  settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
+  platform::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   if (std::filesystem::path(options.output).extension() == ".windlog") {
     if (!options.from.empty() || !options.to.empty() || !options.since.empty() || !options.until.empty() ||
         options.resample_s || options.quantities) {

@@ -11,10 +11,10 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/run_options.hpp"
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/output_file.hpp"
 #include "daemon/tools/offline/lockstep_replay.hpp"
 #include "daemon/tools/take/take_recorder.hpp"
 #include "engine/base/count_text.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -114,7 +114,7 @@ void export_take(const TakeOptions& options, const std::filesystem::path& record
                  const std::filesystem::path& output, bool force) {
   const settings::Config config =
       options.config_file ? settings::load_config(*options.config_file) : settings::default_config();
-  settings::OutputFile file(output, force);
+  platform::OutputFile file(output, force);
   TakeMaker maker(options);
   const bool is_watched = isatty(STDERR_FILENO) != 0;
   const auto progress = [&](double log_time_s) {

@@ -17,7 +17,6 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/lock_recording.hpp"
-#include "daemon/settings/output_file.hpp"
 #include "daemon/tools/offline/field_frames.hpp"
 #include "daemon/tools/offline/npy.hpp"
 #include "daemon/tools/plot/plot.hpp"
@@ -27,6 +26,7 @@
 #include "drivers/windlog/recording_parts.hpp"
 #include "engine/base/json_text.hpp"
 #include "engine/noise/spectral_noise.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::commands {
 
@@ -229,7 +229,7 @@ tools::plot::PlotMap map_of(std::span<const float> frame, const wind::field::Fie
 }
 
 void write_text(const std::filesystem::path& file, const std::string& text, bool force) {
-  settings::OutputFile output(file, force, drivers::windlog::kSideSuffixes);
+  platform::OutputFile output(file, force, drivers::windlog::kSideSuffixes);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(output.working_path().c_str(), "we"),
                                                             &std::fclose);
   if (!out || std::fputs(text.c_str(), out.get()) < 0 || std::fflush(out.get()) != 0) {
@@ -265,7 +265,7 @@ void run_field(FieldOptions options) {
 
   nlohmann::ordered_json description = description_of(options, grid, shape);
   const auto lock = lock_output(options.output);
-  settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
+  platform::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   if (!options.force && std::filesystem::exists(beside)) {
     throw ExitError(kExitCannotCreate, beside.string() + ": exists already; --force overwrites it");
   }

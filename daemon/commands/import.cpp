@@ -16,13 +16,13 @@
 #include "daemon/commands/command.hpp"
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/lock_recording.hpp"
-#include "daemon/settings/output_file.hpp"
 #include "daemon/tools/csv/csv_import.hpp"
 #include "daemon/tools/csv/line_log_import.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/base/version.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::commands {
 
@@ -242,7 +242,7 @@ void run_import(const ImportOptions& options) {
   }
 
   const auto lock = lock_recording(options.output);
-  settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
+  platform::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   Target target(output.working_path(), fmt::format("# imported from {}\n", options.input));
   const auto report =
       import_any(options, is_standard_input ? std::cin : file,

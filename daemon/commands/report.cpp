@@ -14,7 +14,6 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/lock_recording.hpp"
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/output_file.hpp"
 #include "daemon/settings/site_octaves.hpp"
 #include "daemon/tools/report/measure_recording.hpp"
 #include "daemon/tools/report/report_figures.hpp"
@@ -25,6 +24,7 @@
 #include "drivers/windlog/log_moment.hpp"
 #include "drivers/windlog/recording_parts.hpp"
 #include "engine/base/count_text.hpp"
+#include "engine/platform/whole_file.hpp"
 #include "engine/wind/blend/blend_source.hpp"
 #include "engine/wind/turbulence/wind_profile.hpp"
 
@@ -71,7 +71,7 @@ Nanoseconds moment_of(drivers::windlog::WindlogReader& reader, const std::string
   return log_time->value_or(Nanoseconds::max());
 }
 
-void write_text(const settings::OutputFile& output, const std::string& name, const std::string& text) {
+void write_text(const platform::OutputFile& output, const std::string& name, const std::string& text) {
   std::ofstream file(output.working_path(), std::ios::binary);
   file << text;
   file.close();
@@ -135,9 +135,9 @@ void run_report(const ReportOptions& options) {
   }
   // Checked before hours of work.
   const auto page_lock = lock_output(options.output);
-  settings::OutputFile page_file(options.output, options.force, drivers::windlog::kSideSuffixes);
+  platform::OutputFile page_file(options.output, options.force, drivers::windlog::kSideSuffixes);
   const auto json_lock = lock_output(options.json);
-  std::optional<settings::OutputFile> json_file;
+  std::optional<platform::OutputFile> json_file;
   if (!options.json.empty()) json_file.emplace(options.json, options.force, drivers::windlog::kSideSuffixes);
 
   const settings::Config config =

@@ -11,8 +11,8 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/installation.hpp"
 #include "daemon/commands/lock_recording.hpp"
-#include "daemon/settings/output_file.hpp"
 #include "engine/base/count_text.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -33,7 +33,7 @@ void make_bundle(const BundleOptions& options) {
       "yuragi-support-" + date::format("%Y%m%dT%H%M%SZ", std::chrono::floor<std::chrono::seconds>(request.now));
   const std::string name = options.output.empty() ? folder + ".tar.gz" : options.output;
   const auto lock = lock_output(name);
-  settings::OutputFile output(name, options.force);  // checked before the work
+  platform::OutputFile output(name, options.force);  // checked before the work
   request.examination = examination_of(options.config_file, options.address, "support-bundle");
   request.findings = tools::doctor::examine(request.examination);
   request.with_host_name = options.with_host_name;

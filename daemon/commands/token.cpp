@@ -17,12 +17,12 @@
 #include "daemon/commands/exit.hpp"
 #include "daemon/commands/json_output.hpp"
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/output_file.hpp"
 #include "daemon/web/access.hpp"
 #include "daemon/web/routes.hpp"
 #include "drivers/sensor/secret_source.hpp"
 #include "engine/base/json_text.hpp"
 #include "engine/base/time.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -61,7 +61,7 @@ struct TokenOptions {
 
 /// Nobody else can read it at any moment. Throws FailureError.
 void write_token(const std::filesystem::path& file, const std::filesystem::path& config_file) {
-  settings::OutputFile output(file, true);
+  platform::OutputFile output(file, true);
   const std::string path = output.working_path().string();
   const auto fail = [&path](const char* what) {
     throw FailureError(

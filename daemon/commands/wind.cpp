@@ -23,12 +23,12 @@
 #include "daemon/sensing/recorded_source.hpp"
 #include "daemon/sensing/sensor_hub.hpp"
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/output_file.hpp"
 #include "daemon/settings/sensor_blend.hpp"
 #include "daemon/tools/offline/offline_wind.hpp"
 #include "drivers/windlog/format.hpp"
 #include "drivers/windlog/recording_parts.hpp"
 #include "engine/base/count_text.hpp"
+#include "engine/platform/whole_file.hpp"
 #include "engine/wind/blend/blended_estimator.hpp"
 
 namespace yuragi::daemon::commands {
@@ -321,7 +321,7 @@ void run_wind(WindOptions options) {
 
   if (options.output == "-") return write_wind(options, config, stdout);
   const auto lock = lock_output(options.output);
-  settings::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
+  platform::OutputFile output(options.output, options.force, drivers::windlog::kSideSuffixes);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(output.working_path().c_str(), "we"),
                                                              &std::fclose);
   if (!file) {

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "daemon/settings/output_file.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::recording {
 
@@ -45,7 +45,7 @@ bool write_clock_doubt(const std::filesystem::path& file, const std::optional<Cl
     std::ostringstream text;
     text << doubt->since.time_since_epoch().count() << ' ' << doubt->is_at_start << ' ' << doubt->ahead_s << ' '
          << std::chrono::floor<std::chrono::seconds>(doubt->running).count() << '\n';
-    return settings::write_whole(file, text.str()).has_value();
+    return platform::write_whole(file, text.str()).has_value();
   } catch (const std::exception&) {
     return false;
   }

@@ -27,8 +27,6 @@ constexpr std::size_t kRingCapacity = 16'384;
 constexpr std::size_t kQuantitiesCapacity = 1024;
 /// Parts that began in the same second have the names of the seconds that follow.
 constexpr int kMostPartNames = 1000;
-constexpr Nanoseconds kFirstBackOff = std::chrono::milliseconds(500);
-constexpr Nanoseconds kMaxBackOff = std::chrono::seconds(10);
 
 /// 0 where it cannot be known.
 std::uint64_t size_of(const std::filesystem::path& file) {
@@ -297,14 +295,13 @@ void RecorderWorker::flush() {
     writer_.reset();  // what it committed is complete in its file, wherever that has been moved
     return fail(done.error());
   }
-  back_off_ = Nanoseconds{0};
+  back_off_.reset();
   set_status("");
 }
 
 /// Shows why nothing can be written, and waits before the next attempt.
 void RecorderWorker::fail(const Failure& failure) {
-  back_off_ = std::clamp(2 * back_off_, kFirstBackOff, kMaxBackOff);
-  retry_at_ = std::chrono::steady_clock::now() + back_off_;
+  retry_at_ = std::chrono::steady_clock::now() + back_off_.next();
   set_status(failure.message);
 }
 

@@ -23,6 +23,7 @@
 #include "engine/base/result.hpp"
 #include "engine/base/spsc_ring.hpp"
 #include "engine/base/time.hpp"
+#include "engine/platform/backoff.hpp"
 #include "engine/wind/station_quantities.hpp"
 #include "engine/wind/wind_reading.hpp"
 
@@ -180,7 +181,7 @@ class RecorderWorker {
   std::optional<ClockJudge> clock_;        ///< from when the recording was first opened
   std::optional<ClockDoubt> saved_doubt_;  ///< as it is on the disk
   std::size_t may_delete_by_age_ = 0;      ///< until the next file is completed
-  Nanoseconds back_off_{0};
+  platform::Backoff back_off_{std::chrono::milliseconds(500), std::chrono::seconds(10), 1};
   SteadyTime retry_at_{};
 
   std::mutex wake_mutex_;

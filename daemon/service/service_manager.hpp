@@ -5,6 +5,7 @@
 #include <string>
 
 #include "daemon/service/watchdog_feed.hpp"
+#include "engine/platform/notify_socket.hpp"
 #include "engine/wire/wire.hpp"
 
 namespace yuragi::daemon::service {
@@ -12,17 +13,10 @@ namespace yuragi::daemon::service {
 /// What systemd is told of the daemon: that it is ready, a line on how it does, that it ends, and that it is alive.
 /// Where nothing listens (NOTIFY_SOCKET is not set) every call does nothing. Never waits: what a service manager that
 /// hangs does not take is said again later. For the I/O thread.
-///
-/// Source: sd_notify(3) of systemd 252, whose protocol is declared stable. Its own function is not used: it waits while
-/// the manager's queue is full.
 class ServiceManager {
  public:
   /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. `with_animation`: the watchdog watches the animation, too.
   explicit ServiceManager(bool with_animation);
-  ~ServiceManager();
-  ServiceManager(const ServiceManager&) = delete;
-  ServiceManager& operator=(const ServiceManager&) = delete;
-
   /// READY=1, until it is taken.
   void say_ready();
 
@@ -39,11 +33,9 @@ class ServiceManager {
   void went_round(MonoTime now, std::uint64_t animation_ticks);
 
  private:
-  /// Sends a message. False where it is not taken now.
-  bool notify(const std::string& message) const;
+  ServiceManager(platform::ServiceEnvironment service, bool with_animation);
 
-  std::string socket_name_;  ///< a path, or a name in Linux's abstract namespace after '@'; empty: none
-  int socket_ = -1;
+  platform::NotifySocket socket_;
   std::optional<WatchdogFeed> watchdog_;
   bool is_ready_ = false;
   std::string status_;

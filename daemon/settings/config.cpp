@@ -1,15 +1,10 @@
 #include "daemon/settings/config.hpp"
 
-#include <cerrno>
-#include <cstring>
 #include <memory>
 #include <utility>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include "daemon/settings/same_device.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::settings {
 SensorConfig default_sensor(std::string name, const drivers::sensor::DriverDescription& driver, ParameterValues values,
@@ -31,28 +26,9 @@ Config listening_at(Config config, const std::string& address) {
 }
 
 std::string read_config_text(const std::filesystem::path& file) {
-  const auto refuse = [&file](const std::string& why) { return ConfigError(file.string() + ":1:1: file: " + why); };
-  // Without waiting for somebody who writes into a pipe.
-  const int descriptor = open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  if (descriptor < 0) throw refuse("cannot be read; check its path and permissions");
-  const std::unique_ptr<const int, void (*)(const int*)> closed(&descriptor, [](const int* one) { close(*one); });
-
-  struct stat status {};
-  if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
-    throw refuse("cannot be read; it is no regular file, but a folder, a pipe or a device");
-  }
-  std::string text(kLargestConfig_bytes + 1, '\0');
-  std::size_t length = 0;
-  while (length < text.size()) {
-    const ssize_t count = read(descriptor, text.data() + length, text.size() - length);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw refuse(std::string("cannot be read: ") + std::strerror(errno));
-    if (count == 0) break;
-    length += static_cast<std::size_t>(count);
-  }
-  if (length > kLargestConfig_bytes) throw refuse("is too large; allowed: up to 1 MB");
-  text.resize(length);
-  return text;
+  auto text = platform::read_whole(file, kLargestConfig_bytes);
+  if (!text) throw ConfigError(file.string() + ":1:1: file: " + text.error().message);
+  return std::move(*text);
 }
 
 namespace {

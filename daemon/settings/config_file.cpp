@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "daemon/settings/config.hpp"
-#include "daemon/settings/output_file.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
@@ -81,7 +81,7 @@ Result<std::filesystem::path, Failure> replace_config(const std::filesystem::pat
   const std::filesystem::path real = std::filesystem::canonical(file, error);
   if (error) return not_written(file.string() + ": " + error.message());
 
-  OutputFile output(real, true);
+  platform::OutputFile output(real, true);
   if (const auto done = write_like(real, output.working_path(), new_text); !done) return done.error();
   const Config before = parse_config(old_text, file.string());
   if (const auto done = prove(output.working_path(), before); !done) return done.error();
@@ -91,7 +91,7 @@ Result<std::filesystem::path, Failure> replace_config(const std::filesystem::pat
     return not_written(file.string() + ": has been changed meanwhile, and was left as it is; begin again");
   }
   const std::filesystem::path kept = real.string() + ".bak";
-  OutputFile backup(kept, true);
+  platform::OutputFile backup(kept, true);
   if (const auto done = write_like(real, backup.working_path(), old_text); !done) return done.error();
   if (const auto done = backup.commit(); !done) return done.error();
   if (const auto done = output.commit(); !done) return done.error();

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <functional>
 #include <iterator>
 #include <system_error>
@@ -12,8 +11,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/settings/output_file.hpp"
 #include "engine/base/json_text.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::shaping {
 namespace {
@@ -32,7 +31,7 @@ constexpr const char* kAlongDeviationKey = "along_deviation";
 /// More sensors than any installation has.
 constexpr std::size_t kMostSensors = 256;
 /// Many times the size of a valid file: a larger one is refused.
-constexpr std::streamsize kLongestSiteFile = 64L * 1024;
+constexpr std::size_t kLongestSiteFile_bytes = 64UL * 1024;
 
 nlohmann::json json_of_gains(const wind::judging::LearntByName& gains) {
   nlohmann::json json = nlohmann::json::object();
@@ -56,7 +55,7 @@ Failure write_site_file(const std::filesystem::path& file, const SiteMemory& mem
         {kTimesKey, memory.times_s}, {kOctavesKnownKey, memory.octaves_known_s}, {kOctavesKey, memory.octaves_db}};
     if (!memory.gains.empty()) json[kGainsKey] = json_of_gains(memory.gains);
     if (memory.reach != wind::blend::GustReach{}) json[kReachKey] = json_of_reach(memory.reach);
-    const auto written = settings::write_whole(file, json_text(json) + '\n');
+    const auto written = platform::write_whole(file, json_text(json) + '\n');
     return written ? Failure{} : written.error();
   } catch (const std::exception& error) {
     return {error.what()};
@@ -130,15 +129,12 @@ std::string read_reach(const nlohmann::json& json, wind::blend::GustReach& reach
 }  // namespace
 
 Result<SiteMemory, Failure> SiteFile::read() const {
-  std::ifstream in(file_);
-  if (!in) return Failure{file_.string() + ": cannot be read"};
-  std::string text(kLongestSiteFile, '\0');
-  in.read(text.data(), kLongestSiteFile);
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  const auto text = platform::read_whole(file_, kLongestSiteFile_bytes);
+  if (!text) return Failure{file_.string() + ": " + text.error().message};
 
   const Failure none{file_.string() + ": is not a memory of a site's wind"};
   NameCount names;
-  const auto json = nlohmann::json::parse(text, std::ref(names), false);
+  const auto json = nlohmann::json::parse(*text, std::ref(names), false);
   if (!json.is_object() || !json.contains(kTimesKey)) return none;
   SiteMemory memory;
   const bool is_read = read_numbers(json, kTimesKey, memory.times_s) &&

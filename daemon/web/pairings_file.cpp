@@ -1,33 +1,15 @@
 #include "daemon/web/pairings_file.hpp"
 
 #include <exception>
-#include <fstream>
 #include <system_error>
 #include <utility>
 
 #include <spdlog/spdlog.h>
 
-#include "daemon/settings/output_file.hpp"
 #include "engine/base/contain.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::web {
-namespace {
-
-/// Returns the text of a file, or nullopt if it is no regular file, too large or unreadable.
-std::optional<std::string> text_of(const std::filesystem::path& file) {
-  std::error_code error;
-  // A pipe would keep the daemon waiting.
-  if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;
-  std::ifstream in(file, std::ios::binary);
-  std::string text(Pairings::kMaxText_bytes + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (in.bad() || text.size() > Pairings::kMaxText_bytes) return std::nullopt;
-  return text;
-}
-
-}  // namespace
-
 PairingsFile::PairingsFile(std::filesystem::path file)
     : file_(std::move(file)),
       thread_([this](const std::stop_token& stop) { contain("keeping the paired browsers", [&] { work(stop); }); }) {}
@@ -38,8 +20,8 @@ Pairings PairingsFile::read(const std::string& token_mark) const {
   Pairings none(token_mark);
   std::error_code error;
   if (file_.empty() || (!std::filesystem::exists(file_, error) && !error)) return none;
-  const auto text = text_of(file_);
-  if (auto pairings = Pairings::parse(text.value_or(""))) {
+  const auto text = platform::read_whole(file_, Pairings::kMaxText_bytes);
+  if (auto pairings = Pairings::parse(text ? *text : std::string())) {
     return pairings->token_mark() == token_mark ? std::move(*pairings) : none;
   }
   const std::filesystem::path aside = file_.string() + ".damaged";
@@ -74,7 +56,7 @@ Result<void, Failure> PairingsFile::write(const std::string& text) {
   std::string failure;
   try {
     using std::filesystem::perms;
-    const auto written = settings::write_whole(file_, text, perms::owner_read | perms::owner_write);
+    const auto written = platform::write_whole(file_, text, perms::owner_read | perms::owner_write);
     if (!written) failure = written.error().message;
   } catch (const std::exception& error) {
     failure = error.what();

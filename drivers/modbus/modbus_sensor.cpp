@@ -45,10 +45,10 @@ ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus
   for (const ModbusRead& what : plan_modbus_reads(profile_, is_direction_apart)) {
     ModbusBus* const line =
         is_direction_apart && what.contains(ModbusMeasure::kDirection) ? direction_bus_.get() : bus_.get();
-    const bus::Backoff backoff =
-        what.has_wind() ? bus::Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed)
-                        : bus::Backoff(profile_.quantities_interval,
-                                       std::max(profile_.quantities_interval, kLongestQuantitiesWait), ++seed);
+    const platform::Backoff backoff =
+        what.has_wind() ? platform::Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed)
+                        : platform::Backoff(profile_.quantities_interval,
+                                            std::max(profile_.quantities_interval, kLongestQuantitiesWait), ++seed);
     reads_.push_back({.what = what, .bus = line, .backoff = backoff, .trouble = {}});
   }
   wind_reads_ =

@@ -43,7 +43,7 @@ class ModbusSensor final : public sensor::ReopeningSensor {
   struct Read {
     ModbusRead what;
     ModbusBus* bus;
-    bus::Backoff backoff;
+    platform::Backoff backoff;
     MonoTime not_before{};  ///< after a missing reply: no request before this
     std::string trouble;    ///< why the readings come without it; empty if they do not
   };

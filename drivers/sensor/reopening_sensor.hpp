@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "drivers/bus/backoff.hpp"
 #include "drivers/sensor/sensor.hpp"
 #include "engine/base/result.hpp"
+#include "engine/platform/backoff.hpp"
 
 namespace yuragi::drivers::sensor {
 
@@ -47,7 +47,7 @@ class ReopeningSensor : public Sensor {
  private:
   void report(SensorSink& sink, wind::LinkState state, const std::string& detail);
 
-  bus::Backoff backoff_;
+  platform::Backoff backoff_;
   bool is_open_ = false;
   MonoTime next_poll_{};
   wind::LinkState reported_state_ = wind::LinkState::kConnecting;

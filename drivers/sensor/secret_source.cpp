@@ -1,36 +1,21 @@
 #include "drivers/sensor/secret_source.hpp"
 
 #include <cstdlib>
-#include <fstream>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "engine/base/secret_line.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::drivers::sensor {
 
 Result<Secret, Failure> secret_in_file(const std::filesystem::path& file) {
   const auto fail = [&file](const std::string& why) { return Failure{"\"" + file.string() + "\" " + why}; };
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (status.type() == std::filesystem::file_type::not_found) return fail("does not exist");
-  if (error) return fail("cannot be read: " + error.message());
-  if (!std::filesystem::is_regular_file(status)) return fail("is not a regular file");  // a pipe would be waited for
-
-  std::ifstream input(file, std::ios::binary);
-  if (!input) return fail("cannot be read; allow it to the user that this program runs as");
-  std::string text(kLongestSecretFile + 1, '\0');
-  input.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (input.bad()) return fail("cannot be read");
-  text.resize(static_cast<std::size_t>(input.gcount()));
-  if (text.size() > kLongestSecretFile) {
-    return fail("is too long; allowed: " + std::to_string(kLongestSecretFile) + " bytes");
-  }
-
-  auto secret = secret_line(std::move(text));
+  auto text = platform::read_whole(file, kLongestSecretFile);
+  if (!text) return fail(text.error().message);
+  auto secret = secret_line(std::move(*text));
   return secret ? std::move(secret) : fail(secret.error().message);
 }
 

@@ -1,9 +1,14 @@
 #include "simulators/usb/launched_program.hpp"
 
 namespace yuragi::simulators::usb {
+namespace {
+
+constexpr int kPatience_ms = 2000;
+
+}  // namespace
 
 LaunchedProgram::LaunchedProgram(const std::vector<std::string>& command, Simulator& simulator)
-    : simulator_(simulator), program_(command, {}) {}
+    : simulator_(simulator), program_({.command = command, .patience_ms = kPatience_ms}) {}
 
 std::vector<int> LaunchedProgram::descriptors() const {
   std::vector<int> all = simulator_.descriptors();
@@ -12,7 +17,7 @@ std::vector<int> LaunchedProgram::descriptors() const {
 }
 
 void LaunchedProgram::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
-  exit_code_ = program_.exit_code();
+  if (const auto end = program_.end()) exit_code_ = end->shell_code();
   if (!exit_code_) simulator_.serve(ready, time_s, fault);
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "simulators/child_program.hpp"
+#include "engine/platform/child_process.hpp"
 #include "simulators/simulator.hpp"
 
 namespace yuragi::simulators::usb {
@@ -16,7 +16,7 @@ class LaunchedProgram final : public Simulator {
   /// Starts it; `simulator` must outlive this. Throws std::system_error.
   LaunchedProgram(const std::vector<std::string>& command, Simulator& simulator);
 
-  /// ChildProgram::exit_code().
+  /// As a shell reports it; nothing: it still runs.
   std::optional<int> exit_code() const noexcept { return exit_code_; }
 
   std::span<const FaultKind> known_faults() const override { return simulator_.known_faults(); }
@@ -27,7 +27,7 @@ class LaunchedProgram final : public Simulator {
 
  private:
   Simulator& simulator_;
-  ChildProgram program_;
+  platform::ChildProcess program_;
   std::optional<int> exit_code_;
 };
 

@@ -155,7 +155,7 @@ class Film(unittest.TestCase):
         self.assertEqual([file.name for file in self.folder.iterdir() if file.is_file()], ["take.mp4"])
 
     def test_an_ffmpeg_that_dies_or_fails_or_is_not_there_leaves_no_file(self):
-        for ffmpeg, code, words in ((DIES, 73, "was killed by a signal (9"), (FAILS, 73, "has failed (exit code 1)"),
+        for ffmpeg, code, words in ((DIES, 73, "was killed by signal 9 (Killed)"), (FAILS, 73, "has failed with exit code 1"),
                                     (None, 69, "in the package ffmpeg")):
             (self.folder / "programs" / "ffmpeg").unlink(missing_ok=True)
             _, said = self.make("--out", self.folder / "take.mp4", "--duration", 5, code=code, ffmpeg=ffmpeg)
@@ -194,7 +194,7 @@ class Film(unittest.TestCase):
         film = self.begin("--out", "-", stdout=subprocess.PIPE)
         film.stdout.read(PICTURE)
         os.kill(children_of(film.pid)[0], signal.SIGKILL)
-        self.assertIn("`yuragi replay`, which plays the recording, was killed by a signal (9", self.end(film, 70))
+        self.assertIn("`yuragi replay`, which plays the recording, was killed by signal 9 (Killed)", self.end(film, 70))
 
         film = self.begin("--out", "-", stdout=subprocess.PIPE)
         film.stdout.read(PICTURE)

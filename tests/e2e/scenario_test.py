@@ -97,7 +97,7 @@ class ScenarioTest(unittest.TestCase):
         with Program(SIM, "scenario", self.write(TWO_MASTS + 'faults = ["exception@1+1"]\n')) as scenario:
             self.assertEqual(scenario.process.wait(HANG_S), 69)
             self.assertRegex(scenario.text(), r"east: --fault: \"exception@1\+1\" is not a fault")
-            self.assertIn("the device east has failed, with exit code 64", scenario.text())
+            self.assertIn("the device east has failed with exit code 64", scenario.text())
 
     def test_no_device_outlives_it(self):
         for how in (signal.SIGTERM, signal.SIGKILL):

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -16,9 +17,11 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "engine/base/close_on_exec.hpp"
 #include "engine/base/contain.hpp"
+#include "engine/platform/backoff.hpp"
 #include "engine/wire/message_reader.hpp"
 
 namespace yuragi::viewer::stream {
@@ -30,7 +33,9 @@ using boost::system::error_code;
 /// does nothing.
 class StreamConnection::Session {
  public:
-  explicit Session(StreamOptions options) : options_(std::move(options)), backoff_(options_.min_backoff) {
+  explicit Session(StreamOptions options)
+      : options_(std::move(options)),
+        backoff_(options_.min_backoff, options_.max_backoff, static_cast<std::uint32_t>(getpid())) {
     subscription_ = wire::encode(wire::Subscribe{
         .poses = true, .sensors = true, .client = "yuragi-viewer", .takes_new_scenes = true, .token = options_.token});
     connect();
@@ -204,7 +209,7 @@ class StreamConnection::Session {
 
   void deliver(wire::Message message) {
     const MonoTime arrival = std::chrono::steady_clock::now();
-    backoff_ = options_.min_backoff;
+    backoff_.reset();
     const std::lock_guard lock(mutex_);
     if (auto* frame = std::get_if<wire::Frame>(&message)) {
       if (inbox_.frames.size() == kMaxWaitingFrames) inbox_.frames.erase(inbox_.frames.begin());
@@ -243,11 +248,10 @@ class StreamConnection::Session {
     silence_.cancel();
     socket_.close(ignored);
     set_status(StreamState::kWaiting, why);
-    retry_.expires_after(backoff_);
+    retry_.expires_after(backoff_.next());
     retry_.async_wait([this](error_code error) {
       if (!error) connect();
     });
-    backoff_ = std::min(2 * backoff_, options_.max_backoff);
   }
 
   const StreamOptions options_;
@@ -263,7 +267,7 @@ class StreamConnection::Session {
   tcp::socket socket_{context_};
   asio::steady_timer silence_{context_};
   asio::steady_timer retry_{context_};
-  Nanoseconds backoff_;
+  platform::Backoff backoff_;
   std::uint64_t attempt_ = 0;
   wire::MessageReader reader_;
   std::array<std::uint8_t, 1u << 16> received_{};

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "daemon/settings/output_file.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::tools::offline {
 namespace {
@@ -41,7 +41,7 @@ void write_npy(const std::filesystem::path& file, std::span<const std::size_t> s
   for (const std::size_t length : shape) count *= length;
   if (count != values.size()) throw std::logic_error("the shape does not hold the values");
 
-  settings::OutputFile output(file, true);
+  platform::OutputFile output(file, true);
   std::ofstream out(output.working_path(), std::ios::binary);
   const std::string header = npy_header(shape);
   out.write(header.data(), static_cast<std::streamsize>(header.size()));

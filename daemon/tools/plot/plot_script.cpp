@@ -1,36 +1,23 @@
 #include "daemon/tools/plot/plot_script.hpp"
 
-#include <array>
-#include <cerrno>
 #include <fstream>
+#include <system_error>
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include "daemon/settings/output_file.hpp"
+#include "engine/platform/child_process.hpp"
+#include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::tools::plot {
 namespace {
 
 /// Runs gnuplot on a script. False: it is not installed, or failed.
 bool run_gnuplot(const std::string& script_file) {
-  std::string program = "gnuplot";
-  std::string argument = script_file;
-  std::array<char*, 3> arguments = {program.data(), argument.data(), nullptr};
-  pid_t child = 0;
-  posix_spawn_file_actions_t actions{};
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-  const int error = posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) return false;
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return false;
+  try {
+    return platform::ChildProcess({.command = {"gnuplot", script_file}}).wait().is_good();
+  } catch (const std::system_error&) {
+    return false;
   }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 }  // namespace
@@ -62,8 +49,8 @@ Result<void, Failure> draw_script(
   if (auto named = check_plot_name(file); !named) return named;
 
   // The script is an OutputFile without a commit(), so it is removed.
-  settings::OutputFile picture(file, true);
-  const settings::OutputFile script(file + ".gnuplot", true);
+  platform::OutputFile picture(file, true);
+  const platform::OutputFile script(file + ".gnuplot", true);
   std::ofstream(script.working_path(), std::ios::binary) << script_of(picture.working_path(), file.ends_with(".svg"));
   if (run_gnuplot(script.working_path())) return picture.commit();
   return Failure{file +

@@ -59,7 +59,7 @@ TEST(ShellCommand, IsToldByItsEnvironment) {
 TEST(ShellCommand, SaysHowItFailed) {
   EXPECT_EQ(why_not("true"), "none");
   EXPECT_EQ(why_not("exit 3"), "has failed with exit code 3");
-  EXPECT_EQ(why_not("kill -TERM $$"), "was killed by signal 15");
+  EXPECT_EQ(why_not("kill -TERM $$"), "was killed by signal 15 (Terminated)");
   EXPECT_EQ(why_not("/nowhere/program"), "has failed with exit code 127");
 }
 

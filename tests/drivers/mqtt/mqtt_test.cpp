@@ -615,8 +615,8 @@ TEST(MqttDriver, RefusesAPasswordThatIsNotThereOrGivenTwice) {
   std::ofstream(file) << std::string(4096, 'x');
   EXPECT_EQ(refusal_of_file(), "it was opened");
   std::ofstream(file) << std::string(4097, 'x');
-  EXPECT_THAT(refusal_of_file(), HasSubstr("is too long; allowed: 4096 bytes"));
-  EXPECT_THAT(refusal_of({{"password_file", folder.path().string()}}), HasSubstr("is not a regular file"));
+  EXPECT_THAT(refusal_of_file(), HasSubstr("is too large; allowed: up to 4096 bytes"));
+  EXPECT_THAT(refusal_of({{"password_file", folder.path().string()}}), HasSubstr("is no regular file"));
 
   EXPECT_THAT(refusal_of({{"password_env", std::string("YURAGI_TEST_NONE")}}),
               HasSubstr("password_env: the environment variable \"YURAGI_TEST_NONE\" is not set"));

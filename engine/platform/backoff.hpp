@@ -5,7 +5,7 @@
 
 #include "engine/base/time.hpp"
 
-namespace yuragi::drivers::bus {
+namespace yuragi::platform {
 
 /// How long to wait before the next attempt: doubles from `first` up to `cap`, and stays there; each wait is shortened
 /// by up to a quarter at random, so that sensors that failed together do not come back in step.
@@ -35,4 +35,4 @@ class Backoff {
   std::minstd_rand bits_;
 };
 
-}  // namespace yuragi::drivers::bus
+}  // namespace yuragi::platform

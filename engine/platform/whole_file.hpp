@@ -1,13 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "engine/base/result.hpp"
 
-namespace yuragi::daemon::settings {
+namespace yuragi::platform {
 
 /// A file that is created as a whole or not at all: it is written under a temporary name in the same folder, and
 /// renamed by commit(). Without a commit() it is removed.
@@ -35,9 +37,14 @@ class OutputFile {
   std::span<const std::string_view> side_suffixes_;
 };
 
+/// Reads a regular file of at most `most_bytes`. Waits for nothing but the disk: a pipe is refused. The failure begins
+/// with a verb ("does not exist", "is too large; allowed: up to 4096 bytes"), since the caller names the file as its
+/// users do.
+Result<std::string, Failure> read_whole(const std::filesystem::path& file, std::size_t most_bytes);
+
 /// Writes a file whole or not at all, in place of one that exists. `permissions`: who may read and write it, at any
 /// moment; nullopt: by the process's umask. The failure names the file. Throws as OutputFile.
 Result<void, Failure> write_whole(const std::filesystem::path& file, std::string_view text,
                                   std::optional<std::filesystem::perms> permissions = std::nullopt);
 
-}  // namespace yuragi::daemon::settings
+}  // namespace yuragi::platform

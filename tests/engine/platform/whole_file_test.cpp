@@ -1,4 +1,4 @@
-#include "daemon/settings/output_file.hpp"
+#include "engine/platform/whole_file.hpp"
 
 #include <array>
 #include <fstream>
@@ -6,10 +6,12 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace yuragi::daemon::settings {
+namespace yuragi::platform {
 namespace {
 
 class OutputFileTest : public testing::Test {
@@ -72,5 +74,27 @@ TEST_F(OutputFileTest, RefusesWhatItMustNotReplace) {
   EXPECT_EQ(read(file_), "precious");
 }
 
+TEST(ReadWhole, TakesRegularFilesUpToALimitAndWaitsForNoPipe) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a";
+  EXPECT_EQ(read_whole(file, 4).error().message, "does not exist");
+  std::ofstream(file) << "wind";
+  EXPECT_EQ(*read_whole(file, 4), "wind");
+  EXPECT_EQ(read_whole(file, 3).error().message, "is too large; allowed: up to 3 bytes");
+  const std::string neither = "is no regular file, but a folder, a pipe or a device";
+  EXPECT_EQ(read_whole(folder.path(), 4).error().message, neither);
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(read_whole(folder / "pipe", 4).error().message, neither);
+}
+
+TEST(WriteWhole, SaysWhyAndLeavesWhatWasThere) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder / "a";
+  ASSERT_TRUE(write_whole(file, "before"));
+  const test::FileSizeLimit limit(3);
+  EXPECT_EQ(write_whole(file, "afterwards").error().message, file.string() + ": cannot be written: File too large");
+  EXPECT_EQ(*read_whole(file, 10), "before");
+}
+
 }  // namespace
-}  // namespace yuragi::daemon::settings
+}  // namespace yuragi::platform

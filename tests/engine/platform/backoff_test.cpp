@@ -1,10 +1,10 @@
+#include "engine/platform/backoff.hpp"
+
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
-#include "drivers/bus/backoff.hpp"
-
-namespace yuragi::drivers::bus {
+namespace yuragi::platform {
 namespace {
 
 using namespace std::chrono_literals;
@@ -27,4 +27,4 @@ TEST(Backoff, DoublesUpToItsCapAndIsTheSameForASeed) {
 }
 
 }  // namespace
-}  // namespace yuragi::drivers::bus
+}  // namespace yuragi::platform

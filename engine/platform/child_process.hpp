@@ -1,0 +1,75 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace yuragi::platform {
+
+/// How a program has ended.
+struct ChildEnd {
+  int exit_code = 0;
+  int signal = 0;  ///< that killed it; 0: none
+
+  bool is_good() const noexcept { return exit_code == 0 && signal == 0; }
+  /// As a shell reports it: 128 plus the number of a signal.
+  int shell_code() const noexcept { return signal == 0 ? exit_code : 128 + signal; }
+};
+
+/// "has failed with exit code 1", "was killed by signal 9 (Killed)".
+std::string text_of(const ChildEnd& end);
+
+/// Another program, which does not outlive the thread that starts it, nor this object. It gets no signal that this
+/// program blocks or ignores, and no open file but its standard ones. Thread-safe: no; poll() of descriptor() is.
+class ChildProcess {
+ public:
+  struct Setup {
+    /// The program, found by PATH if it names no folder, and its arguments.
+    std::vector<std::string> command;
+    // Which of our descriptors are its standard input, output and error; -1: an empty input, our own output and error.
+    int input = -1;
+    int output = -1;
+    int error = -1;
+    /// Its environment, "NAME=VALUE"; nothing: ours.
+    std::optional<std::vector<std::string>> environment = {};
+    /// It and what it starts are a process group of its own: Ctrl-C at our terminal does not reach it.
+    bool has_own_group = false;
+    /// At this object's end it is asked to end, by SIGTERM, and killed after this time; 0: killed at once.
+    int patience_ms = 0;
+  };
+
+  /// Starts it. Throws std::system_error, whose code says why it cannot be started.
+  explicit ChildProcess(const Setup& setup);
+  /// Ends it, if it still runs. If the kernel does not let it go, for 0.4 s at most, it is left behind.
+  ~ChildProcess();
+  ChildProcess(ChildProcess&& other) noexcept;
+  ChildProcess& operator=(ChildProcess&& other) noexcept;
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Readable when it has ended.
+  int descriptor() const noexcept { return descriptor_; }
+
+  /// How it has ended; nothing: it still runs.
+  std::optional<ChildEnd> end();
+
+  /// Waits until it has ended.
+  ChildEnd wait();
+
+  /// Sends it a signal, if it still runs; in a group of its own, to what it has started, too.
+  void signal(int number) noexcept;
+
+ private:
+  void let_go() noexcept;
+  bool reap(int options);
+
+  pid_t process_ = -1;  ///< -1: it has been waited for
+  int descriptor_ = -1;
+  bool has_own_group_ = false;
+  int patience_ms_ = 0;
+  ChildEnd end_{};
+};
+
+}  // namespace yuragi::platform
