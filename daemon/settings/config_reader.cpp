@@ -77,6 +77,10 @@ std::set<std::string_view> keys_beside(const scenes::SceneDescription&) {
   return {kNameKey, "kind"};
 }
 
+bool is_list(const toml::node& node) {
+  return node.is_array_of_tables() || (node.is_array() && node.as_array()->empty());
+}
+
 /// All that a file may have at its top, for a person.
 std::string top_level_names() {
   std::string names;
@@ -119,7 +123,8 @@ class ConfigReader {
     set_clock(config);
     for_each_named(root, "alert", kMostAlerts,
                    [&](std::string name, const toml::table& entry) { read_alert(std::move(name), entry, config); });
-    config.outputs = output::read_outputs(root, mistakes_);
+    if (const toml::node* node = root.get(output::kOutputList); node != nullptr && is_list(*node))
+      config.outputs = output::read_outputs(root, mistakes_);
     if (!mistakes_.empty()) throw ConfigError(mistakes_.text());
     return config;
   }
@@ -142,8 +147,7 @@ class ConfigReader {
     for (const auto& [key, node] : root) {
       const std::string name(key.str());
       if (std::ranges::find(config_lists(), key.str()) != config_lists().end()) {
-        if (!(node.is_array_of_tables() || (node.is_array() && node.as_array()->empty())))
-          mistake(key.source(), name, fmt::format("is one table; write [[{}]] above it", name));
+        if (!is_list(node)) mistake(key.source(), name, fmt::format("is one table; write [[{}]] above it", name));
       } else if (std::ranges::find(values, key.str(), &Parameter::name) != values.end()) {
         continue;
       } else if (std::ranges::find(config_tables(), key.str(), &ConfigTable::name) == config_tables().end()) {
@@ -206,16 +210,8 @@ class ConfigReader {
   template <class Use>
   void for_each_table(const toml::table& root, std::string_view list, std::size_t most, const Use& use) {
     const toml::node* node = root.get(list);
-    const toml::array* entries = node != nullptr ? node->as_array() : nullptr;
-    if (entries == nullptr) return;
-    if (entries->size() > most) {
-      mistake(entries->get(most)->source(), std::string(list),
-              fmt::format("is one of {}; allowed: at most {}", entries->size(), most));
-      return;
-    }
-    for (const toml::node& element : *entries) {
-      if (const toml::table* entry = element.as_table()) use(*entry);  // check_top_level() has reported any other
-    }
+    if (node == nullptr || !is_list(*node)) return;  // check_top_level() has reported what is none
+    for (const toml::table* entry : tables::entries_of(root, list, std::string(list), most, mistakes_)) use(*entry);
   }
 
   /// Every [[sensor]] or [[scene]]: finds its description by `kind_key`, its name, and its values.

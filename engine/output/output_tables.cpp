@@ -10,26 +10,6 @@ namespace {
 
 constexpr std::string_view kNameKey = "name";
 
-/// The tables of a list; a mistake where it is no list of tables, or too long.
-std::vector<const toml::table*> entries_of(const toml::table& around, std::string_view key, const std::string& path,
-                                           std::size_t most, tables::TomlMistakes& mistakes) {
-  std::vector<const toml::table*> entries;
-  const toml::node* const node = around.get(key);
-  if (node == nullptr) return entries;
-  const toml::array* const list = node->as_array();
-  if (list == nullptr || !(list->empty() || list->is_array_of_tables())) {
-    mistakes.add(node->source(), path, "is one table; write [[" + path + "]] above it");
-    return entries;
-  }
-  if (list->size() > most) {
-    mistakes.add(list->get(most)->source(), path,
-                 "is one of " + std::to_string(list->size()) + "; allowed: at most " + std::to_string(most));
-    return entries;
-  }
-  for (const toml::node& entry : *list) entries.push_back(entry.as_table());
-  return entries;
-}
-
 /// Takes a value made of a table, or its mistake at the key that has it.
 template <class Made>
 Made taken(Result<Made, ParameterError> made, const toml::table& table, const std::string& prefix,
@@ -48,7 +28,7 @@ OutputTable read_output(const toml::table& entry, tables::TomlMistakes& mistakes
   table.output = taken(output_of(std::move(name), table.values), entry, prefix, mistakes);
 
   const std::string windows = prefix + std::string(kWindowList);
-  for (const toml::table* window : entries_of(entry, kWindowList, windows, kMostWindows, mistakes)) {
+  for (const toml::table* window : tables::entries_of(entry, kWindowList, windows, kMostWindows, mistakes)) {
     table.windows.push_back(tables::read_values(*window, windows + ".", window_parameters(), {}, mistakes));
     table.output.windows.push_back(taken(window_of(table.windows.back()), *window, windows + ".", mistakes));
     const std::string& monitor = table.output.windows.back().monitor;
@@ -67,7 +47,8 @@ OutputTable read_output(const toml::table& entry, tables::TomlMistakes& mistakes
 
 std::vector<OutputTable> read_outputs(const toml::table& root, tables::TomlMistakes& mistakes) {
   std::vector<OutputTable> outputs;
-  for (const toml::table* entry : entries_of(root, kOutputList, std::string(kOutputList), kMostOutputs, mistakes)) {
+  for (const toml::table* entry :
+       tables::entries_of(root, kOutputList, std::string(kOutputList), kMostOutputs, mistakes)) {
     OutputTable read = read_output(*entry, mistakes);
     const auto has_its_name = [&read](const OutputTable& other) { return other.output.name == read.output.name; };
     if (std::ranges::any_of(outputs, has_its_name)) {

@@ -60,4 +60,23 @@ std::string read_name(const toml::table& entry, const std::string& prefix, std::
   return *name;
 }
 
+std::vector<const toml::table*> entries_of(const toml::table& around, std::string_view key, const std::string& path,
+                                           std::size_t most, TomlMistakes& mistakes) {
+  std::vector<const toml::table*> entries;
+  const toml::node* const node = around.get(key);
+  if (node == nullptr) return entries;
+  const toml::array* const list = node->as_array();
+  if (list == nullptr || !(list->empty() || list->is_array_of_tables())) {
+    mistakes.add(node->source(), path, "is one table; write [[" + path + "]] above it");
+    return entries;
+  }
+  if (list->size() > most) {
+    mistakes.add(list->get(most)->source(), path,
+                 "is one of " + std::to_string(list->size()) + "; allowed: at most " + std::to_string(most));
+    return entries;
+  }
+  for (const toml::node& entry : *list) entries.push_back(entry.as_table());
+  return entries;
+}
+
 }  // namespace yuragi::tables

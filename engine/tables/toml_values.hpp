@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <toml++/toml.h>
 
@@ -44,5 +46,11 @@ ParameterValues read_values(const toml::table& table, const std::string& prefix,
 /// as a mistake. `prefix` ("scene.") stands before the key in mistakes.
 std::string read_name(const toml::table& entry, const std::string& prefix, std::string otherwise,
                       TomlMistakes& mistakes);
+
+/// The tables of a list, in order, by pointer: a copy of a TOML table loses its lines and columns. A mistake where
+/// `key` is no list of tables, or has more than `most`; then there are none. `path` ("output.window") stands in
+/// mistakes.
+std::vector<const toml::table*> entries_of(const toml::table& around, std::string_view key, const std::string& path,
+                                           std::size_t most, TomlMistakes& mistakes);
 
 }  // namespace yuragi::tables
