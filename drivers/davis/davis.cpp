@@ -55,8 +55,8 @@ const Fields<VantageSettings> kDavisFields = {
     {{.name = "packets",
       .unit = "",
       .default_value = std::string("auto"),
-      .help = "loop2: with the strongest gust of 10 minutes; loop: without, for firmware before 1.90; auto: "
-              "loop2, or loop where the console does not know it. Speeds are whole miles per hour",
+      .help = "loop2: with the strongest gust of 10 minutes; loop: without, for firmware before 1.90; auto: loop2, or "
+              "loop where the console does not know it. Speeds are whole miles per hour",
       .choices = kDavisPackets},
      &VantageSettings::packets},
 };

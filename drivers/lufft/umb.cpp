@@ -48,8 +48,7 @@ const Fields<UmbKeys> kUmbFields = {
       .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
      of(&BytePortAddress::path)},
     {{"baud", "bit/s", std::int64_t{19200}, bus::kBytePortBauds.front(), bus::kBytePortBauds.back(),
-      "serial: as set in the device, which leaves the factory with 19200; 8 data bits, no parity, 1 "
-      "stop bit"},
+      "serial: as set in the device, which leaves the factory with 19200; 8 data bits, no parity, 1 stop bit"},
      of(&BytePortAddress::baud)},
     {{.name = "host", .unit = "", .default_value = std::string(""), .help = "tcp: name or address of the server"},
      of(&BytePortAddress::host)},

@@ -8,7 +8,6 @@
 // Raspet, Webster and Dillion 2006, "Framework for wind noise studies" (stagnation pressure, f^-7/3); Nelke and Vary
 // 2014, "Measurement, analysis and simulation of wind noise signals for mobile communication devices" (coherence).
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -40,8 +39,8 @@ const Fields<MicrophoneInput> kInputFields = {
     {{.name = "device",
       .unit = "",
       .default_value = std::string(""),
-      .help = "part of the input's name, ignoring case, as `yuragi mic-worker --list` prints it; empty: the "
-              "default input"},
+      .help =
+          "part of the input's name, ignoring case, as `yuragi mic-worker --list` prints it; empty: the default input"},
      &MicrophoneInput::device},
     {{.name = "host_api",
       .unit = "",
@@ -77,8 +76,8 @@ const Fields<MicrophoneKeys> kMicrophoneFields = {
     {{.name = "faces",
       .unit = "deg",
       .default_value = std::string(""),
-      .help = "where each of three or four microphones faces, clockwise from north, \"0 120 240\"; empty: no "
-              "direction"},
+      .help =
+          "where each of three or four microphones faces, clockwise from north, \"0 120 240\"; empty: no direction"},
      &MicrophoneKeys::faces},
     {{"direction_smoothing", "s", 5.0, 0.5, 600.0, "time constant of the direction, smoothed as a vector"},
      of(&MicEstimatorOptions::direction_smoothing_s)},

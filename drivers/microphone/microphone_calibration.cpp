@@ -28,8 +28,8 @@ const Fields<LevelKeys>& level_fields() {
        of(&MicLevelSettings::band_low_hz)},
       {{"band_high", "Hz", 200.0, 10.0, 2000.0, "upper limit of the band"}, of(&MicLevelSettings::band_high_hz)},
       {{"gain", "m/s", 0.0, 0.0, 1e6,
-        "calibration: speed = gain (P - P_noise)^(1 / (2 exponent)), P the mean square in the band; 0: "
-        "not calibrated; 20 is used, and every reading is uncertain"},
+        "calibration: speed = gain (P - P_noise)^(1 / (2 exponent)), P the mean square in the band; 0: not calibrated; "
+        "20 is used, and every reading is uncertain"},
        &LevelKeys::gain_m_s},
       {{"exponent", "", 2.0, 0.3, 6.0,
         "calibration: exponent by which the sound's root mean square grows with the wind speed"},

@@ -88,8 +88,8 @@ const Fields<ModbusKeys> kModbusFields = {
      letter_of_parity},
     {{"stop_bits", "", std::int64_t{0}, 0, 2, "rtu: 0 takes the profile's"}, &ModbusKeys::stop_bits},
     {{"speed_slave", "", std::int64_t{0}, 0, 247,
-      "id of the slave that measures speed, and the other quantities that the profile has on it; 0 "
-      "takes the profile's"},
+      "id of the slave that measures speed, and the other quantities that the profile has on it; 0 takes the "
+      "profile's"},
      &ModbusKeys::speed_slave},
     {{"direction_slave", "", std::int64_t{0}, 0, 247, "id of the slave that measures direction; 0 takes the profile's"},
      &ModbusKeys::direction_slave},
@@ -97,8 +97,7 @@ const Fields<ModbusKeys> kModbusFields = {
      &ModbusKeys::poll_interval,
      from_seconds},
     {{"min_gap", "s", 0.0, 0.0, 10.0,
-      "least time from a reply to the next request on this line, for adapters that switch direction "
-      "slowly; 0 takes "
+      "least time from a reply to the next request on this line, for adapters that switch direction slowly; 0 takes "
       "the profile's"},
      &ModbusKeys::min_gap,
      from_seconds},

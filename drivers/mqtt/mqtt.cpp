@@ -127,8 +127,8 @@ const Fields<MqttKeys> kMqttFields = {
     {{.name = "id",
       .unit = "",
       .default_value = std::string(""),
-      .help = "with rtl_433: the id of the station that is read; empty: any. Many stations have another one "
-              "after a change of batteries"},
+      .help = "with rtl_433: the id of the station that is read; empty: any. Many stations have another one after a "
+              "change of batteries"},
      of(&MqttSettings::station, &StationIdentity::id)},
     {{.name = "channel",
       .unit = "",
@@ -163,8 +163,8 @@ const Fields<MqttKeys> kMqttFields = {
     {{.name = "speed_unit",
       .unit = "",
       .default_value = std::string("preset"),
-      .help = "the unit of speed and gust, where the message does not say it (Tasmota's SpeedUnit, rtl_433's "
-              "keys); \"preset\" takes the preset's",
+      .help = "the unit of speed and gust, where the message does not say it (Tasmota's SpeedUnit, rtl_433's keys); "
+              "\"preset\" takes the preset's",
       .choices = kMqttUnits},
      &MqttKeys::speed_unit},
     {{"hold", "s", 60.0, 0.1, 86400.0, "a direction or gust is used for this long with speeds that come without one"},
@@ -176,8 +176,8 @@ const Fields<MqttKeys> kMqttFields = {
     {{.name = "on_change",
       .unit = "",
       .default_value = false,
-      .help = "the publisher speaks on change only (Home Assistant's statestream): a silence says that the wind "
-              "is unchanged, for as long as `silence`, which has to be longer than the longest calm"},
+      .help = "the publisher speaks on change only (Home Assistant's statestream): a silence says that the wind is "
+              "unchanged, for as long as `silence`, which has to be longer than the longest calm"},
      &MqttKeys::speaks_on_change},
     {{"keep_alive", "s", std::int64_t{15}, 5, 3600, "a broker that sends nothing for this long is pinged"},
      of(&MqttSettings::subscription, &MqttSubscription::keep_alive),

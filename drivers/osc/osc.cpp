@@ -11,7 +11,6 @@
 //
 // Address and order of the arguments are configurable; they are numbers of any of OSC's types. An argument that is no
 // number, or missing, is an unknown value.
-#include <array>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -62,8 +61,8 @@ const Fields<OscSettings> kOscFields = {
     {{.name = "from",
       .unit = "",
       .default_value = std::string(""),
-      .help = "who may send: addresses and nets separated by commas (192.168.1.20, 10.0.0.0/8); 0.0.0.0/0: any; "
-              "may be empty only where host hears this machine alone"},
+      .help = "who may send: addresses and nets separated by commas (192.168.1.20, 10.0.0.0/8); 0.0.0.0/0: any; may be "
+              "empty only where host hears this machine alone"},
      of(&bus::BytePortAddress::senders)},
     {{.name = "address",
       .unit = "",
@@ -90,8 +89,8 @@ const Fields<OscSettings> kOscFields = {
     {{.name = "on_change",
       .unit = "",
       .default_value = false,
-      .help = "the sender speaks on change only: a silence says that the wind is unchanged, for as long as "
-              "`silence`, which has to be longer than the longest calm"},
+      .help = "the sender speaks on change only: a silence says that the wind is unchanged, for as long as `silence`, "
+              "which has to be longer than the longest calm"},
      &OscSettings::speaks_on_change},
 };
 

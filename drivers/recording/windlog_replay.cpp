@@ -1,6 +1,5 @@
 // A recording in place of a sensor: plays a .windlog (drivers/windlog) against the clock.
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -74,8 +73,8 @@ const Fields<ReplayKeys> kWindlogFields = {
     {{.name = "utc_offset",
       .unit = "",
       .default_value = std::string{},
-      .help = "for same_time_of_day, of the place of the recording: hours ahead of UTC (1, -3.5); empty: "
-              "this machine's time zone"},
+      .help = "for same_time_of_day, of the place of the recording: hours ahead of UTC (1, -3.5); empty: this "
+              "machine's time zone"},
      &ReplayKeys::utc_offset},
     {{.name = "paused", .unit = "", .default_value = false, .help = "start paused, at the first reading"},
      of(&PlayerOptions::is_paused)},

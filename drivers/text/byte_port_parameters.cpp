@@ -85,9 +85,8 @@ const Fields<BytePortKeys>& byte_port_fields() {
       {{.name = "sender",
         .unit = "",
         .default_value = std::string(""),
-        .help =
-            "udp: accept datagrams from these only: addresses and nets (192.168.1.0/24) separated by commas; empty: "
-            "from any; at most 100 readings a second are taken"},
+        .help = "udp: accept datagrams from these only: addresses and nets (192.168.1.0/24) separated by commas; "
+                "empty: from any; at most 100 readings a second are taken"},
        of(&BytePortAddress::senders)},
       {{.name = "file", .unit = "", .default_value = std::string(""), .help = "file: path of a file or named pipe"},
        &BytePortKeys::file},
@@ -108,8 +107,8 @@ const Fields<BytePortKeys>& byte_port_fields() {
        of(&TextSensorSettings::response_timeout),
        from_seconds},
       {{"silence_timeout", "s", 0.0, 0.0, 86400.0,
-        "a device that is silent for this long is opened again; 0: ten times its usual pause between readings, "
-        "at least 6 s, doubled after each attempt without a reading"},
+        "a device that is silent for this long is opened again; 0: ten times its usual pause between readings, at "
+        "least 6 s, doubled after each attempt without a reading"},
        of(&TextSensorSettings::silence_timeout),
        from_seconds},
       {{"delay_after_open", "s", 0.0, 0.0, 60.0,

@@ -54,9 +54,8 @@ const Fields<LineOptions> kLineReading = {
     {{.name = "format",
       .unit = "",
       .default_value = std::string("auto"),
-      .help =
-          "columns: 4.2,270; keys: speed=4.2 direction=270; json: {\"speed\": 4.2}; auto: json where the line begins "
-          "with '{', keys where it has '=' or ':'",
+      .help = "columns: 4.2,270; keys: speed=4.2 direction=270; json: {\"speed\": 4.2}; auto: json where the line "
+              "begins with '{', keys where it has '=' or ':'",
       .choices = kLineFormats},
      &LineOptions::format},
     {{.name = "separator",

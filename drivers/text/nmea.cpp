@@ -62,17 +62,14 @@ const Fields<NmeaKeys> kNmeaFields = {
       .unit = "",
       .default_value = std::string(""),
       .help = "accept only this talker: two characters before the sentence (WI), Gill's node letter (Q), a WXT's "
-              "address "
-              "(0); empty: any"},
+              "address (0); empty: any"},
      of(&NmeaSensorSettings::talker)},
     {{.name = "missing_checksum",
       .unit = "",
       .default_value = std::string("auto"),
-      .help = "lines without a checksum; auto: NMEA sentences and those of a WXT are accepted over a network and "
-              "from a file, and "
-              "refused on a serial line, where nothing else detects a wrong bit; the other makers' own formats "
-              "always have "
-              "one. A wrong checksum is always refused",
+      .help = "lines without a checksum; auto: NMEA sentences and those of a WXT are accepted over a network and from "
+              "a file, and refused on a serial line, where nothing else detects a wrong bit; the other makers' own "
+              "formats always have one. A wrong checksum is always refused",
       .choices = kMissingChecksum},
      &NmeaKeys::missing_checksum},
     {{.name = "missing_status",

@@ -55,9 +55,8 @@ const Fields<Nmea2000SensorSettings> kNmea2000Fields = {
     {{.name = "angle_unit",
       .unit = "",
       .default_value = std::string("auto"),
-      .help =
-          "canboat: rad with analyzer -si and canboatjs, deg otherwise; auto: as the analyzer's first line says, or "
-          "degrees once an angle comes that cannot be in radians; until then there is no direction",
+      .help = "canboat: rad with analyzer -si and canboatjs, deg otherwise; auto: as the analyzer's first line says, "
+              "or degrees once an angle comes that cannot be in radians; until then there is no direction",
       .choices = kAngleUnits},
      of(&BusLineOptions::angle_unit),
      angle_unit_of},

@@ -53,9 +53,8 @@ const Fields<SignalKKeys> kSignalKFields = {
         .name = "token",
         .unit = "",
         .default_value = Secret(),
-        .help =
-            "websocket: the token of a server that lets nobody read without one, from its \"Access Requests\"; sent "
-            "as it is (no TLS); or one of token_file and token_env, which keep it out of this file"},
+        .help = "websocket: the token of a server that lets nobody read without one, from its \"Access Requests\"; "
+                "sent as it is (no TLS); or one of token_file and token_env, which keep it out of this file"},
     Parameter{.name = "token_file",
               .unit = "",
               .default_value = std::string(""),
