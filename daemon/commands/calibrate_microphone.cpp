@@ -182,7 +182,7 @@ std::vector<std::string> level_effect(const tools::calibration::CalibrationSessi
                                       const drivers::decode::microphone::MicCalibration& then, double noise_power,
                                       const std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
   const drivers::decode::microphone::MicCalibration now =
-      drivers::microphone::mic_calibration_of(session.sensor().values);
+      drivers::microphone::mic_level_settings_of(session.sensor().values).calibration;
   wind::judging::Calibration after = session.calibration();
   after.height_factor = 1.0;
   const auto [softest, loudest] =

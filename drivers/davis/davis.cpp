@@ -14,57 +14,58 @@
 #include "drivers/davis/vantage_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/serial_or_tcp.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::davis {
 namespace {
 
+using bus::BytePortAddress;
+
 constexpr std::array kDavisBauds = {1200, 2400, 4800, 9600, 19200};
+/// In the order of BytePortKind.
 constexpr std::array<std::string_view, 2> kDavisTransports = {"serial", "tcp"};
 constexpr std::array<std::string_view, 3> kDavisPackets = {"auto", "loop", "loop2"};
 
-const std::array kDavisParameters = {
-    Parameter{.name = "transport",
-              .unit = "",
-              .default_value = std::string("serial"),
-              .help = "serial: the logger's serial port or USB; tcp: a WeatherLinkIP, or a serial port in the network",
-              .choices = kDavisTransports},
-    Parameter{.name = "device",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
-    Parameter{.name = "baud",
-              .unit = "bit/s",
-              .default_value = std::int64_t{19200},
-              .min = kDavisBauds.front(),
-              .max = kDavisBauds.back(),
-              .help = "serial: as set in the console; 8 data bits, no parity, 1 stop bit"},
-    Parameter{.name = "host",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "tcp: name or address; one program at a time can be connected to a WeatherLinkIP"},
-    Parameter{.name = "port",
-              .unit = "",
-              .default_value = std::int64_t{22222},
-              .min = 1,
-              .max = 65535,
-              .help = "tcp: 22222 is a WeatherLinkIP's"},
-    Parameter{.name = "packets",
-              .unit = "",
-              .default_value = std::string("auto"),
-              .help = "loop2: with the strongest gust of 10 minutes; loop: without, for firmware before 1.90; auto: "
-                      "loop2, or loop where the console does not know it. Speeds are whole miles per hour",
-              .choices = kDavisPackets},
+template <class Member>
+auto of(Member BytePortAddress::*member) {
+  return [member](VantageSettings& settings) -> Member& { return settings.address.*member; };
+}
+
+const Fields<VantageSettings> kDavisFields = {
+    {{.name = "transport",
+      .unit = "",
+      .default_value = std::string("serial"),
+      .help = "serial: the logger's serial port or USB; tcp: a WeatherLinkIP, or a serial port in the network",
+      .choices = kDavisTransports},
+     of(&BytePortAddress::kind)},
+    {{.name = "device",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
+     of(&BytePortAddress::path)},
+    {{"baud", "bit/s", std::int64_t{19200}, kDavisBauds.front(), kDavisBauds.back(),
+      "serial: as set in the console; 8 data bits, no parity, 1 stop bit"},
+     of(&BytePortAddress::baud)},
+    {{.name = "host",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "tcp: name or address; one program at a time can be connected to a WeatherLinkIP"},
+     of(&BytePortAddress::host)},
+    {{"port", "", std::int64_t{22222}, 1, 65535, "tcp: 22222 is a WeatherLinkIP's"}, of(&BytePortAddress::port)},
+    {{.name = "packets",
+      .unit = "",
+      .default_value = std::string("auto"),
+      .help = "loop2: with the strongest gust of 10 minutes; loop: without, for firmware before 1.90; auto: loop2, or "
+              "loop where the console does not know it. Speeds are whole miles per hour",
+      .choices = kDavisPackets},
+     &VantageSettings::packets},
 };
 
 }  // namespace
 
 VantageSettings vantage_settings_of(const ParameterValues& values) {
-  VantageSettings settings;
-  settings.address = sensor::serial_or_tcp_address(values, kDavisBauds);
-  const std::string& packets = values.text("packets");
-  settings.packets = packets == "loop"    ? VantagePackets::kLoop
-                     : packets == "loop2" ? VantagePackets::kLoop2
-                                          : VantagePackets::kAuto;
+  VantageSettings settings = kDavisFields.of(values);
+  sensor::check_serial_or_tcp(settings.address, kDavisBauds);
   return settings;
 }
 
@@ -81,7 +82,7 @@ extern const sensor::DriverDescription kDavisDriver;
 const sensor::DriverDescription kDavisDriver{
     .name = "davis",
     .summary = "Davis Vantage Pro, Vantage Pro2 and Vantage Vue, by the data logger of their console",
-    .parameters = kDavisParameters,
+    .parameters = kDavisFields.parameters(),
     .open = open_davis,
     .find = [] { return sensor::find_behind_serial_ports(); },
     .claims =

@@ -3,40 +3,30 @@
 //
 //   GET /v1/current_conditions         all that its stations say; at most every 10 s
 //   GET /v1/real_time?duration=300    the wind every 2.5 s for so many seconds, broadcast to UDP port 22222
-#include <array>
 #include <stdexcept>
 
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/davis/weatherlink_live_finder.hpp"
 #include "drivers/davis/weatherlink_live_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::davis {
 namespace {
 
-const std::array kWeatherLinkLiveParameters = {
-    Parameter{.name = "host",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "name or address of the WeatherLink Live; broadcasts come only from one in the same network"},
-    Parameter{.name = "http_port",
-              .unit = "",
-              .default_value = std::int64_t{80},
-              .min = 1,
-              .max = 65535,
-              .help = "its port for HTTP"},
-    Parameter{.name = "port",
-              .unit = "",
-              .default_value = std::int64_t{22222},
-              .min = 1,
-              .max = 65535,
-              .help = "the UDP port that it broadcasts to; without broadcasts there is a wind every 10 s only"},
-    Parameter{.name = "transmitter",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = 8,
-              .help = "the station's id, 1 to 8, as set on it; 0: the first that has a wind"},
+const Fields<WeatherLinkLiveSettings> kWeatherLinkLiveFields = {
+    {{.name = "host",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "name or address of the WeatherLink Live; broadcasts come only from one in the same network"},
+     [](WeatherLinkLiveSettings& settings) -> std::string& { return settings.http.host; }},
+    {{"http_port", "", std::int64_t{80}, 1, 65535, "its port for HTTP"},
+     [](WeatherLinkLiveSettings& settings) -> std::uint16_t& { return settings.http.port; }},
+    {{"port", "", std::int64_t{22222}, 1, 65535,
+      "the UDP port that it broadcasts to; without broadcasts there is a wind every 10 s only"},
+     [](WeatherLinkLiveSettings& settings) -> std::uint16_t& { return settings.broadcasts.port; }},
+    {{"transmitter", "", std::int64_t{0}, 0, 8, "the station's id, 1 to 8, as set on it; 0: the first that has a wind"},
+     &WeatherLinkLiveSettings::transmitter},
 };
 
 std::unique_ptr<sensor::Sensor> open_weatherlink_live(const ParameterValues& values) {
@@ -48,15 +38,11 @@ std::unique_ptr<sensor::Sensor> open_weatherlink_live(const ParameterValues& val
 }  // namespace
 
 WeatherLinkLiveSettings weatherlink_live_settings_of(const ParameterValues& values) {
-  WeatherLinkLiveSettings settings;
+  WeatherLinkLiveSettings settings = kWeatherLinkLiveFields.of(values);
   settings.http.kind = bus::BytePortKind::kTcpClient;
-  settings.http.host = values.text("host");
-  settings.http.port = static_cast<std::uint16_t>(values.integer("http_port"));
   if (settings.http.host.empty()) throw std::runtime_error("host: is missing; give the WeatherLink Live's address");
   settings.broadcasts.kind = bus::BytePortKind::kUdp;
   settings.broadcasts.is_port_shared = true;  // by the sensors of one device's transmitters
-  settings.broadcasts.port = static_cast<std::uint16_t>(values.integer("port"));
-  settings.transmitter = static_cast<int>(values.integer("transmitter"));
   return settings;
 }
 
@@ -64,7 +50,7 @@ extern const sensor::DriverDescription kWeatherLinkLiveDriver;
 const sensor::DriverDescription kWeatherLinkLiveDriver{
     .name = "weatherlink",
     .summary = "the WeatherLink Live of Davis stations, over the local network",
-    .parameters = kWeatherLinkLiveParameters,
+    .parameters = kWeatherLinkLiveFields.parameters(),
     .open = open_weatherlink_live,
     .find_in_network = find_weatherlink_lives,
     .claims = [](const ParameterValues& values) -> std::vector<sensor::DeviceClaim> {

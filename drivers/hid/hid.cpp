@@ -20,6 +20,7 @@
 
 #include "drivers/hid/hid_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::hid {
 namespace {
@@ -27,35 +28,37 @@ namespace {
 constexpr std::array<std::string_view, 6> kStationChoices = {"auto",       "wmr100",  "wmr300",
                                                              "fineoffset", "acurite", "te923"};
 
-const std::array kHidParameters = {
-    Parameter{.name = "station",
-              .unit = "",
-              .default_value = std::string("auto"),
-              .help = "family of the station; auto takes whichever is plugged in",
-              .choices = kStationChoices},
-    Parameter{.name = "path",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "USB port of the station, such as 1-1.2, or its /dev/hidraw node or a link to that; selects one "
-                      "of several"},
-    Parameter{.name = "serial",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "its serial number, where it has one; selects one of several"},
-    Parameter{
-        .name = "poll_interval",
-        .unit = "s",
-        .default_value = 0.0,
-        .min = 0.0,
-        .max = 3600.0,
-        .help = "interval between requests, of fineoffset, acurite and te923; 0 takes the station's own: 48, 18 and 33 "
-                "s. A shorter one gives no new readings; for fineoffset, which might lock up, it has no effect"},
-    Parameter{.name = "pace",
-              .unit = "",
-              .default_value = 1.0,
-              .min = 1.0,
-              .max = 1000.0,
-              .help = "speed relative to a real station, for simulated ones"},
+struct HidKeys {
+  std::string station;
+  bus::HidPlace place;
+  double pace = 1.0;
+  Nanoseconds poll_interval{};
+};
+
+const Fields<HidKeys> kHidFields = {
+    {{.name = "station",
+      .unit = "",
+      .default_value = std::string("auto"),
+      .help = "family of the station; auto takes whichever is plugged in",
+      .choices = kStationChoices},
+     &HidKeys::station},
+    {{.name = "path",
+      .unit = "",
+      .default_value = std::string(""),
+      .help =
+          "USB port of the station, such as 1-1.2, or its /dev/hidraw node or a link to that; selects one of several"},
+     [](HidKeys& keys) -> std::string& { return keys.place.path; }},
+    {{.name = "serial",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "its serial number, where it has one; selects one of several"},
+     [](HidKeys& keys) -> std::string& { return keys.place.serial; }},
+    {{"poll_interval", "s", 0.0, 0.0, 3600.0,
+      "interval between requests, of fineoffset, acurite and te923; 0 takes the station's own: 48, 18 and 33 s. A "
+      "shorter one gives no new readings; for fineoffset, which might lock up, it has no effect"},
+     &HidKeys::poll_interval,
+     from_seconds},
+    {{"pace", "", 1.0, 1.0, 1000.0, "speed relative to a real station, for simulated ones"}, &HidKeys::pace},
 };
 
 std::span<const StationKind> kinds_named(std::string_view name) {
@@ -66,27 +69,25 @@ std::span<const StationKind> kinds_named(std::string_view name) {
 }
 
 std::unique_ptr<sensor::Sensor> open_hid(const ParameterValues& values) {
-  const bus::HidPlace place = {.serial = values.text("serial"), .path = values.text("path")};
-  const StationTiming timing = {.pace = values.number("pace"),
-                                .poll_interval = from_seconds(values.number("poll_interval"))};
-  const std::string& station = values.text("station");
-  return std::make_unique<HidSensor>(kinds_named(station), place, timing,
+  const auto [station, place, pace, poll_interval] = kHidFields.of(values);
+  return std::make_unique<HidSensor>(kinds_named(station), place,
+                                     StationTiming{.pace = pace, .poll_interval = poll_interval},
                                      sensor::seed_of(station + place.path + place.serial), bus::make_hid_device());
 }
 
 /// A path of a file is that behind its links.
 sensor::ValueSelection hid_selection(const ParameterValues& values) {
-  const std::string& station = values.text("station");
-  std::string path = values.text("path");
+  const HidKeys keys = kHidFields.of(values);
+  std::string path = keys.place.path;
   if (path.starts_with('/')) {
     std::error_code error;
     const auto node = std::filesystem::weakly_canonical(path, error);
     if (!error) path = node.string();
   }
   return {.device = "USB weather station",
-          .parts = {{.key = "station", .value = station == "auto" ? "" : station},
+          .parts = {{.key = "station", .value = keys.station == "auto" ? "" : keys.station},
                     {.key = "path", .value = std::move(path)},
-                    {.key = "serial", .value = values.text("serial")}}};
+                    {.key = "serial", .value = keys.place.serial}}};
 }
 
 std::vector<sensor::FoundDevice> find_hid() {
@@ -108,7 +109,7 @@ std::vector<sensor::FoundDevice> find_hid() {
 
 /// Those whose reports tell an average from a gust. Source: drivers/SOURCES.md S2.1 to S2.3.
 std::optional<sensor::StatedValue> hid_value(const ParameterValues& values) {
-  const std::string& station = values.text("station");
+  const std::string station = kHidFields.of(values).station;
   std::string_view source;
   if (station == "wmr100") source = "average, by weewx's wmr100.py";
   if (station == "wmr300") source = "average, by weewx's wmr300.py";
@@ -124,7 +125,7 @@ const sensor::DriverDescription kHidDriver{.name = "hid",
                                            .summary =
                                                "USB weather stations: Oregon Scientific WMR100 and WMR300, Fine Offset "
                                                "WH1080 and WH3080, AcuRite, Hideki TE923",
-                                           .parameters = kHidParameters,
+                                           .parameters = kHidFields.parameters(),
                                            .open = open_hid,
                                            .find = find_hid,
                                            .selection = hid_selection,

@@ -10,80 +10,76 @@
 #include "drivers/lufft/umb_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/serial_or_tcp.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::lufft {
 namespace {
 
+using bus::BytePortAddress;
+
+/// In the order of BytePortKind.
 constexpr std::array<std::string_view, 2> kUmbTransports = {"serial", "tcp"};
 
-const std::array kUmbParameters = {
-    Parameter{.name = "transport",
-              .unit = "",
-              .default_value = std::string("serial"),
-              .help = "serial: an RS-485 adapter; tcp: a serial device server in the network",
-              .choices = kUmbTransports},
-    Parameter{.name = "device",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
-    Parameter{.name = "baud",
-              .unit = "bit/s",
-              .default_value = std::int64_t{19200},
-              .min = bus::kBytePortBauds.front(),
-              .max = bus::kBytePortBauds.back(),
-              .help = "serial: as set in the device, which leaves the factory with 19200; 8 data bits, no parity, 1 "
-                      "stop bit"},
-    Parameter{
-        .name = "host", .unit = "", .default_value = std::string(""), .help = "tcp: name or address of the server"},
-    Parameter{.name = "port",
-              .unit = "",
-              .default_value = std::int64_t{9750},
-              .min = 1,
-              .max = 65535,
-              .help = "tcp: as set in the server"},
-    Parameter{.name = "class",
-              .unit = "",
-              .default_value = std::int64_t{7},
-              .min = 1,
-              .max = 14,
-              .help = "what it is: 7: a weather station WS200-UMB to WS800-UMB; 8: a VENTUS or V200A"},
-    Parameter{.name = "id",
-              .unit = "",
-              .default_value = std::int64_t{1},
-              .min = 1,
-              .max = 255,
-              .help = "its id on the line, as set in the device"},
-    Parameter{.name = "poll_interval",
-              .unit = "s",
-              .default_value = 1.0,
-              .min = 0.2,
-              .max = 3600.0,
-              .help = "interval between requests; weather stations have a new wind each second, a VENTUS up to four"},
-    Parameter{.name = "response_timeout",
-              .unit = "s",
-              .default_value = 0.5,
-              .min = 0.05,
-              .max = 60.0,
-              .help = "longest wait for a reply"},
+struct UmbKeys {
+  UmbSettings settings;
+  unsigned device_class = 0;
+  std::uint8_t id = 0;
+};
+
+template <class Member>
+auto of(Member UmbSettings::*member) {
+  return [member](UmbKeys& keys) -> Member& { return keys.settings.*member; };
+}
+template <class Member>
+auto of(Member BytePortAddress::*member) {
+  return [member](UmbKeys& keys) -> Member& { return keys.settings.address.*member; };
+}
+
+const Fields<UmbKeys> kUmbFields = {
+    {{.name = "transport",
+      .unit = "",
+      .default_value = std::string("serial"),
+      .help = "serial: an RS-485 adapter; tcp: a serial device server in the network",
+      .choices = kUmbTransports},
+     of(&BytePortAddress::kind)},
+    {{.name = "device",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
+     of(&BytePortAddress::path)},
+    {{"baud", "bit/s", std::int64_t{19200}, bus::kBytePortBauds.front(), bus::kBytePortBauds.back(),
+      "serial: as set in the device, which leaves the factory with 19200; 8 data bits, no parity, 1 stop bit"},
+     of(&BytePortAddress::baud)},
+    {{.name = "host", .unit = "", .default_value = std::string(""), .help = "tcp: name or address of the server"},
+     of(&BytePortAddress::host)},
+    {{"port", "", std::int64_t{9750}, 1, 65535, "tcp: as set in the server"}, of(&BytePortAddress::port)},
+    {{"class", "", std::int64_t{7}, 1, 14,
+      "what it is: 7: a weather station WS200-UMB to WS800-UMB; 8: a VENTUS or V200A"},
+     &UmbKeys::device_class},
+    {{"id", "", std::int64_t{1}, 1, 255, "its id on the line, as set in the device"}, &UmbKeys::id},
+    {{"poll_interval", "s", 1.0, 0.2, 3600.0,
+      "interval between requests; weather stations have a new wind each second, a VENTUS up to four"},
+     of(&UmbSettings::poll_interval),
+     from_seconds},
+    {{"response_timeout", "s", 0.5, 0.05, 60.0, "longest wait for a reply"},
+     of(&UmbSettings::response_timeout),
+     from_seconds},
 };
 
 }  // namespace
 
 UmbSettings umb_settings_of(const ParameterValues& values) {
-  UmbSettings settings;
-  settings.address = sensor::serial_or_tcp_address(values);
-  settings.device = decode::lufft::umb_address(static_cast<unsigned>(values.integer("class")),
-                                               static_cast<std::uint8_t>(values.integer("id")));
-  settings.poll_interval = from_seconds(values.number("poll_interval"));
-  settings.response_timeout = from_seconds(values.number("response_timeout"));
-  return settings;
+  UmbKeys keys = kUmbFields.of(values);
+  sensor::check_serial_or_tcp(keys.settings.address);
+  keys.settings.device = decode::lufft::umb_address(keys.device_class, keys.id);
+  return keys.settings;
 }
 
 extern const sensor::DriverDescription kUmbDriver;
 const sensor::DriverDescription kUmbDriver{
     .name = "umb",
     .summary = "Lufft VENTUS, V200A and weather stations WS200 to WS800, by the binary UMB protocol",
-    .parameters = kUmbParameters,
+    .parameters = kUmbFields.parameters(),
     .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
       const UmbSettings settings = umb_settings_of(values);
       return std::make_unique<UmbSensor>(settings, bus::make_byte_port(settings.address));
@@ -95,9 +91,10 @@ const sensor::DriverDescription kUmbDriver{
         },
     .selection =
         [](const ParameterValues& values) {
-          return sensor::selection_at(umb_settings_of(values).address,
-                                      {{.key = "class", .value = std::to_string(values.integer("class"))},
-                                       {.key = "id", .value = std::to_string(values.integer("id"))}});
+          const UmbKeys keys = kUmbFields.of(values);
+          return sensor::selection_at(keys.settings.address,
+                                      {{.key = "class", .value = std::to_string(keys.device_class)},
+                                       {.key = "id", .value = std::to_string(keys.id)}});
         },
     .stated_value =
         [](const ParameterValues&) {

@@ -8,7 +8,6 @@
 // Raspet, Webster and Dillion 2006, "Framework for wind noise studies" (stagnation pressure, f^-7/3); Nelke and Vary
 // 2014, "Measurement, analysis and simulation of wind noise signals for mobile communication devices" (coherence).
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -21,115 +20,83 @@
 #include "drivers/microphone/microphone_calibration.hpp"
 #include "drivers/microphone/microphone_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::microphone {
 namespace {
 
-const std::array kMicrophoneParameters = {
-    Parameter{.name = "device",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "part of the input's name, ignoring case, as `yuragi mic-worker --list` prints it; empty: the "
-                      "default input"},
-    Parameter{.name = "host_api",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "part of the sound system's name (ALSA, JACK), where several have an input of that name"},
-    Parameter{.name = "channels",
-              .unit = "",
-              .default_value = std::int64_t{1},
-              .min = 1,
-              .max = static_cast<double>(decode::microphone::kMicMaxChannels),
-              .help = "number of microphones; with two or more, sound that reaches all alike does not count as wind"},
-    Parameter{.name = "rate",
-              .unit = "Hz",
-              .default_value = 0.0,
-              .min = 0.0,
-              .max = 192000.0,
-              .help = "sample rate; 0: the preferred rate of the device"},
-    Parameter{.name = "band_low",
-              .unit = "Hz",
-              .default_value = 20.0,
-              .min = 2.0,
-              .max = 1000.0,
-              .help = "lower limit of the band of the wind: what the microphone still passes"},
-    Parameter{.name = "band_high",
-              .unit = "Hz",
-              .default_value = 200.0,
-              .min = 10.0,
-              .max = 2000.0,
-              .help = "upper limit of the band"},
-    Parameter{.name = "gain",
-              .unit = "m/s",
-              .default_value = 0.0,
-              .min = 0.0,
-              .max = 1e6,
-              .help = "calibration: speed = gain (P - P_noise)^(1 / (2 exponent)), P the mean square in the band; 0: "
-                      "not calibrated; 20 is used, and every reading is uncertain"},
-    Parameter{.name = "exponent",
-              .unit = "",
-              .default_value = 2.0,
-              .min = 0.3,
-              .max = 6.0,
-              .help = "calibration: exponent by which the sound's root mean square grows with the wind speed"},
-    Parameter{
-        .name = "curve",
-        .unit = "",
-        .default_value = std::string(""),
-        .help = "calibration instead of gain and exponent: points level:speed in dB:m/s, \"-62:0 -50:1.2 -40:3.4\""},
-    Parameter{
-        .name = "noise_floor",
-        .unit = "dB",
-        .default_value = 0.0,
-        .min = -200.0,
-        .max = 0.0,
-        .help =
-            "level in a calm, relative to full scale; 0: determined while running, from the quietest 2 % of the time"},
-    Parameter{.name = "noise_memory",
-              .unit = "s",
-              .default_value = 86400.0,
-              .min = 60.0,
-              .max = 604800.0,
-              .help = "memory of levels for this; no noise is subtracted in the first hour"},
-    Parameter{
-        .name = "ignore_sound",
-        .unit = "",
-        .default_value = true,
-        .help = "with two or more channels: sound that reaches all alike, such as voices and music, does not count"},
-    Parameter{.name = "faces",
-              .unit = "deg",
-              .default_value = std::string(""),
-              .help = "where each of three or four microphones faces, clockwise from north, \"0 120 240\"; empty: no "
-                      "direction"},
-    Parameter{.name = "direction_smoothing",
-              .unit = "s",
-              .default_value = 5.0,
-              .min = 0.5,
-              .max = 600.0,
-              .help = "time constant of the direction, smoothed as a vector"},
-    Parameter{.name = "least_confidence",
-              .unit = "",
-              .default_value = 0.3,
-              .min = 0.0,
-              .max = 1.0,
-              .help = "least confidence of a direction; below it the reading has none"},
-    Parameter{.name = "window",
-              .unit = "s",
-              .default_value = 1.0,
-              .min = 0.25,
-              .max = 60.0,
-              .help = "averaging time of each reading; there are four readings per second"},
-    Parameter{.name = "timeout",
-              .unit = "s",
-              .default_value = 3.0,
-              .min = 1.0,
-              .max = 60.0,
-              .help = "silence from the worker after which it is killed and started again"},
-    Parameter{.name = "worker",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "path of the worker program; empty: this program"},
+using decode::microphone::MicEstimatorOptions;
+
+/// What the worker records.
+struct MicrophoneInput {
+  std::string device;
+  std::string host_api;
+  std::size_t channels = 1;
+  double rate_hz = 0.0;
 };
+
+const Fields<MicrophoneInput> kInputFields = {
+    {{.name = "device",
+      .unit = "",
+      .default_value = std::string(""),
+      .help =
+          "part of the input's name, ignoring case, as `yuragi mic-worker --list` prints it; empty: the default input"},
+     &MicrophoneInput::device},
+    {{.name = "host_api",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "part of the sound system's name (ALSA, JACK), where several have an input of that name"},
+     &MicrophoneInput::host_api},
+    {{"channels", "", std::int64_t{1}, 1, static_cast<double>(decode::microphone::kMicMaxChannels),
+      "number of microphones; with two or more, sound that reaches all alike does not count as wind"},
+     &MicrophoneInput::channels},
+    {{"rate", "Hz", 0.0, 0.0, 192000.0, "sample rate; 0: the preferred rate of the device"}, &MicrophoneInput::rate_hz},
+};
+
+struct MicrophoneKeys {
+  MicrophoneSettings settings;
+  std::string faces;
+  std::string worker;
+};
+
+template <class Member>
+auto of(Member MicEstimatorOptions::*member) {
+  return [member](MicrophoneKeys& keys) -> Member& { return keys.settings.estimator.*member; };
+}
+
+const Fields<MicrophoneKeys> kMicrophoneFields = {
+    {{"noise_memory", "s", 86400.0, 60.0, 604800.0,
+      "memory of levels for this; no noise is subtracted in the first hour"},
+     of(&MicEstimatorOptions::noise_memory_s)},
+    {{.name = "ignore_sound",
+      .unit = "",
+      .default_value = true,
+      .help = "with two or more channels: sound that reaches all alike, such as voices and music, does not count"},
+     of(&MicEstimatorOptions::ignores_sound)},
+    {{.name = "faces",
+      .unit = "deg",
+      .default_value = std::string(""),
+      .help =
+          "where each of three or four microphones faces, clockwise from north, \"0 120 240\"; empty: no direction"},
+     &MicrophoneKeys::faces},
+    {{"direction_smoothing", "s", 5.0, 0.5, 600.0, "time constant of the direction, smoothed as a vector"},
+     of(&MicEstimatorOptions::direction_smoothing_s)},
+    {{"least_confidence", "", 0.3, 0.0, 1.0, "least confidence of a direction; below it the reading has none"},
+     of(&MicEstimatorOptions::least_confidence)},
+    {{"window", "s", 1.0, 0.25, 60.0, "averaging time of each reading; there are four readings per second"},
+     of(&MicEstimatorOptions::window_s)},
+    {{"timeout", "s", 3.0, 1.0, 60.0, "silence from the worker after which it is killed and started again"},
+     [](MicrophoneKeys& keys) -> Nanoseconds& { return keys.settings.sound_timeout; },
+     from_seconds},
+    {{.name = "worker",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "path of the worker program; empty: this program"},
+     &MicrophoneKeys::worker},
+};
+
+const std::vector<Parameter> kMicrophoneParameters =
+    together(together(kInputFields.parameters(), mic_level_parameters()), kMicrophoneFields.parameters());
 
 /// "0 120 240", with blanks or commas.
 std::vector<double> parse_faces(const std::string& text) {
@@ -152,23 +119,17 @@ std::vector<double> parse_faces(const std::string& text) {
   return faces_deg;
 }
 
-MicrophoneSettings settings_of(const ParameterValues& values) {
-  MicrophoneSettings settings;
-  decode::microphone::MicEstimatorOptions& estimator = settings.estimator;
-  settings.is_calibrated = values.number("gain") > 0.0 || !values.text("curve").empty();
-  const MicLevelSettings level = mic_level_settings_of(values);
+/// Throws where they cannot work together.
+MicrophoneSettings settings_of(const MicrophoneKeys& keys, const MicLevelSettings& level, std::size_t channels) {
+  MicrophoneSettings settings = keys.settings;
+  MicEstimatorOptions& estimator = settings.estimator;
+  settings.is_calibrated = level.is_calibrated;
   estimator.calibration = level.calibration;
   estimator.noise_floor_db = level.noise_floor_db;
-  estimator.noise_memory_s = values.number("noise_memory");
-  estimator.ignores_sound = values.flag("ignore_sound");
-  estimator.window_s = values.number("window");
-  estimator.direction_smoothing_s = values.number("direction_smoothing");
-  estimator.least_confidence = values.number("least_confidence");
-  settings.sound_timeout = from_seconds(values.number("timeout"));
 
-  estimator.faces_deg = parse_faces(values.text("faces"));
+  estimator.faces_deg = parse_faces(keys.faces);
   if (!estimator.faces_deg.empty()) {
-    if (estimator.faces_deg.size() != static_cast<std::size_t>(values.integer("channels"))) {
+    if (estimator.faces_deg.size() != channels) {
       throw std::runtime_error("faces must have as many directions as there are channels");
     }
     try {
@@ -184,17 +145,18 @@ MicrophoneSettings settings_of(const ParameterValues& values) {
 }
 
 std::unique_ptr<sensor::Sensor> open_microphone(const ParameterValues& values) {
-  const std::string& worker = values.text("worker");
-  const std::string& device = values.text("device");
-  std::vector<std::string> command = {worker.empty() ? microphone_worker_program() : worker,
+  const MicrophoneInput input = kInputFields.of(values);
+  const MicLevelSettings level = mic_level_settings_of(values);
+  const MicrophoneKeys keys = kMicrophoneFields.of(values);
+  std::vector<std::string> command = {keys.worker.empty() ? microphone_worker_program() : keys.worker,
                                       "mic-worker",
-                                      fmt::format("--channels={}", values.integer("channels")),
-                                      fmt::format("--rate={}", values.number("rate")),
-                                      fmt::format("--band-low={}", values.number("band_low")),
-                                      fmt::format("--band-high={}", values.number("band_high"))};
-  if (!device.empty()) command.push_back("--device=" + device);
-  if (!values.text("host_api").empty()) command.push_back("--host-api=" + values.text("host_api"));
-  return std::make_unique<MicrophoneSensor>(settings_of(values), sensor::seed_of(device),
+                                      fmt::format("--channels={}", input.channels),
+                                      fmt::format("--rate={}", input.rate_hz),
+                                      fmt::format("--band-low={}", level.band_low_hz),
+                                      fmt::format("--band-high={}", level.band_high_hz)};
+  if (!input.device.empty()) command.push_back("--device=" + input.device);
+  if (!input.host_api.empty()) command.push_back("--host-api=" + input.host_api);
+  return std::make_unique<MicrophoneSensor>(settings_of(keys, level, input.channels), sensor::seed_of(input.device),
                                             bus::make_process_port(std::move(command)));
 }
 
@@ -209,8 +171,9 @@ sensor::ValueSelection microphone_selection(const ParameterValues& values) {
     std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
   };
-  const std::string device = lower(values.text("device"));
-  const std::string host_api = lower(values.text("host_api"));
+  const MicrophoneInput input = kInputFields.of(values);
+  const std::string device = lower(input.device);
+  const std::string host_api = lower(input.host_api);
   return {.device = device.empty() && host_api.empty() ? "the default sound input" : "sound input",
           .parts = {{.key = "device", .value = device, .covers = name_covers},
                     {.key = "host_api", .value = host_api, .covers = name_covers}}};
@@ -222,8 +185,9 @@ std::vector<sensor::FoundDevice> find_plugged_microphones() {
 
 /// The power of the sound is averaged over the window.
 std::optional<sensor::StatedValue> microphone_value(const ParameterValues& values) {
+  const double window_s = kMicrophoneFields.of(values).settings.estimator.window_s;
   return sensor::StatedValue{
-      .value = wind::ReadingValue::kMean, .averaging_s = values.number("window"), .source = "the driver's window"};
+      .value = wind::ReadingValue::kMean, .averaging_s = window_s, .source = "the driver's window"};
 }
 
 }  // namespace

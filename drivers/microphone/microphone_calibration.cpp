@@ -4,17 +4,71 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/base/fields.hpp"
+
 namespace yuragi::drivers::microphone {
 
-decode::microphone::MicCalibration mic_calibration_of(const ParameterValues& values) {
-  if (const std::string& curve = values.text("curve"); !curve.empty()) {
-    auto parsed = decode::microphone::parse_mic_curve(curve);
-    if (!parsed) throw std::runtime_error("curve = \"" + curve + "\": " + parsed.error().message);
+namespace {
+
+struct LevelKeys {
+  MicLevelSettings settings;
+  double gain_m_s = 0.0;
+  double exponent = 0.0;
+  std::string curve;
+};
+
+template <class Member>
+auto of(Member MicLevelSettings::*member) {
+  return [member](LevelKeys& keys) -> Member& { return keys.settings.*member; };
+}
+
+const Fields<LevelKeys>& level_fields() {
+  static const Fields<LevelKeys> kLevelFields = {
+      {{"band_low", "Hz", 20.0, 2.0, 1000.0, "lower limit of the band of the wind: what the microphone still passes"},
+       of(&MicLevelSettings::band_low_hz)},
+      {{"band_high", "Hz", 200.0, 10.0, 2000.0, "upper limit of the band"}, of(&MicLevelSettings::band_high_hz)},
+      {{"gain", "m/s", 0.0, 0.0, 1e6,
+        "calibration: speed = gain (P - P_noise)^(1 / (2 exponent)), P the mean square in the band; 0: not calibrated; "
+        "20 is used, and every reading is uncertain"},
+       &LevelKeys::gain_m_s},
+      {{"exponent", "", 2.0, 0.3, 6.0,
+        "calibration: exponent by which the sound's root mean square grows with the wind speed"},
+       &LevelKeys::exponent},
+      {{.name = "curve",
+        .unit = "",
+        .default_value = std::string(""),
+        .help = "calibration instead of gain and exponent: points level:speed in dB:m/s, \"-62:0 -50:1.2 -40:3.4\""},
+       &LevelKeys::curve},
+      {{"noise_floor", "dB", 0.0, -200.0, 0.0,
+        "level in a calm, relative to full scale; 0: determined while running, from the quietest 2 % of the time"},
+       of(&MicLevelSettings::noise_floor_db),
+       [](double floor_db) { return floor_db < 0.0 ? std::optional(floor_db) : std::nullopt; }},
+  };
+  return kLevelFields;
+}
+
+decode::microphone::MicCalibration calibration_of(const LevelKeys& keys) {
+  if (!keys.curve.empty()) {
+    auto parsed = decode::microphone::parse_mic_curve(keys.curve);
+    if (!parsed) throw std::runtime_error("curve = \"" + keys.curve + "\": " + parsed.error().message);
     return *parsed;
   }
-  decode::microphone::MicPowerLaw law{.exponent = values.number("exponent")};
-  if (const double gain_m_s = values.number("gain"); gain_m_s > 0.0) law.gain_m_s = gain_m_s;
+  decode::microphone::MicPowerLaw law{.exponent = keys.exponent};
+  if (keys.gain_m_s > 0.0) law.gain_m_s = keys.gain_m_s;
   return law;
+}
+
+}  // namespace
+
+std::span<const Parameter> mic_level_parameters() {
+  return level_fields().parameters();
+}
+
+MicLevelSettings mic_level_settings_of(const ParameterValues& values) {
+  LevelKeys keys = level_fields().of(values);
+  keys.settings.calibration = calibration_of(keys);
+  keys.settings.is_calibrated = keys.gain_m_s > 0.0 || !keys.curve.empty();
+  return keys.settings;
 }
 
 ParameterValues::Map parameters_of(const decode::microphone::MicCalibration& calibration) {
@@ -23,14 +77,6 @@ ParameterValues::Map parameters_of(const decode::microphone::MicCalibration& cal
     return {{"gain", rounded(law->gain_m_s)}, {"exponent", rounded(law->exponent)}, {"curve", std::string()}};
   }
   return {{"curve", decode::microphone::format_mic_curve(std::get<decode::microphone::MicCurve>(calibration))}};
-}
-
-MicLevelSettings mic_level_settings_of(const ParameterValues& values) {
-  MicLevelSettings settings{.calibration = mic_calibration_of(values),
-                            .band_low_hz = values.number("band_low"),
-                            .band_high_hz = values.number("band_high")};
-  if (const double floor_db = values.number("noise_floor"); floor_db < 0.0) settings.noise_floor_db = floor_db;
-  return settings;
 }
 
 }  // namespace yuragi::drivers::microphone

@@ -13,133 +13,128 @@
 #include "drivers/modbus/modbus_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/serial_or_tcp.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::modbus {
 namespace {
 
+using decode::modbus::ModbusFraming;
+
+/// In the order of ModbusFraming.
 constexpr std::array<std::string_view, 2> kTransports = {"tcp", "rtu"};
 constexpr std::array<std::string_view, 4> kParityChoices = {"profile", "none", "even", "odd"};
 
-const std::array kModbusParameters = {
-    Parameter{.name = "profile",
-              .unit = "",
-              .default_value = std::string("renke-rs-fsjt-rs-fxjt-n01"),
-              .help = "the device's register map: a name in drivers/modbus/profiles, or the path of a .toml file"},
-    Parameter{.name = "profile_dir",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "a directory that is searched for profiles first"},
-    Parameter{.name = "transport",
-              .unit = "",
-              .default_value = std::string("tcp"),
-              .help = "tcp: a device or gateway in the network; rtu: a serial port",
-              .choices = kTransports},
-    Parameter{.name = "host", .unit = "", .default_value = std::string("127.0.0.1"), .help = "tcp: name or address"},
-    Parameter{
-        .name = "port", .unit = "", .default_value = std::int64_t{502}, .min = 1, .max = 65535, .help = "tcp: port"},
-    Parameter{.name = "device",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "rtu: the serial port, preferably by its stable name in /dev/serial/by-id"},
-    Parameter{.name = "direction_device",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "rtu: the serial port of the vane, where it is on a separate line"},
-    Parameter{.name = "baud",
-              .unit = "bit/s",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = 115200,
-              .help = "rtu: 0 takes the profile's"},
-    Parameter{.name = "parity",
-              .unit = "",
-              .default_value = std::string("profile"),
-              .help = "rtu: \"profile\" takes the profile's",
-              .choices = kParityChoices},
-    Parameter{.name = "stop_bits",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = 2,
-              .help = "rtu: 0 takes the profile's"},
-    Parameter{.name = "speed_slave",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = 247,
-              .help = "id of the slave that measures speed, and the other quantities that the profile has on it; 0 "
-                      "takes the profile's"},
-    Parameter{.name = "direction_slave",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = 247,
-              .help = "id of the slave that measures direction; 0 takes the profile's"},
-    Parameter{.name = "poll_interval",
-              .unit = "s",
-              .default_value = 0.0,
-              .min = 0.0,
-              .max = 3600.0,
-              .help = "interval between readings; 0 takes the profile's"},
-    Parameter{.name = "min_gap",
-              .unit = "s",
-              .default_value = 0.0,
-              .min = 0.0,
-              .max = 10.0,
-              .help = "least time from a reply to the next request on this line, for adapters that switch direction "
-                      "slowly; 0 takes "
-                      "the profile's"},
-    Parameter{.name = "response_timeout",
-              .unit = "s",
-              .default_value = 0.0,
-              .min = 0.0,
-              .max = 10.0,
-              .help = "longest wait for a reply, and for a connection; 0 takes the profile's"},
+/// kModbusFields says what each means; 0 and empty times are the profile's.
+struct ModbusKeys {
+  std::string profile;
+  std::string profile_dir;
+  ModbusFraming framing = ModbusFraming::kTcp;
+  std::string host;
+  std::uint16_t port = 0;
+  std::string device;
+  std::string direction_device;
+  int baud = 0;
+  char parity = 0;
+  int stop_bits = 0;
+  std::uint8_t speed_slave = 0;
+  std::uint8_t direction_slave = 0;
+  Nanoseconds poll_interval{};
+  Nanoseconds min_gap{};
+  Nanoseconds response_timeout{};
+};
+
+/// 0: the profile's.
+char letter_of_parity(const std::string& word) {
+  return word == "none" ? 'N' : word == "even" ? 'E' : word == "odd" ? 'O' : '\0';
+}
+
+const Fields<ModbusKeys> kModbusFields = {
+    {{.name = "profile",
+      .unit = "",
+      .default_value = std::string("renke-rs-fsjt-rs-fxjt-n01"),
+      .help = "the device's register map: a name in drivers/modbus/profiles, or the path of a .toml file"},
+     &ModbusKeys::profile},
+    {{.name = "profile_dir",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "a directory that is searched for profiles first"},
+     &ModbusKeys::profile_dir},
+    {{.name = "transport",
+      .unit = "",
+      .default_value = std::string("tcp"),
+      .help = "tcp: a device or gateway in the network; rtu: a serial port",
+      .choices = kTransports},
+     &ModbusKeys::framing},
+    {{.name = "host", .unit = "", .default_value = std::string("127.0.0.1"), .help = "tcp: name or address"},
+     &ModbusKeys::host},
+    {{"port", "", std::int64_t{502}, 1, 65535, "tcp: port"}, &ModbusKeys::port},
+    {{.name = "device",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "rtu: the serial port, preferably by its stable name in /dev/serial/by-id"},
+     &ModbusKeys::device},
+    {{.name = "direction_device",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "rtu: the serial port of the vane, where it is on a separate line"},
+     &ModbusKeys::direction_device},
+    {{"baud", "bit/s", std::int64_t{0}, 0, 115200, "rtu: 0 takes the profile's"}, &ModbusKeys::baud},
+    {{.name = "parity",
+      .unit = "",
+      .default_value = std::string("profile"),
+      .help = "rtu: \"profile\" takes the profile's",
+      .choices = kParityChoices},
+     &ModbusKeys::parity,
+     letter_of_parity},
+    {{"stop_bits", "", std::int64_t{0}, 0, 2, "rtu: 0 takes the profile's"}, &ModbusKeys::stop_bits},
+    {{"speed_slave", "", std::int64_t{0}, 0, 247,
+      "id of the slave that measures speed, and the other quantities that the profile has on it; 0 takes the "
+      "profile's"},
+     &ModbusKeys::speed_slave},
+    {{"direction_slave", "", std::int64_t{0}, 0, 247, "id of the slave that measures direction; 0 takes the profile's"},
+     &ModbusKeys::direction_slave},
+    {{"poll_interval", "s", 0.0, 0.0, 3600.0, "interval between readings; 0 takes the profile's"},
+     &ModbusKeys::poll_interval,
+     from_seconds},
+    {{"min_gap", "s", 0.0, 0.0, 10.0,
+      "least time from a reply to the next request on this line, for adapters that switch direction slowly; 0 takes "
+      "the profile's"},
+     &ModbusKeys::min_gap,
+     from_seconds},
+    {{"response_timeout", "s", 0.0, 0.0, 10.0, "longest wait for a reply, and for a connection; 0 takes the profile's"},
+     &ModbusKeys::response_timeout,
+     from_seconds},
 };
 
 /// The profile with the settings of the installation.
-ModbusProfile profile_of(const ParameterValues& values) {
-  ModbusProfile profile = load_modbus_profile(values.text("profile"), values.text("profile_dir"));
-  if (const std::int64_t baud = values.integer("baud"); baud != 0) profile.baud = static_cast<int>(baud);
-  if (const std::string& parity = values.text("parity"); parity == "none") {
-    profile.parity = 'N';
-  } else if (parity == "even") {
-    profile.parity = 'E';
-  } else if (parity == "odd") {
-    profile.parity = 'O';
-  }
-  if (const std::int64_t bits = values.integer("stop_bits"); bits != 0) profile.stop_bits = static_cast<int>(bits);
-  if (const std::int64_t slave = values.integer("speed_slave"); slave != 0) {
-    set_slave(profile, static_cast<std::uint8_t>(slave));
-  }
-  if (const std::int64_t slave = values.integer("direction_slave"); slave != 0) {
+ModbusProfile profile_of(const ModbusKeys& keys) {
+  ModbusProfile profile = load_modbus_profile(keys.profile, keys.profile_dir);
+  if (keys.baud != 0) profile.baud = keys.baud;
+  if (keys.parity != 0) profile.parity = keys.parity;
+  if (keys.stop_bits != 0) profile.stop_bits = keys.stop_bits;
+  if (keys.speed_slave != 0) set_slave(profile, keys.speed_slave);
+  if (keys.direction_slave != 0) {
     if (!profile.direction)
       throw std::runtime_error("direction_slave: profile \"" + profile.name + "\" has no direction");
-    profile.direction->slave = static_cast<std::uint8_t>(slave);
+    profile.direction->slave = keys.direction_slave;
   }
-  if (const double interval_s = values.number("poll_interval"); interval_s > 0.0) {
-    profile.poll_interval = from_seconds(interval_s);
-  }
-  if (const double gap_s = values.number("min_gap"); gap_s > 0.0) profile.min_gap = from_seconds(gap_s);
-  if (const double timeout_s = values.number("response_timeout"); timeout_s > 0.0) {
-    profile.response_timeout = from_seconds(timeout_s);
-  }
+  if (keys.poll_interval > Nanoseconds::zero()) profile.poll_interval = keys.poll_interval;
+  if (keys.min_gap > Nanoseconds::zero()) profile.min_gap = keys.min_gap;
+  if (keys.response_timeout > Nanoseconds::zero()) profile.response_timeout = keys.response_timeout;
   return profile;
 }
 
-bus::ModbusLine line_of(const ParameterValues& values, const ModbusProfile& profile) {
-  bus::ModbusLine line;
-  line.framing =
-      values.text("transport") == "tcp" ? decode::modbus::ModbusFraming::kTcp : decode::modbus::ModbusFraming::kRtu;
-  line.host = values.text("host");
-  line.port = static_cast<std::uint16_t>(values.integer("port"));
-  line.device = values.text("device");
-  line.baud = profile.baud;
-  line.parity = profile.parity;
-  line.stop_bits = profile.stop_bits;
+bus::ModbusLine line_of(const ModbusKeys& keys, const ModbusProfile& profile) {
+  bus::ModbusLine line{.framing = keys.framing,
+                       .host = keys.host,
+                       .port = keys.port,
+                       .device = keys.device,
+                       .baud = profile.baud,
+                       .parity = profile.parity,
+                       .stop_bits = profile.stop_bits};
   line.connect_timeout = std::max(profile.response_timeout, line.connect_timeout);
 
-  if (line.framing == decode::modbus::ModbusFraming::kTcp) {
+  if (line.framing == ModbusFraming::kTcp) {
     if (line.host.empty())
       throw std::runtime_error("host: is empty; give the name or address of the device or gateway");
     return line;
@@ -158,35 +153,35 @@ bus::ModbusLine line_of(const ParameterValues& values, const ModbusProfile& prof
 }
 
 /// The separate line of the vane; nullptr where it has none.
-std::shared_ptr<ModbusBus> direction_bus_of(const ParameterValues& values, const ModbusProfile& profile,
+std::shared_ptr<ModbusBus> direction_bus_of(const ModbusKeys& keys, const ModbusProfile& profile,
                                             const bus::ModbusLine& line) {
-  const std::string& device = values.text("direction_device");
-  if (device.empty()) return nullptr;
-  if (line.framing != decode::modbus::ModbusFraming::kRtu) {
+  if (keys.direction_device.empty()) return nullptr;
+  if (line.framing != ModbusFraming::kRtu) {
     throw std::runtime_error("direction_device: is for transport rtu; over tcp both slaves are behind one host");
   }
   if (!profile.direction) {
     throw std::runtime_error("direction_device: profile \"" + profile.name + "\" has no direction");
   }
   bus::ModbusLine own = line;
-  own.device = device;
+  own.device = keys.direction_device;
   return shared_modbus_bus(own);
 }
 
 std::unique_ptr<sensor::Sensor> open_modbus(const ParameterValues& values) {
-  ModbusProfile profile = profile_of(values);
-  const bus::ModbusLine line = line_of(values, profile);
+  const ModbusKeys keys = kModbusFields.of(values);
+  ModbusProfile profile = profile_of(keys);
+  const bus::ModbusLine line = line_of(keys, profile);
   const std::uint32_t seed = sensor::seed_of(describe(line) + profile.name + std::to_string(profile.speed.slave));
-  const auto direction_bus = direction_bus_of(values, profile, line);
+  const auto direction_bus = direction_bus_of(keys, profile, line);
   return std::make_unique<ModbusSensor>(std::move(profile), shared_modbus_bus(line), direction_bus, seed);
 }
 
 /// Sensors on one line share it (ModbusBus); devices and gateways in a network have no line.
 std::vector<sensor::DeviceClaim> modbus_claims(const ParameterValues& values) {
+  const ModbusKeys keys = kModbusFields.of(values);
   std::vector<sensor::DeviceClaim> claims;
-  if (values.text("transport") == "tcp") return claims;
-  for (const std::string_view key : {"device", "direction_device"}) {
-    const std::string& device = values.text(key);
+  if (keys.framing == ModbusFraming::kTcp) return claims;
+  for (const std::string& device : {keys.device, keys.direction_device}) {
     if (!device.empty()) claims.push_back({.device = bus::serial_device_of(device), .is_shared = true});
   }
   return claims;
@@ -194,13 +189,13 @@ std::vector<sensor::DeviceClaim> modbus_claims(const ParameterValues& values) {
 
 /// The register that holds the speed: sensors may have a vane in common.
 sensor::ValueSelection modbus_selection(const ParameterValues& values) {
-  const ModbusProfile profile = profile_of(values);
-  const bool is_tcp = values.text("transport") == "tcp";
-  return {.device = is_tcp
-                        ? "Modbus line " + bus::device_of({.kind = bus::BytePortKind::kTcpClient,
-                                                           .host = values.text("host"),
-                                                           .port = static_cast<std::uint16_t>(values.integer("port"))})
-                        : bus::serial_device_of(values.text("device")),
+  const ModbusKeys keys = kModbusFields.of(values);
+  const ModbusProfile profile = profile_of(keys);
+  const bool is_tcp = keys.framing == ModbusFraming::kTcp;
+  return {.device =
+              is_tcp ? "Modbus line " +
+                           bus::device_of({.kind = bus::BytePortKind::kTcpClient, .host = keys.host, .port = keys.port})
+                     : bus::serial_device_of(keys.device),
           .device_keys = is_tcp ? "host, port" : "device",
           .parts = {{.key = "speed_slave", .value = std::to_string(profile.speed.slave)},
                     {.key = "profile",
@@ -234,14 +229,14 @@ std::vector<sensor::FoundDevice> find_modbus() {
 /// What the profile states.
 std::optional<sensor::StatedValue> modbus_value(const ParameterValues& values) {
   try {
-    return profile_of(values).value;
+    return profile_of(kModbusFields.of(values)).value;
   } catch (const std::runtime_error&) {
     return std::nullopt;  // open() fails and gives the reason
   }
 }
 
 sensor::PromisedQuantities modbus_promises(const ParameterValues& values) {
-  const ModbusProfile profile = profile_of(values);
+  const ModbusProfile profile = profile_of(kModbusFields.of(values));
   return {.direction = profile.direction.has_value(), .gust = profile.gust.has_value()};
 }
 
@@ -251,7 +246,7 @@ extern const sensor::DriverDescription kModbusDriver;
 const sensor::DriverDescription kModbusDriver{
     .name = "modbus",
     .summary = "anemometers and vanes on Modbus TCP or RTU, by device profiles",
-    .parameters = kModbusParameters,
+    .parameters = kModbusFields.parameters(),
     .open = open_modbus,
     .find = find_modbus,
     .claims = modbus_claims,

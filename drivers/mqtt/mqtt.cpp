@@ -22,6 +22,7 @@
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/sensor/secret_source.hpp"
 #include "drivers/sensor/speed_unit.hpp"
+#include "engine/base/fields.hpp"
 #include "engine/base/printable_text.hpp"
 
 namespace yuragi::drivers::mqtt {
@@ -30,108 +31,9 @@ namespace {
 /// A look at the clock at least so often.
 constexpr Nanoseconds kMqttWait = std::chrono::milliseconds(250);
 
-constexpr std::array<std::string_view, 6> kMqttUnits = {"preset", "m/s", "km/h", "kn", "mph", "ft/s"};
+using bus::MqttSubscription;
 
-const std::array kMqttParameters = {
-    Parameter{
-        .name = "host", .unit = "", .default_value = std::string("127.0.0.1"), .help = "the broker's name or address"},
-    Parameter{.name = "port",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = 65535,
-              .help = "the broker's port; 0 takes 1883, and 8883 with TLS"},
-    Parameter{.name = "user", .unit = "", .default_value = std::string(""), .help = "the user name; empty: none"},
-    Parameter{.name = "password",
-              .unit = "",
-              .default_value = Secret(),
-              .help = "the user's password; or one of password_file and password_env, which keep it out of this file"},
-    Parameter{.name = "password_file",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "a file that holds the password, at most 4096 bytes; its mode should be 0640 or stricter",
-              .is_secret_file = true},
-    Parameter{.name = "password_env",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "the environment variable that holds the password"},
-    Parameter{.name = "tls", .unit = "", .default_value = false, .help = "use TLS, and verify the broker"},
-    Parameter{.name = "ca_file",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "the CA certificate (PEM) of the broker; empty: those of the system"},
-    Parameter{.name = "preset",
-              .unit = "",
-              .default_value = std::string("number"),
-              .help = "settings for a common publisher; topics, paths and unit that are set override them",
-              .choices = kMqttPresetNames},
-    Parameter{.name = "model",
-              .unit = "",
-              .default_value = std::string(""),
-              .help =
-                  "with rtl_433: the model of the station that is read, such as Acurite-5n1; empty: any. Of several "
-                  "stations on the topic the first that is heard is read, until it falls silent"},
-    Parameter{.name = "id",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "with rtl_433: the id of the station that is read; empty: any. Many stations have another one "
-                      "after a change of batteries"},
-    Parameter{.name = "channel",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "with rtl_433: the channel of the station that is read, such as A or 1; empty: any"},
-    Parameter{
-        .name = "topic",
-        .unit = "",
-        .default_value = std::string(""),
-        .help = "the topic of the speed, and of quantities without a topic of their own; + matches any level; at most "
-                "100 readings a second are taken, of messages of at most 64 KiB"},
-    Parameter{.name = "speed_path",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "JSON pointer to the speed, such as /TX23/Speed/Act; empty takes the preset's"},
-    Parameter{
-        .name = "direction_topic", .unit = "", .default_value = std::string(""), .help = "the direction's own topic"},
-    Parameter{.name = "direction_path",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "JSON pointer to the direction in degrees; empty takes the preset's"},
-    Parameter{.name = "gust_topic", .unit = "", .default_value = std::string(""), .help = "the gust's own topic"},
-    Parameter{.name = "gust_path",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "JSON pointer to the gust; empty takes the preset's"},
-    Parameter{.name = "speed_unit",
-              .unit = "",
-              .default_value = std::string("preset"),
-              .help = "the unit of speed and gust, where the message does not say it (Tasmota's SpeedUnit, rtl_433's "
-                      "keys); \"preset\" takes the preset's",
-              .choices = kMqttUnits},
-    Parameter{.name = "hold",
-              .unit = "s",
-              .default_value = 60.0,
-              .min = 0.1,
-              .max = 86400.0,
-              .help = "a direction or gust is used for this long with speeds that come without one"},
-    Parameter{.name = "silence",
-              .unit = "s",
-              .default_value = 900.0,
-              .min = 0.1,
-              .max = 86400.0,
-              .help = "without a message for this long the publisher counts as stopped"},
-    Parameter{.name = "on_change",
-              .unit = "",
-              .default_value = false,
-              .help =
-                  "the publisher speaks on change only (Home Assistant's statestream): a silence says that the wind "
-                  "is unchanged, for as long as `silence`, which has to be longer than the longest calm"},
-    Parameter{.name = "keep_alive",
-              .unit = "s",
-              .default_value = std::int64_t{15},
-              .min = 5,
-              .max = 3600,
-              .help = "a broker that sends nothing for this long is pinged"},
-};
+constexpr std::array<std::string_view, 6> kMqttUnits = {"preset", "m/s", "km/h", "kn", "mph", "ft/s"};
 
 /// One place in a message where a quantity can stand.
 struct MqttPlace {
@@ -159,6 +61,127 @@ struct MqttSettings {
   bool has_own_unit = false;       ///< it was set, and holds also where the message's unit is not known
   Nanoseconds hold = std::chrono::seconds(60);
   Nanoseconds silence = std::chrono::minutes(15);
+};
+
+/// The settings as they are written: without the preset's.
+struct MqttKeys {
+  MqttSettings settings;
+  std::string speed_path;
+  std::string direction_path;
+  std::string gust_path;
+  std::string speed_unit;
+  bool speaks_on_change = false;
+
+  bool has_own_unit() const { return speed_unit != kMqttUnits[0]; }
+};
+
+template <class Member>
+auto of(Member MqttSettings::*member) {
+  return [member](MqttKeys& keys) -> Member& { return keys.settings.*member; };
+}
+template <class Part, class Member>
+auto of(Part MqttSettings::*part, Member Part::*member) {
+  return [part, member](MqttKeys& keys) -> Member& { return keys.settings.*part.*member; };
+}
+
+const Fields<MqttKeys> kMqttFields = {
+    {{.name = "host", .unit = "", .default_value = std::string("127.0.0.1"), .help = "the broker's name or address"},
+     of(&MqttSettings::subscription, &MqttSubscription::host)},
+    {{"port", "", std::int64_t{0}, 0, 65535, "the broker's port; 0 takes 1883, and 8883 with TLS"},
+     of(&MqttSettings::subscription, &MqttSubscription::port)},
+    {{.name = "user", .unit = "", .default_value = std::string(""), .help = "the user name; empty: none"},
+     of(&MqttSettings::subscription, &MqttSubscription::user)},
+    Parameter{.name = "password",
+              .unit = "",
+              .default_value = Secret(),
+              .help = "the user's password; or one of password_file and password_env, which keep it out of this file"},
+    Parameter{.name = "password_file",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "a file that holds the password, at most 4096 bytes; its mode should be 0640 or stricter",
+              .is_secret_file = true},
+    Parameter{.name = "password_env",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "the environment variable that holds the password"},
+    {{.name = "tls", .unit = "", .default_value = false, .help = "use TLS, and verify the broker"},
+     of(&MqttSettings::subscription, &MqttSubscription::uses_tls)},
+    {{.name = "ca_file",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "the CA certificate (PEM) of the broker; empty: those of the system"},
+     of(&MqttSettings::subscription, &MqttSubscription::ca_file)},
+    {{.name = "preset",
+      .unit = "",
+      .default_value = std::string("number"),
+      .help = "settings for a common publisher; topics, paths and unit that are set override them",
+      .choices = kMqttPresetNames},
+     of(&MqttSettings::preset),
+     [](const std::string& name) { return &mqtt_preset_of(name); }},
+    {{.name = "model",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "with rtl_433: the model of the station that is read, such as Acurite-5n1; empty: any. Of several "
+              "stations on the topic the first that is heard is read, until it falls silent"},
+     of(&MqttSettings::station, &StationIdentity::model)},
+    {{.name = "id",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "with rtl_433: the id of the station that is read; empty: any. Many stations have another one after a "
+              "change of batteries"},
+     of(&MqttSettings::station, &StationIdentity::id)},
+    {{.name = "channel",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "with rtl_433: the channel of the station that is read, such as A or 1; empty: any"},
+     of(&MqttSettings::station, &StationIdentity::channel)},
+    {{.name = "topic",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "the topic of the speed, and of quantities without a topic of their own; + matches any level; at most "
+              "100 readings a second are taken, of messages of at most 64 KiB"},
+     of(&MqttSettings::speed, &MqttSource::topic)},
+    {{.name = "speed_path",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "JSON pointer to the speed, such as /TX23/Speed/Act; empty takes the preset's"},
+     &MqttKeys::speed_path},
+    {{.name = "direction_topic", .unit = "", .default_value = std::string(""), .help = "the direction's own topic"},
+     of(&MqttSettings::direction, &MqttSource::topic)},
+    {{.name = "direction_path",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "JSON pointer to the direction in degrees; empty takes the preset's"},
+     &MqttKeys::direction_path},
+    {{.name = "gust_topic", .unit = "", .default_value = std::string(""), .help = "the gust's own topic"},
+     of(&MqttSettings::gust, &MqttSource::topic)},
+    {{.name = "gust_path",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "JSON pointer to the gust; empty takes the preset's"},
+     &MqttKeys::gust_path},
+    {{.name = "speed_unit",
+      .unit = "",
+      .default_value = std::string("preset"),
+      .help = "the unit of speed and gust, where the message does not say it (Tasmota's SpeedUnit, rtl_433's keys); "
+              "\"preset\" takes the preset's",
+      .choices = kMqttUnits},
+     &MqttKeys::speed_unit},
+    {{"hold", "s", 60.0, 0.1, 86400.0, "a direction or gust is used for this long with speeds that come without one"},
+     of(&MqttSettings::hold),
+     from_seconds},
+    {{"silence", "s", 900.0, 0.1, 86400.0, "without a message for this long the publisher counts as stopped"},
+     of(&MqttSettings::silence),
+     from_seconds},
+    {{.name = "on_change",
+      .unit = "",
+      .default_value = false,
+      .help = "the publisher speaks on change only (Home Assistant's statestream): a silence says that the wind is "
+              "unchanged, for as long as `silence`, which has to be longer than the longest calm"},
+     &MqttKeys::speaks_on_change},
+    {{"keep_alive", "s", std::int64_t{15}, 5, 3600, "a broker that sends nothing for this long is pinged"},
+     of(&MqttSettings::subscription, &MqttSubscription::keep_alive),
+     [](std::int64_t time_s) { return std::chrono::seconds(time_s); }},
 };
 
 /// A direction or gust that has come, and when. It is kept for the speeds that come without one.
@@ -397,57 +420,45 @@ std::vector<MqttPlace> places_of(const std::string& path, std::span<const Preset
   return places;
 }
 
-bool has_own_unit(const ParameterValues& values) {
-  return values.text("speed_unit") != "preset";
-}
-
-MqttSource speed_source_of(const ParameterValues& values) {
-  const MqttPreset& preset = mqtt_preset_of(values.text("preset"));
-  MqttSource speed = {.topic = values.text("topic").empty() ? std::string(preset.topic) : values.text("topic"),
-                      .places = places_of(values.text("speed_path"), preset.speed, has_own_unit(values))};
+MqttSource speed_source_of(const MqttKeys& keys) {
+  const MqttPreset& preset = *keys.settings.preset;
+  const std::string& topic = keys.settings.speed.topic;
+  MqttSource speed = {.topic = topic.empty() ? std::string(preset.topic) : topic,
+                      .places = places_of(keys.speed_path, preset.speed, keys.has_own_unit())};
   if (speed.topic.empty()) throw std::runtime_error("topic: is missing; give the topic that the speed is published on");
   if (speed.places.empty()) speed.places.emplace_back();
   return speed;
 }
 
-std::uint16_t broker_port_of(const ParameterValues& values) {
-  const std::int64_t port = values.integer("port");
-  return static_cast<std::uint16_t>(port != 0 ? port : values.flag("tls") ? 8883 : 1883);
+std::uint16_t broker_port_of(const MqttSubscription& subscription) {
+  const std::uint16_t usual = subscription.uses_tls ? 8883 : 1883;
+  return subscription.port != 0 ? subscription.port : usual;
 }
 
 MqttSettings mqtt_settings_of(const ParameterValues& values) {
-  MqttSettings settings;
-  settings.preset = &mqtt_preset_of(values.text("preset"));
+  const MqttKeys keys = kMqttFields.of(values);
+  MqttSettings settings = keys.settings;
   const MqttPreset& preset = *settings.preset;
-  settings.has_own_unit = has_own_unit(values);
+  settings.has_own_unit = keys.has_own_unit();
   settings.metres_per_second =
-      sensor::metres_per_second_in(settings.has_own_unit ? values.text("speed_unit") : preset.unit);
+      sensor::metres_per_second_in(settings.has_own_unit ? std::string_view(keys.speed_unit) : preset.unit);
 
-  settings.speed = speed_source_of(values);
+  settings.speed = speed_source_of(keys);
 
   // Without a topic of its own a quantity comes with the speed, if its place in the message is known.
-  const auto source_of = [&](std::string_view topic, std::string_view path, std::span<const PresetPlace> known) {
-    MqttSource source = {values.text(topic), places_of(values.text(path), known, settings.has_own_unit)};
+  const auto complete = [&](MqttSource& source, const std::string& path, std::span<const PresetPlace> known) {
+    source.places = places_of(path, known, settings.has_own_unit);
     if (source.topic.empty() && !source.places.empty()) source.topic = settings.speed.topic;
     if (source.places.empty()) source.places.emplace_back();
-    return source;
   };
-  settings.direction = source_of("direction_topic", "direction_path", preset.direction);
-  settings.gust = source_of("gust_topic", "gust_path", preset.gust);
-  settings.station = {.model = values.text("model"), .id = values.text("id"), .channel = values.text("channel")};
+  complete(settings.direction, keys.direction_path, preset.direction);
+  complete(settings.gust, keys.gust_path, preset.gust);
   if (!settings.station.is_empty() && !preset.names_stations)
     throw std::runtime_error("model, id, channel: are for preset \"rtl_433\" alone; leave them out");
-  settings.hold = from_seconds(values.number("hold"));
-  settings.silence = from_seconds(values.number("silence"));
 
-  bus::MqttSubscription& subscription = settings.subscription;
-  subscription.host = values.text("host");
-  subscription.uses_tls = values.flag("tls");
-  subscription.port = broker_port_of(values);
-  subscription.user = values.text("user");
+  MqttSubscription& subscription = settings.subscription;
+  subscription.port = broker_port_of(subscription);
   subscription.password = sensor::secret_of(values, "password");
-  subscription.ca_file = values.text("ca_file");
-  subscription.keep_alive = std::chrono::seconds(values.integer("keep_alive"));
   for (const MqttSource* const source : {&settings.speed, &settings.direction, &settings.gust}) {
     const bool is_new = std::ranges::count(subscription.topics, source->topic) == 0;
     if (!source->topic.empty() && is_new) subscription.topics.push_back(source->topic);
@@ -473,23 +484,26 @@ bool topic_covers(const std::string& wide, const std::string& narrow) {
 }
 
 sensor::ValueSelection mqtt_selection(const ParameterValues& values) {
-  const MqttSource speed = speed_source_of(values);
+  const MqttKeys keys = kMqttFields.of(values);
+  const MqttSource speed = speed_source_of(keys);
+  const StationIdentity& station = keys.settings.station;
   const auto pointer_of = [](const MqttPlace& place) { return place.is_json() ? place.pointer : "the whole message"; };
   std::string pointers;
   for (const MqttPlace& place : speed.places) pointers += (pointers.empty() ? "" : ",") + pointer_of(place);
   return {.device = "MQTT broker " + bus::device_of({.kind = bus::BytePortKind::kTcpClient,
-                                                     .host = values.text("host"),
-                                                     .port = broker_port_of(values)}),
+                                                     .host = keys.settings.subscription.host,
+                                                     .port = broker_port_of(keys.settings.subscription)}),
           .device_keys = "host, port",
           .parts = {{.key = "topic", .value = speed.topic, .covers = topic_covers},
                     {.key = "speed_path", .value = std::move(pointers), .covers = sensor::list_covers},
-                    {.key = "model", .value = values.text("model")},
-                    {.key = "id", .value = values.text("id")},
-                    {.key = "channel", .value = values.text("channel")}}};
+                    {.key = "model", .value = station.model},
+                    {.key = "id", .value = station.id},
+                    {.key = "channel", .value = station.channel}}};
 }
 
 double mqtt_unchanged_for_s(const ParameterValues& values) {
-  return values.flag("on_change") ? values.number("silence") : 0.0;
+  const MqttKeys keys = kMqttFields.of(values);
+  return keys.speaks_on_change ? seconds(keys.settings.silence) : 0.0;
 }
 
 }  // namespace
@@ -498,7 +512,7 @@ extern const sensor::DriverDescription kMqttDriver;
 const sensor::DriverDescription kMqttDriver{
     .name = "mqtt",
     .summary = "wind that is published on an MQTT broker, as a number or in JSON",
-    .parameters = kMqttParameters,
+    .parameters = kMqttFields.parameters(),
     .open = open_mqtt,
     .selection = mqtt_selection,
     .unchanged_for_s = mqtt_unchanged_for_s};

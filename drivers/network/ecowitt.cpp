@@ -7,7 +7,6 @@
 // published when they change, or when the anemometer must have spoken again.
 #include "drivers/decode/network/ecowitt.hpp"
 
-#include <array>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -18,48 +17,38 @@
 #include "drivers/network/ecowitt_finder.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::network {
 namespace {
-
-const std::array kEcowittParameters = {
-    Parameter{.name = "host",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "the gateway's name or address; its router should always give it the same"},
-    Parameter{.name = "port",
-              .unit = "",
-              .default_value = std::int64_t{45000},
-              .min = 1,
-              .max = 65535,
-              .help = "the TCP port of the gateway's local interface"},
-    Parameter{.name = "sensor_interval",
-              .unit = "s",
-              .default_value = 16.0,
-              .min = 0.1,
-              .max = 3600.0,
-              .help =
-                  "how often the anemometer speaks: WH65, WS68, WS69 16 s; WS90 8.8 s; WS80 4.75 s; values that have "
-                  "not changed are a new reading only after this time"},
-    Parameter{.name = "poll_interval",
-              .unit = "s",
-              .default_value = 4.0,
-              .min = 0.1,
-              .max = 3600.0,
-              .help = "how often the gateway is asked; at most half of sensor_interval shows each change in time"},
-    Parameter{.name = "response_timeout",
-              .unit = "s",
-              .default_value = 3.0,
-              .min = 0.1,
-              .max = 60.0,
-              .help = "longest wait for a connection, and for a reply"},
-};
 
 struct EcowittSettings {
   bus::BytePortAddress port{.kind = bus::BytePortKind::kTcpClient};
   Nanoseconds sensor_interval = std::chrono::seconds(16);
   Nanoseconds poll_interval = std::chrono::seconds(4);
   Nanoseconds response_timeout = std::chrono::seconds(3);
+};
+
+const Fields<EcowittSettings> kEcowittFields = {
+    {{.name = "host",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "the gateway's name or address; its router should always give it the same"},
+     [](EcowittSettings& settings) -> std::string& { return settings.port.host; }},
+    {{"port", "", std::int64_t{45000}, 1, 65535, "the TCP port of the gateway's local interface"},
+     [](EcowittSettings& settings) -> std::uint16_t& { return settings.port.port; }},
+    {{"sensor_interval", "s", 16.0, 0.1, 3600.0,
+      "how often the anemometer speaks: WH65, WS68, WS69 16 s; WS90 8.8 s; WS80 4.75 s; values that have not changed "
+      "are a new reading only after this time"},
+     &EcowittSettings::sensor_interval,
+     from_seconds},
+    {{"poll_interval", "s", 4.0, 0.1, 3600.0,
+      "how often the gateway is asked; at most half of sensor_interval shows each change in time"},
+     &EcowittSettings::poll_interval,
+     from_seconds},
+    {{"response_timeout", "s", 3.0, 0.1, 60.0, "longest wait for a connection, and for a reply"},
+     &EcowittSettings::response_timeout,
+     from_seconds},
 };
 
 class EcowittSensor final : public sensor::ReopeningSensor {
@@ -164,12 +153,7 @@ class EcowittSensor final : public sensor::ReopeningSensor {
 };
 
 EcowittSettings ecowitt_settings_of(const ParameterValues& values) {
-  EcowittSettings settings;
-  settings.port.host = values.text("host");
-  settings.port.port = static_cast<std::uint16_t>(values.integer("port"));
-  settings.sensor_interval = from_seconds(values.number("sensor_interval"));
-  settings.poll_interval = from_seconds(values.number("poll_interval"));
-  settings.response_timeout = from_seconds(values.number("response_timeout"));
+  EcowittSettings settings = kEcowittFields.of(values);
   settings.port.connect_timeout = settings.response_timeout;
   return settings;
 }
@@ -191,7 +175,7 @@ extern const sensor::DriverDescription kEcowittDriver;
 const sensor::DriverDescription kEcowittDriver{
     .name = "ecowitt",
     .summary = "gateways of Ecowitt and Fine Offset (GW1000, GW1100, GW2000), asked over the local network",
-    .parameters = kEcowittParameters,
+    .parameters = kEcowittFields.parameters(),
     .open = open_ecowitt,
     .find_in_network = find_ecowitt_gateways,
     .selection = ecowitt_selection};

@@ -9,7 +9,6 @@
 // Both kinds are taken at any path, unless one is set. What is taken is answered with 200; an answer from 400 on says
 // in one line what is wrong. Who may send is a choice, as nothing in a push proves whose it is.
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -26,6 +25,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
+#include "engine/base/fields.hpp"
 #include "engine/base/known_host.hpp"
 #include "engine/base/printable_text.hpp"
 
@@ -39,46 +39,51 @@ constexpr int kSilentPushPauses = 5;
 /// Of a host that a gateway names by mistake.
 constexpr std::size_t kShownHostCharacters = 64;
 
-const std::array kEcowittPushParameters = {
-    Parameter{.name = "host",
-              .unit = "",
-              .default_value = std::string("127.0.0.1"),
-              .help = "the local address to listen at: this machine's in the gateway's network; 127.0.0.1 hears this "
-                      "machine only, 0.0.0.0 listens at all"},
-    Parameter{.name = "port",
-              .unit = "",
-              .default_value = std::int64_t{8090},
-              .min = 1,
-              .max = 65535,
-              .help = "the TCP port to listen at; each sensor of this driver has one of its own"},
-    Parameter{.name = "from",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "who may push: addresses and nets separated by commas (192.168.1.30, 10.0.0.0/8); 0.0.0.0/0: "
-                      "any; may be empty only where host hears this machine alone"},
-    Parameter{.name = "host_name",
-              .unit = "",
-              .default_value = std::string(""),
-              .help =
-                  "what is set as Server IP/Hostname in the gateway, if it is neither an address of this machine nor "
-                  "its own name: pushes to other names are refused"},
-    Parameter{.name = "path",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "the path that is taken, as it is set in the gateway: /data/report/; empty: any"},
+struct EcowittPushKeys {
+  Address address;
+  std::string from;
+  std::string host_name;
+  std::string path;
+  Nanoseconds silence{};
+};
+
+const Fields<EcowittPushKeys> kEcowittPushFields = {
+    {{.name = "host",
+      .unit = "",
+      .default_value = std::string("127.0.0.1"),
+      .help = "the local address to listen at: this machine's in the gateway's network; 127.0.0.1 hears this machine "
+              "only, 0.0.0.0 listens at all"},
+     [](EcowittPushKeys& keys) -> std::string& { return keys.address.host; }},
+    {{"port", "", std::int64_t{8090}, 1, 65535,
+      "the TCP port to listen at; each sensor of this driver has one of its own"},
+     [](EcowittPushKeys& keys) -> std::uint16_t& { return keys.address.port; }},
+    {{.name = "from",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "who may push: addresses and nets separated by commas (192.168.1.30, 10.0.0.0/8); 0.0.0.0/0: any; may be "
+              "empty only where host hears this machine alone"},
+     &EcowittPushKeys::from},
+    {{.name = "host_name",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "what is set as Server IP/Hostname in the gateway, if it is neither an address of this machine nor its "
+              "own name: pushes to other names are refused"},
+     &EcowittPushKeys::host_name},
+    {{.name = "path",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "the path that is taken, as it is set in the gateway: /data/report/; empty: any"},
+     &EcowittPushKeys::path},
     Parameter{.name = "station_key",
               .unit = "",
               .default_value = Secret(),
               .help = "the station that is taken: its PASSKEY (Ecowitt, Ambient Weather) or ID (Wunderground); empty: "
                       "the first one that pushes, until it falls silent, with a warning while there are others; no log "
                       "and no recording shows it"},
-    Parameter{
-        .name = "silence",
-        .unit = "s",
-        .default_value = 300.0,
-        .min = 0.1,
-        .max = 86400.0,
-        .help = "without wind for this long, and for five times its usual interval, the station counts as silent"},
+    {{"silence", "s", 300.0, 0.1, 86400.0,
+      "without wind for this long, and for five times its usual interval, the station counts as silent"},
+     &EcowittPushKeys::silence,
+     from_seconds},
 };
 
 constexpr std::string_view kEcowittPushSetup =
@@ -301,31 +306,26 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
   bool is_silent_ = true;
 };
 
-Address push_address_of(const ParameterValues& values) {
-  return {.host = values.text("host"), .port = static_cast<std::uint16_t>(values.integer("port"))};
-}
-
 /// Throws, naming the setting, where they cannot work together.
 EcowittPushSettings ecowitt_push_settings_of(const ParameterValues& values) {
+  const EcowittPushKeys keys = kEcowittPushFields.of(values);
   EcowittPushSettings settings;
-  settings.address = push_address_of(values);
+  settings.address = keys.address;
   settings.station_key = values.secret("station_key");
-  settings.silence = from_seconds(values.number("silence"));
+  settings.silence = keys.silence;
+  settings.host_names = {boost::asio::ip::host_name(), keys.host_name};
 
-  settings.host_names = {boost::asio::ip::host_name(), values.text("host_name")};
-
-  const std::string& path = values.text("path");
-  if (!path.empty() && !path.starts_with('/'))
+  if (!keys.path.empty() && !keys.path.starts_with('/'))
     throw std::runtime_error("path: must begin with a slash, as in /data/report/");
-  settings.path = decode::network::split_push_target(path).path;
+  settings.path = decode::network::split_push_target(keys.path).path;
 
   const std::string& host = settings.address.host;
   const auto is_loopback = bus::is_loopback(host);
   if (!is_loopback) throw std::runtime_error("host: " + is_loopback.error().message);
   settings.is_for_this_machine = *is_loopback;
-  auto from = bus::SenderFilter::parse(values.text("from"));
+  auto from = bus::SenderFilter::parse(keys.from);
   if (!from) throw std::runtime_error("from: " + from.error().message);
-  if (values.text("from").empty() && !*is_loopback) {
+  if (keys.from.empty() && !*is_loopback) {
     throw std::runtime_error("from: is missing; host " + host +
                              " hears other machines: name the gateway (192.168.1.30) or its net (192.168.1.0/24), or "
                              "0.0.0.0/0 for any");
@@ -339,7 +339,7 @@ std::unique_ptr<sensor::Sensor> open_ecowitt_push(const ParameterValues& values)
 }
 
 std::vector<sensor::DeviceClaim> ecowitt_push_claims(const ParameterValues& values) {
-  return sensor::claims_of(fmt::format("TCP port {}", push_address_of(values).port));
+  return sensor::claims_of(fmt::format("TCP port {}", kEcowittPushFields.of(values).address.port));
 }
 
 }  // namespace
@@ -348,13 +348,14 @@ extern const sensor::DriverDescription kEcowittPushDriver;
 const sensor::DriverDescription kEcowittPushDriver{
     .name = "ecowitt-push",
     .summary = "stations that push their values here by HTTP: Ecowitt, Ambient Weather, Wunderground",
-    .parameters = kEcowittPushParameters,
+    .parameters = kEcowittPushFields.parameters(),
     .open = open_ecowitt_push,
     .claims = ecowitt_push_claims,
     .selection =
         [](const ParameterValues& values) {
-          return sensor::ValueSelection{.device = fmt::format("pushes to TCP port {}", push_address_of(values).port),
-                                        .device_keys = "port"};
+          return sensor::ValueSelection{
+              .device = fmt::format("pushes to TCP port {}", kEcowittPushFields.of(values).address.port),
+              .device_keys = "port"};
         },
     .device_setup = kEcowittPushSetup};
 

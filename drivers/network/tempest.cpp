@@ -6,7 +6,6 @@
 #include "drivers/decode/network/tempest.hpp"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -21,6 +20,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::network {
 namespace {
@@ -33,40 +33,42 @@ constexpr Nanoseconds kTempestWait = std::chrono::milliseconds(250);
 /// So many of its usual pauses are silence.
 constexpr int kSilentPauses = 5;
 
-const std::array kTempestParameters = {
-    Parameter{.name = "serial_number",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "the station, as it says on it: ST-00000512 (Tempest), SK-00008453 (Sky); empty: the first one "
-                      "that is heard, with a warning while there are others"},
-    Parameter{.name = "port",
-              .unit = "",
-              .default_value = std::int64_t{50222},
-              .min = 1,
-              .max = 65535,
-              .help = "the UDP port that hubs broadcast to; other programs on this machine may listen there, too"},
-    Parameter{.name = "host",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "the local address to listen at; empty: all, which broadcasts need"},
-    Parameter{.name = "from",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "the hubs that are heard: addresses and nets (192.168.1.20, 10.0.0.0/8) separated by commas; "
-                      "empty: any; at most 100 readings a second are taken"},
-    Parameter{
-        .name = "silence",
-        .unit = "s",
-        .default_value = 60.0,
-        .min = 0.1,
-        .max = 86400.0,
-        .help = "without wind for this long, and for five times its usual interval, the station counts as silent"},
-};
-
 struct TempestSettings {
   bus::BytePortAddress port{.kind = bus::BytePortKind::kUdp, .is_port_shared = true};
   std::string serial_number;
   Nanoseconds silence = std::chrono::seconds(60);
+};
+
+template <class Member>
+auto of(Member bus::BytePortAddress::*member) {
+  return [member](TempestSettings& settings) -> Member& { return settings.port.*member; };
+}
+
+const Fields<TempestSettings> kTempestFields = {
+    {{.name = "serial_number",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "the station, as it says on it: ST-00000512 (Tempest), SK-00008453 (Sky); empty: the first one that is "
+              "heard, with a warning while there are others"},
+     &TempestSettings::serial_number},
+    {{"port", "", std::int64_t{50222}, 1, 65535,
+      "the UDP port that hubs broadcast to; other programs on this machine may listen there, too"},
+     of(&bus::BytePortAddress::port)},
+    {{.name = "host",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "the local address to listen at; empty: all, which broadcasts need"},
+     of(&bus::BytePortAddress::host)},
+    {{.name = "from",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "the hubs that are heard: addresses and nets (192.168.1.20, 10.0.0.0/8) separated by commas; empty: any; "
+              "at most 100 readings a second are taken"},
+     of(&bus::BytePortAddress::senders)},
+    {{"silence", "s", 60.0, 0.1, 86400.0,
+      "without wind for this long, and for five times its usual interval, the station counts as silent"},
+     &TempestSettings::silence,
+     from_seconds},
 };
 
 class TempestSensor final : public sensor::ReopeningSensor {
@@ -186,18 +188,8 @@ class TempestSensor final : public sensor::ReopeningSensor {
   decode::network::TempestWinds winds_;
 };
 
-TempestSettings tempest_settings_of(const ParameterValues& values) {
-  TempestSettings settings;
-  settings.port.host = values.text("host");
-  settings.port.port = static_cast<std::uint16_t>(values.integer("port"));
-  settings.port.senders = values.text("from");
-  settings.serial_number = values.text("serial_number");
-  settings.silence = from_seconds(values.number("silence"));
-  return settings;
-}
-
 std::unique_ptr<sensor::Sensor> open_tempest(const ParameterValues& values) {
-  TempestSettings settings = tempest_settings_of(values);
+  TempestSettings settings = kTempestFields.of(values);
   if (const auto filter = bus::SenderFilter::parse(settings.port.senders); !filter)
     throw std::runtime_error("from: " + filter.error().message);
   if (const std::string& host = settings.port.host; !host.empty()) {
@@ -209,11 +201,11 @@ std::unique_ptr<sensor::Sensor> open_tempest(const ParameterValues& values) {
 
 /// Sensors of different stations share the port.
 std::vector<sensor::DeviceClaim> tempest_claims(const ParameterValues& values) {
-  return {{.device = bus::device_of(tempest_settings_of(values).port), .is_shared = true}};
+  return {{.device = bus::device_of(kTempestFields.of(values).port), .is_shared = true}};
 }
 
 sensor::ValueSelection tempest_selection(const ParameterValues& values) {
-  const TempestSettings settings = tempest_settings_of(values);
+  const TempestSettings settings = kTempestFields.of(values);
   return sensor::selection_at(settings.port,
                               {{.key = "serial_number", .value = settings.serial_number},
                                {.key = "from", .value = settings.port.senders, .covers = bus::senders_cover}});
@@ -225,7 +217,7 @@ extern const sensor::DriverDescription kTempestDriver;
 const sensor::DriverDescription kTempestDriver{
     .name = "tempest",
     .summary = "weather stations of WeatherFlow (Tempest, Sky), by their hub's broadcasts in the local network",
-    .parameters = kTempestParameters,
+    .parameters = kTempestFields.parameters(),
     .open = open_tempest,
     .find_in_network = find_tempest_stations,
     .claims = tempest_claims,

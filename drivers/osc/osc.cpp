@@ -11,7 +11,6 @@
 //
 // Address and order of the arguments are configurable; they are numbers of any of OSC's types. An argument that is no
 // number, or missing, is an unknown value.
-#include <array>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -24,6 +23,7 @@
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/sensor/speed_unit.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::osc {
 namespace {
@@ -33,65 +33,6 @@ constexpr Nanoseconds kOscWait = std::chrono::milliseconds(250);
 /// The time tag of a message may be so far ahead of our clock.
 constexpr Nanoseconds kFarthestAhead = std::chrono::seconds(1);
 
-const std::array kOscParameters = {
-    Parameter{.name = "port",
-              .unit = "",
-              .default_value = std::int64_t{9000},
-              .min = 1,
-              .max = 65535,
-              .help = "the UDP port that messages are received on"},
-    Parameter{.name = "host",
-              .unit = "",
-              .default_value = std::string("127.0.0.1"),
-              .help = "the local address to listen on: 127.0.0.1 hears this machine only, 0.0.0.0 listens on all; or a "
-                      "multicast address"},
-    Parameter{.name = "from",
-              .unit = "",
-              .default_value = std::string(""),
-              .help =
-                  "who may send: addresses and nets separated by commas (192.168.1.20, 10.0.0.0/8); 0.0.0.0/0: any; "
-                  "may be empty only where host hears this machine alone"},
-    Parameter{
-        .name = "address",
-        .unit = "",
-        .default_value = std::string("/wind"),
-        .help = "the messages' OSC address, or a pattern: /station/*/wind; at most 100 readings a second are taken"},
-    Parameter{.name = "speed_argument",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = 63,
-              .help = "which argument is the speed; the first is 0"},
-    Parameter{.name = "direction_argument",
-              .unit = "",
-              .default_value = std::int64_t{1},
-              .min = -1,
-              .max = 63,
-              .help = "which argument is the direction that the wind comes from, in degrees; -1: none"},
-    Parameter{.name = "gust_argument",
-              .unit = "",
-              .default_value = std::int64_t{-1},
-              .min = -1,
-              .max = 63,
-              .help = "which argument is the gust; -1: none"},
-    Parameter{.name = "speed_unit",
-              .unit = "",
-              .default_value = std::string("m/s"),
-              .help = "the unit of speed and gust",
-              .choices = sensor::kSpeedUnitNames},
-    Parameter{.name = "silence",
-              .unit = "s",
-              .default_value = 5.0,
-              .min = 0.1,
-              .max = 86400.0,
-              .help = "without a message for this long the sender counts as stopped"},
-    Parameter{.name = "on_change",
-              .unit = "",
-              .default_value = false,
-              .help = "the sender speaks on change only: a silence says that the wind is unchanged, for as long as "
-                      "`silence`, which has to be longer than the longest calm"},
-};
-
 struct OscSettings {
   bus::BytePortAddress port{.kind = bus::BytePortKind::kUdp};
   std::string address;
@@ -100,6 +41,57 @@ struct OscSettings {
   std::int64_t gust_argument = -1;
   double metres_per_second = 1.0;
   Nanoseconds silence = std::chrono::seconds(5);
+  bool speaks_on_change = false;  ///< a silence says that the wind is unchanged
+};
+
+template <class Member>
+auto of(Member bus::BytePortAddress::*member) {
+  return [member](OscSettings& settings) -> Member& { return settings.port.*member; };
+}
+
+const Fields<OscSettings> kOscFields = {
+    {{"port", "", std::int64_t{9000}, 1, 65535, "the UDP port that messages are received on"},
+     of(&bus::BytePortAddress::port)},
+    {{.name = "host",
+      .unit = "",
+      .default_value = std::string("127.0.0.1"),
+      .help = "the local address to listen on: 127.0.0.1 hears this machine only, 0.0.0.0 listens on all; or a "
+              "multicast address"},
+     of(&bus::BytePortAddress::host)},
+    {{.name = "from",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "who may send: addresses and nets separated by commas (192.168.1.20, 10.0.0.0/8); 0.0.0.0/0: any; may be "
+              "empty only where host hears this machine alone"},
+     of(&bus::BytePortAddress::senders)},
+    {{.name = "address",
+      .unit = "",
+      .default_value = std::string("/wind"),
+      .help = "the messages' OSC address, or a pattern: /station/*/wind; at most 100 readings a second are taken"},
+     &OscSettings::address},
+    {{"speed_argument", "", std::int64_t{0}, 0, 63, "which argument is the speed; the first is 0"},
+     &OscSettings::speed_argument},
+    {{"direction_argument", "", std::int64_t{1}, -1, 63,
+      "which argument is the direction that the wind comes from, in degrees; -1: none"},
+     &OscSettings::direction_argument},
+    {{"gust_argument", "", std::int64_t{-1}, -1, 63, "which argument is the gust; -1: none"},
+     &OscSettings::gust_argument},
+    {{.name = "speed_unit",
+      .unit = "",
+      .default_value = std::string("m/s"),
+      .help = "the unit of speed and gust",
+      .choices = sensor::kSpeedUnitNames},
+     &OscSettings::metres_per_second,
+     sensor::metres_per_second_in},
+    {{"silence", "s", 5.0, 0.1, 86400.0, "without a message for this long the sender counts as stopped"},
+     &OscSettings::silence,
+     from_seconds},
+    {{.name = "on_change",
+      .unit = "",
+      .default_value = false,
+      .help = "the sender speaks on change only: a silence says that the wind is unchanged, for as long as `silence`, "
+              "which has to be longer than the longest calm"},
+     &OscSettings::speaks_on_change},
 };
 
 std::optional<double> argument_of(const bus::OscMessage& message, std::int64_t which) {
@@ -231,29 +223,15 @@ void check_senders(const std::string& host, const std::string& from) {
   }
 }
 
-bus::BytePortAddress port_of(const ParameterValues& values) {
-  return {.kind = bus::BytePortKind::kUdp,
-          .host = values.text("host"),
-          .port = static_cast<std::uint16_t>(values.integer("port")),
-          .senders = values.text("from")};
-}
-
 std::unique_ptr<sensor::Sensor> open_osc(const ParameterValues& values) {
-  OscSettings settings;
-  settings.port = port_of(values);
-  settings.address = values.text("address");
-  settings.speed_argument = values.integer("speed_argument");
-  settings.direction_argument = values.integer("direction_argument");
-  settings.gust_argument = values.integer("gust_argument");
-  settings.metres_per_second = sensor::metres_per_second_in(values.text("speed_unit"));
-  settings.silence = from_seconds(values.number("silence"));
+  OscSettings settings = kOscFields.of(values);
   check_senders(settings.port.host, settings.port.senders);
   if (!settings.address.starts_with('/')) throw std::runtime_error("address: must begin with a slash, as in /wind");
   return std::make_unique<OscSensor>(std::move(settings));
 }
 
 std::vector<sensor::DeviceClaim> osc_claims(const ParameterValues& values) {
-  return sensor::claims_of(bus::sole_device_of(port_of(values)));
+  return sensor::claims_of(bus::sole_device_of(kOscFields.of(values).port));
 }
 
 bool osc_address_covers(const std::string& wide, const std::string& narrow) {
@@ -261,14 +239,16 @@ bool osc_address_covers(const std::string& wide, const std::string& narrow) {
 }
 
 sensor::ValueSelection osc_selection(const ParameterValues& values) {
-  return sensor::selection_at(port_of(values),
-                              {{.key = "address", .value = values.text("address"), .covers = osc_address_covers},
-                               {.key = "from", .value = values.text("from"), .covers = bus::senders_cover},
-                               {.key = "speed_argument", .value = std::to_string(values.integer("speed_argument"))}});
+  const OscSettings settings = kOscFields.of(values);
+  return sensor::selection_at(settings.port,
+                              {{.key = "address", .value = settings.address, .covers = osc_address_covers},
+                               {.key = "from", .value = settings.port.senders, .covers = bus::senders_cover},
+                               {.key = "speed_argument", .value = std::to_string(settings.speed_argument)}});
 }
 
 double osc_unchanged_for_s(const ParameterValues& values) {
-  return values.flag("on_change") ? values.number("silence") : 0.0;
+  const OscSettings settings = kOscFields.of(values);
+  return settings.speaks_on_change ? seconds(settings.silence) : 0.0;
 }
 
 }  // namespace
@@ -276,7 +256,7 @@ double osc_unchanged_for_s(const ParameterValues& values) {
 extern const sensor::DriverDescription kOscDriver;
 const sensor::DriverDescription kOscDriver{.name = "osc",
                                            .summary = "wind that another program sends as Open Sound Control messages",
-                                           .parameters = kOscParameters,
+                                           .parameters = kOscFields.parameters(),
                                            .open = open_osc,
                                            .claims = osc_claims,
                                            .selection = osc_selection,

@@ -1,6 +1,5 @@
 // A recording in place of a sensor: plays a .windlog (drivers/windlog) against the clock.
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -15,6 +14,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "drivers/windlog/recording_parts.hpp"
 #include "drivers/windlog/windlog_player.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::recording {
 namespace {
@@ -23,44 +23,66 @@ constexpr Nanoseconds kFirstBackOff = std::chrono::seconds(1);
 constexpr Nanoseconds kMaxBackOff = std::chrono::seconds(30);
 constexpr std::size_t kMaxWaitingOrders = 64;
 
-const std::array<Parameter, 9> kWindlogParameters = {
-    Parameter{.name = "file",
-              .unit = "",
-              .default_value = std::string{},
-              .help = "the recording (.windlog); required; `yuragi import` makes one from CSV"},
-    Parameter{.name = "rate",
-              .unit = "",
-              .default_value = 1.0,
-              .min = 0.01,
-              .max = 1000.0,
-              .help = "seconds of the recording that are played per second",
-              .change = KeyChange::kAtOnce},
-    Parameter{.name = "loop", .unit = "", .default_value = false, .help = "start again at the end"},
-    Parameter{.name = "seam",
-              .unit = "s",
-              .default_value = 5.0,
-              .min = 0.0,
-              .max = 600.0,
-              .help = "duration of the cross-fade at the end of a loop and at a seek; 0: none"},
-    Parameter{.name = "start",
-              .unit = "",
-              .default_value = std::string{},
-              .help = "where to begin: seconds from the first reading, or a time such as 2018-07-20T14:05:00Z"},
-    Parameter{.name = "same_time_of_day",
-              .unit = "",
-              .default_value = false,
-              .help = "start, and start again, at the present local time of day: on the first day from `start` on that "
-                      "contains it, else at the next later reading"},
-    Parameter{.name = "utc_offset",
-              .unit = "",
-              .default_value = std::string{},
-              .help = "for same_time_of_day, of the place of the recording: hours ahead of UTC (1, -3.5); empty: "
-                      "this machine's time zone"},
-    Parameter{.name = "paused", .unit = "", .default_value = false, .help = "start paused, at the first reading"},
-    Parameter{.name = "sensor",
-              .unit = "",
-              .default_value = std::string{},
-              .help = "name of the recorded sensor; empty: the one with the first reading; *: all, as one"},
+using windlog::PlaybackOptions;
+using windlog::PlayerOptions;
+
+struct ReplayKeys {
+  std::string file;
+  PlayerOptions options;
+  std::string utc_offset;
+};
+
+template <class Member>
+auto of(Member PlayerOptions::*member) {
+  return [member](ReplayKeys& keys) -> Member& { return keys.options.*member; };
+}
+template <class Member>
+auto of(Member PlaybackOptions::*member) {
+  return [member](ReplayKeys& keys) -> Member& { return keys.options.playback.*member; };
+}
+
+const Fields<ReplayKeys> kWindlogFields = {
+    {{.name = "file",
+      .unit = "",
+      .default_value = std::string{},
+      .help = "the recording (.windlog); required; `yuragi import` makes one from CSV"},
+     &ReplayKeys::file},
+    {{.name = "rate",
+      .unit = "",
+      .default_value = 1.0,
+      .min = 0.01,
+      .max = 1000.0,
+      .help = "seconds of the recording that are played per second",
+      .change = KeyChange::kAtOnce},
+     of(&PlayerOptions::rate)},
+    {{.name = "loop", .unit = "", .default_value = false, .help = "start again at the end"},
+     of(&PlaybackOptions::loop)},
+    {{"seam", "s", 5.0, 0.0, 600.0, "duration of the cross-fade at the end of a loop and at a seek; 0: none"},
+     of(&PlayerOptions::seam_s)},
+    {{.name = "start",
+      .unit = "",
+      .default_value = std::string{},
+      .help = "where to begin: seconds from the first reading, or a time such as 2018-07-20T14:05:00Z"},
+     of(&PlaybackOptions::start)},
+    {{.name = "same_time_of_day",
+      .unit = "",
+      .default_value = false,
+      .help = "start, and start again, at the present local time of day: on the first day from `start` on that "
+              "contains it, else at the next later reading"},
+     of(&PlayerOptions::at_time_of_day)},
+    {{.name = "utc_offset",
+      .unit = "",
+      .default_value = std::string{},
+      .help = "for same_time_of_day, of the place of the recording: hours ahead of UTC (1, -3.5); empty: this "
+              "machine's time zone"},
+     &ReplayKeys::utc_offset},
+    {{.name = "paused", .unit = "", .default_value = false, .help = "start paused, at the first reading"},
+     of(&PlayerOptions::is_paused)},
+    {{.name = "sensor",
+      .unit = "",
+      .default_value = std::string{},
+      .help = "name of the recorded sensor; empty: the one with the first reading; *: all, as one"},
+     of(&PlaybackOptions::sensor)},
 };
 
 class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {
@@ -203,34 +225,28 @@ T value_of(const char* parameter, Result<T, Failure> parsed) {
 }
 
 std::unique_ptr<sensor::Sensor> open_windlog(const ParameterValues& values) {
-  const std::filesystem::path file = values.text("file");
+  ReplayKeys keys = kWindlogFields.of(values);
+  const std::filesystem::path file = keys.file;
   if (file.empty()) throw std::runtime_error("windlog: file: name the recording to play");
   if (!windlog::recording_exists(file)) {
     throw std::runtime_error("windlog: file: " + file.string() +
                              ": there is no such recording; `yuragi run --record FILE` or `yuragi import` makes one");
   }
-  windlog::PlayerOptions options;
-  options.playback = {values.text("start"), values.flag("loop"), values.text("sensor")};
-  value_of("start", windlog::check_playback_start(options.playback.start));
-  options.rate = values.number("rate");
-  options.seam_s = values.number("seam");
-  options.is_paused = values.flag("paused");
-  options.at_time_of_day = values.flag("same_time_of_day");
-  options.recorded_offset = value_of("utc_offset", windlog::parse_utc_offset(values.text("utc_offset")));
-  return play_recording(file, std::move(options));
+  value_of("start", windlog::check_playback_start(keys.options.playback.start));
+  keys.options.recorded_offset = value_of("utc_offset", windlog::parse_utc_offset(keys.utc_offset));
+  return play_recording(file, std::move(keys.options));
 }
 
 /// The same readings may be played from two places on.
 sensor::ValueSelection windlog_selection(const ParameterValues& values) {
+  const ReplayKeys keys = kWindlogFields.of(values);
   std::error_code error;
-  const std::string& file = values.text("file");
-  const auto behind_links = std::filesystem::weakly_canonical(file, error);
-  const std::string& recorded = values.text("sensor");
-  const std::string& start = values.text("start");
-  return {.device = "recording " + (error ? file : behind_links.string()),
+  const auto behind_links = std::filesystem::weakly_canonical(keys.file, error);
+  const PlaybackOptions& playback = keys.options.playback;
+  return {.device = "recording " + (error ? keys.file : behind_links.string()),
           .device_keys = "file",
-          .parts = {{.key = "sensor", .value = recorded == "*" ? "" : recorded},
-                    {.key = "start", .value = start.empty() ? "the first reading" : start}}};
+          .parts = {{.key = "sensor", .value = playback.sensor == "*" ? "" : playback.sensor},
+                    {.key = "start", .value = playback.start.empty() ? "the first reading" : playback.start}}};
 }
 
 }  // namespace
@@ -242,7 +258,7 @@ std::unique_ptr<sensor::Sensor> play_recording(std::filesystem::path file, windl
 extern const sensor::DriverDescription kWindlogDriver;
 const sensor::DriverDescription kWindlogDriver{.name = "windlog",
                                                .summary = "plays a recording",
-                                               .parameters = kWindlogParameters,
+                                               .parameters = kWindlogFields.parameters(),
                                                .open = open_windlog,
                                                .selection = windlog_selection,
                                                .plays_recordings = true};

@@ -9,22 +9,15 @@
 
 namespace yuragi::drivers::sensor {
 
-bus::BytePortAddress serial_or_tcp_address(const ParameterValues& values, std::span<const int> bauds) {
-  bus::BytePortAddress address;
-  address.baud = static_cast<int>(values.integer("baud"));
-  address.path = values.text("device");
-  address.host = values.text("host");
-  address.port = static_cast<std::uint16_t>(values.integer("port"));
-  if (values.text("transport") == "tcp") {
-    address.kind = bus::BytePortKind::kTcpClient;
+void check_serial_or_tcp(const bus::BytePortAddress& address, std::span<const int> bauds) {
+  if (address.kind == bus::BytePortKind::kTcpClient) {
     if (address.host.empty()) throw std::runtime_error("host: is missing; transport tcp needs a server to connect to");
-    return address;
+    return;
   }
   if (address.path.empty())
     throw std::runtime_error("device: is missing; transport serial needs a port, such as /dev/ttyUSB0");
   if (std::ranges::find(bauds, address.baud) == bauds.end())
     throw std::runtime_error(fmt::format("baud: is {}; allowed: {}", address.baud, fmt::join(bauds, ", ")));
-  return address;
 }
 
 std::vector<FoundDevice> find_behind_serial_ports(std::string_view before, std::string_view behind) {

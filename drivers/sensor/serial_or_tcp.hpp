@@ -6,17 +6,15 @@
 
 #include "drivers/bus/byte_port.hpp"
 #include "drivers/sensor/found_device.hpp"
-#include "engine/base/parameter.hpp"
 
 namespace yuragi::drivers::sensor {
 
 // What drivers share whose devices are at the end of a serial line: that of this machine, or one that a server in the
 // network has. Thread-safe: yes.
 
-/// The port in the values `transport` ("tcp", or else serial), `device`, `baud`, `host` and `port`. `bauds` are the
-/// rates that the device can have. Throws std::runtime_error, saying what to do, where they cannot work together.
-bus::BytePortAddress serial_or_tcp_address(const ParameterValues& values,
-                                           std::span<const int> bauds = bus::kBytePortBauds);
+/// Of a port that is a serial one, or else TCP: `bauds` are the rates that the device can have. Throws
+/// std::runtime_error, naming the setting and saying what to do, where they cannot work together.
+void check_serial_or_tcp(const bus::BytePortAddress& address, std::span<const int> bauds = bus::kBytePortBauds);
 
 /// The serial ports that are plugged in. Whether such a device is behind one is not known before it is opened. What
 /// else stands in its [[sensor]] table: `before` and `behind` the line of the port, each with its own ends of lines.

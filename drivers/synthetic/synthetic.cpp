@@ -1,43 +1,43 @@
 // Synthetic wind: a sensor that needs no hardware. The daemon's default, and for trying things.
-#include <array>
-
 #include "drivers/sensor/driver.hpp"
+#include "engine/base/fields.hpp"
 #include "engine/wind/turbulence/synthetic_wind.hpp"
 
 namespace yuragi::drivers::synthetic {
 namespace {
 
-const std::array kSyntheticParameters = {
-    Parameter{.name = "speed", .unit = "m/s", .default_value = 5.0, .min = 0.0, .max = 60.0, .help = "mean wind speed"},
-    Parameter{.name = "direction",
-              .unit = "deg",
-              .default_value = 240.0,
-              .min = 0.0,
-              .max = 360.0,
-              .help = "where the wind comes from, clockwise from north"},
-    Parameter{.name = "turbulence",
-              .unit = "",
-              .default_value = 0.3,
-              .min = 0.0,
-              .max = 1.0,
-              .help = "turbulence intensity: standard deviation over mean speed"},
-    Parameter{
-        .name = "rate", .unit = "Hz", .default_value = 4.0, .min = 0.01, .max = 100.0, .help = "readings per second"},
-    Parameter{.name = "seed",
-              .unit = "",
-              .default_value = std::int64_t{1},
-              .min = 0,
-              .help = "the same seed gives the same wind"},
+using wind::turbulence::SyntheticWindSettings;
+
+struct SyntheticKeys {
+  SyntheticWindSettings wind;
+  Nanoseconds interval{};
+};
+
+template <class Member>
+auto of(Member SyntheticWindSettings::*member) {
+  return [member](SyntheticKeys& keys) -> Member& { return keys.wind.*member; };
+}
+
+const Fields<SyntheticKeys> kSyntheticFields = {
+    {{"speed", "m/s", 5.0, 0.0, 60.0, "mean wind speed"}, of(&SyntheticWindSettings::mean_speed_m_s)},
+    {{"direction", "deg", 240.0, 0.0, 360.0, "where the wind comes from, clockwise from north"},
+     of(&SyntheticWindSettings::mean_direction_deg)},
+    {{"turbulence", "", 0.3, 0.0, 1.0, "turbulence intensity: standard deviation over mean speed"},
+     of(&SyntheticWindSettings::turbulence_intensity)},
+    {{"rate", "Hz", 4.0, 0.01, 100.0, "readings per second"},
+     &SyntheticKeys::interval,
+     [](double rate_hz) { return from_seconds(1.0 / rate_hz); }},
+    {{.name = "seed",
+      .unit = "",
+      .default_value = std::int64_t{1},
+      .min = 0,
+      .help = "the same seed gives the same wind"},
+     of(&SyntheticWindSettings::seed)},
 };
 
 class SyntheticSensor final : public sensor::Sensor {
  public:
-  explicit SyntheticSensor(const ParameterValues& values)
-      : wind_({.mean_speed_m_s = values.number("speed"),
-               .mean_direction_deg = values.number("direction"),
-               .turbulence_intensity = values.number("turbulence"),
-               .seed = static_cast<std::uint64_t>(values.integer("seed"))}),
-        interval_(from_seconds(1.0 / values.number("rate"))) {}
+  explicit SyntheticSensor(const SyntheticKeys& keys) : wind_(keys.wind), interval_(keys.interval) {}
 
   MonoTime poll(const sensor::Clock& clock, sensor::SensorSink& sink) override {
     const Instant now = clock.now();
@@ -73,9 +73,9 @@ extern const sensor::DriverDescription kSyntheticDriver;
 const sensor::DriverDescription kSyntheticDriver{
     .name = "synthetic",
     .summary = "seeded synthetic wind; no hardware",
-    .parameters = kSyntheticParameters,
+    .parameters = kSyntheticFields.parameters(),
     .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
-      return std::make_unique<SyntheticSensor>(values);
+      return std::make_unique<SyntheticSensor>(kSyntheticFields.of(values));
     },
     .stated_value =
         [](const ParameterValues&) {

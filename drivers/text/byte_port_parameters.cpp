@@ -1,168 +1,170 @@
 #include "drivers/text/byte_port_parameters.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "drivers/sensor/serial_or_tcp.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::text {
 namespace {
 
+using bus::BytePortAddress;
+using bus::BytePortKind;
+
 constexpr std::array<std::string_view, 4> kByteTransports = {"serial", "tcp", "udp", "file"};
 constexpr std::array<std::string_view, 3> kByteParities = {"none", "even", "odd"};
 
-const std::vector<Parameter>& parameters_of_every_port() {
-  static const std::vector<Parameter> kParameters = {
-      {.name = "transport",
-       .unit = "",
-       .default_value = std::string("serial"),
-       .help = "serial: a serial port; tcp: a server to connect to; udp: datagrams sent to this machine; file: a file "
-               "or named pipe",
-       .choices = kByteTransports},
-      {.name = "device",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
-      {.name = "baud",
-       .unit = "bit/s",
-       .default_value = std::int64_t{9600},
-       .min = bus::kBytePortBauds.front(),
-       .max = bus::kBytePortBauds.back(),
-       .help = "serial: as set in the device; NMEA 0183 has 4800, most anemometers 9600 or 19200"},
-      {.name = "data_bits",
-       .unit = "",
-       .default_value = std::int64_t{8},
-       .min = 7,
-       .max = 8,
-       .help = "serial: data bits of each character"},
-      {.name = "parity",
-       .unit = "",
-       .default_value = std::string("none"),
-       .help = "serial: parity bit of each character",
-       .choices = kByteParities},
-      {.name = "stop_bits",
-       .unit = "",
-       .default_value = std::int64_t{1},
-       .min = 1,
-       .max = 2,
-       .help = "serial: stop bits of each character"},
-      {.name = "host",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "tcp: name or address of the server; udp: the local address to listen at, or a multicast address; "
-               "empty: all addresses of this machine"},
-      {.name = "port",
-       .unit = "",
-       .default_value = std::int64_t{10110},
-       .min = 1,
-       .max = 65535,
-       .help = "tcp, udp: 10110 is registered for NMEA 0183"},
-      {.name = "sender",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "udp: accept datagrams from these only: addresses and nets (192.168.1.0/24) separated by commas; empty: "
-               "from any; at most 100 readings a second are taken"},
-      {.name = "file", .unit = "", .default_value = std::string(""), .help = "file: path of a file or named pipe"},
-      {.name = "play_rate",
-       .unit = "Hz",
-       .default_value = 0.0,
-       .min = 0.0,
-       .max = 1e6,
-       .help = "file: 0 follows what is appended to it; otherwise it is played once from its beginning, with this many "
-               "readings per second"},
-      {.name = "request",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "request for one reading, with its line end (\"?\\r\\n\"); empty: the format's own",
-       .takes_control_characters = true},
-      {.name = "poll_interval",
-       .unit = "s",
-       .default_value = 0.0,
-       .min = 0.0,
-       .max = 3600.0,
-       .help = "interval between requests; 0: the device sends without requests"},
-      {.name = "response_timeout",
-       .unit = "s",
-       .default_value = 0.5,
-       .min = 0.05,
-       .max = 60.0,
-       .help = "longest wait for the reply to a request"},
-      {.name = "silence_timeout",
-       .unit = "s",
-       .default_value = 0.0,
-       .min = 0.0,
-       .max = 86400.0,
-       .help = "a device that is silent for this long is opened again; 0: ten times its usual pause between readings, "
-               "at least 6 s, doubled after each attempt without a reading"},
-  };
-  return kParameters;
+struct BytePortKeys {
+  TextSensorSettings text;
+  std::string file;
+};
+
+template <class Member>
+auto of(Member TextSensorSettings::*member) {
+  return [member](BytePortKeys& keys) -> Member& { return keys.text.*member; };
+}
+template <class Member>
+auto of(Member BytePortAddress::*member) {
+  return [member](BytePortKeys& keys) -> Member& { return keys.text.address.*member; };
 }
 
-/// Of a transport that is neither a serial line nor a server that has one.
-bus::BytePortAddress address_without_a_line(const ParameterValues& values, std::string_view transport) {
-  bus::BytePortAddress address;
-  address.host = values.text("host");
-  address.port = static_cast<std::uint16_t>(values.integer("port"));
-  if (transport == "websocket") {
-    address.kind = bus::BytePortKind::kWebSocket;
-    if (address.host.empty())
-      throw std::runtime_error("host: is missing; transport websocket needs a server to connect to");
-  } else if (transport == "udp") {
-    address.kind = bus::BytePortKind::kUdp;
-  } else if (transport == "can") {
-    address.kind = bus::BytePortKind::kCan;
-    address.path = values.text("interface");
-    if (address.path.empty()) throw std::runtime_error("interface: is missing; transport can needs one, such as can0");
-  } else {
-    address.kind = bus::BytePortKind::kFile;
-    address.path = values.text("file");
-    if (address.path.empty()) throw std::runtime_error("file: is missing; transport file needs its path");
+/// The transports of all drivers, in the order of BytePortKind.
+constexpr std::array<std::string_view, 6> kKinds = {"serial", "tcp", "udp", "websocket", "file", "can"};
+
+BytePortKind kind_of(const std::string& transport) {
+  return static_cast<BytePortKind>(std::ranges::find(kKinds, transport) - kKinds.begin());
+}
+
+char parity_letter(const std::string& word) {
+  return word == "even" ? 'E' : word == "odd" ? 'O' : 'N';
+}
+
+const Fields<BytePortKeys>& byte_port_fields() {
+  static const Fields<BytePortKeys> kPortFields = {
+      {{.name = "transport",
+        .unit = "",
+        .default_value = std::string("serial"),
+        .help = "serial: a serial port; tcp: a server to connect to; udp: datagrams sent to this machine; file: a file "
+                "or named pipe",
+        .choices = kByteTransports},
+       of(&BytePortAddress::kind),
+       kind_of},
+      {{.name = "device",
+        .unit = "",
+        .default_value = std::string(""),
+        .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
+       of(&BytePortAddress::path)},
+      {{"baud", "bit/s", std::int64_t{9600}, bus::kBytePortBauds.front(), bus::kBytePortBauds.back(),
+        "serial: as set in the device; NMEA 0183 has 4800, most anemometers 9600 or 19200"},
+       of(&BytePortAddress::baud)},
+      {{"data_bits", "", std::int64_t{8}, 7, 8, "serial: data bits of each character"},
+       of(&BytePortAddress::data_bits)},
+      {{.name = "parity",
+        .unit = "",
+        .default_value = std::string("none"),
+        .help = "serial: parity bit of each character",
+        .choices = kByteParities},
+       of(&BytePortAddress::parity),
+       parity_letter},
+      {{"stop_bits", "", std::int64_t{1}, 1, 2, "serial: stop bits of each character"},
+       of(&BytePortAddress::stop_bits)},
+      {{.name = "host",
+        .unit = "",
+        .default_value = std::string(""),
+        .help = "tcp: name or address of the server; udp: the local address to listen at, or a multicast address; "
+                "empty: all addresses of this machine"},
+       of(&BytePortAddress::host)},
+      {{"port", "", std::int64_t{10110}, 1, 65535, "tcp, udp: 10110 is registered for NMEA 0183"},
+       of(&BytePortAddress::port)},
+      {{.name = "sender",
+        .unit = "",
+        .default_value = std::string(""),
+        .help = "udp: accept datagrams from these only: addresses and nets (192.168.1.0/24) separated by commas; "
+                "empty: from any; at most 100 readings a second are taken"},
+       of(&BytePortAddress::senders)},
+      {{.name = "file", .unit = "", .default_value = std::string(""), .help = "file: path of a file or named pipe"},
+       &BytePortKeys::file},
+      {{"play_rate", "Hz", 0.0, 0.0, 1e6,
+        "file: 0 follows what is appended to it; otherwise it is played once from its beginning, with this many "
+        "readings per second"},
+       of(&TextSensorSettings::play_rate_hz)},
+      {{.name = "request",
+        .unit = "",
+        .default_value = std::string(""),
+        .help = "request for one reading, with its line end (\"?\\r\\n\"); empty: the format's own",
+        .takes_control_characters = true},
+       of(&TextSensorSettings::request)},
+      {{"poll_interval", "s", 0.0, 0.0, 3600.0, "interval between requests; 0: the device sends without requests"},
+       of(&TextSensorSettings::poll_interval),
+       from_seconds},
+      {{"response_timeout", "s", 0.5, 0.05, 60.0, "longest wait for the reply to a request"},
+       of(&TextSensorSettings::response_timeout),
+       from_seconds},
+      {{"silence_timeout", "s", 0.0, 0.0, 86400.0,
+        "a device that is silent for this long is opened again; 0: ten times its usual pause between readings, at "
+        "least 6 s, doubled after each attempt without a reading"},
+       of(&TextSensorSettings::silence_timeout),
+       from_seconds},
+      {{"delay_after_open", "s", 0.0, 0.0, 60.0,
+        "messages are discarded for this long after opening; an Arduino restarts whenever its port is opened"},
+       of(&TextSensorSettings::delay_after_open),
+       from_seconds},
+  };
+  return kPortFields;
+}
+
+/// Of a port that is neither a serial line nor a server that has one: its path.
+std::string path_of(const BytePortKeys& keys, const ParameterValues& values) {
+  const BytePortAddress& address = keys.text.address;
+  if (address.kind == BytePortKind::kWebSocket && address.host.empty())
+    throw std::runtime_error("host: is missing; transport websocket needs a server to connect to");
+  if (address.kind == BytePortKind::kCan) {
+    const std::string& interface = values.text("interface");
+    if (interface.empty()) throw std::runtime_error("interface: is missing; transport can needs one, such as can0");
+    return interface;
   }
-  return address;
+  if (address.kind == BytePortKind::kFile && keys.file.empty())
+    throw std::runtime_error("file: is missing; transport file needs its path");
+  return address.kind == BytePortKind::kFile ? keys.file : "";
 }
 
 }  // namespace
 
 std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, double delay_after_open_s) {
   std::vector<Parameter> all = std::move(own);
-  const auto& others = parameters_of_every_port();
+  const auto others = byte_port_fields().parameters();
   all.insert(all.end(), others.begin(), others.end());
-  all.push_back(
-      {.name = "delay_after_open",
-       .unit = "s",
-       .default_value = delay_after_open_s,
-       .min = 0.0,
-       .max = 60.0,
-       .help = "messages are discarded for this long after opening; an Arduino restarts whenever its port is opened"});
+  all.back().default_value = delay_after_open_s;
   return all;
 }
 
-bus::BytePortAddress byte_port_address_of(const ParameterValues& values) {
-  const std::string& transport = values.text("transport");
-  bus::BytePortAddress address = transport == "serial" || transport == "tcp"
-                                     ? sensor::serial_or_tcp_address(values)
-                                     : address_without_a_line(values, transport);
-  address.data_bits = static_cast<int>(values.integer("data_bits"));
-  address.parity = values.text("parity") == "even" ? 'E' : values.text("parity") == "odd" ? 'O' : 'N';
-  address.stop_bits = static_cast<int>(values.integer("stop_bits"));
-  address.senders = values.text("sender");
-  address.is_played = values.number("play_rate") > 0.0;
-
-  const bool can_be_polled =
-      address.kind == bus::BytePortKind::kSerial || address.kind == bus::BytePortKind::kTcpClient;
-  if (values.number("poll_interval") > 0.0 && !can_be_polled) {
-    throw std::runtime_error("poll_interval: transport " + transport + " cannot send; a request needs serial or tcp");
+TextSensorSettings text_sensor_settings_of(const ParameterValues& values) {
+  BytePortKeys keys = byte_port_fields().of(values);
+  TextSensorSettings& text = keys.text;
+  BytePortAddress& address = text.address;
+  address.is_played = text.play_rate_hz > 0.0;
+  const bool has_line = address.kind == BytePortKind::kSerial || address.kind == BytePortKind::kTcpClient;
+  if (has_line) {
+    sensor::check_serial_or_tcp(address);
+  } else {
+    address.path = path_of(keys, values);
   }
-  return address;
+  if (text.poll_interval > Nanoseconds::zero() && !has_line) {
+    throw std::runtime_error(fmt::format("poll_interval: transport {} cannot send; a request needs serial or tcp",
+                                         kKinds.at(static_cast<std::size_t>(address.kind))));
+  }
+  if (address.kind != BytePortKind::kSerial) text.delay_after_open = Nanoseconds::zero();
+  return text;
 }
 
 std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values) {
-  return sensor::claims_of(bus::sole_device_of(byte_port_address_of(values)));
-}
-
-sensor::SelectedPart reference_part(const ParameterValues& values) {
-  const std::string& reference = values.text("reference");
-  return {.key = "reference", .value = reference == "auto" ? "" : reference};
+  return sensor::claims_of(bus::sole_device_of(text_sensor_settings_of(values).address));
 }
 
 }  // namespace yuragi::drivers::text

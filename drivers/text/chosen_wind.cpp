@@ -7,9 +7,12 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/fields.hpp"
+
 namespace yuragi::drivers::text {
 namespace {
 
+/// The first is any; then in the order of WindFrame.
 constexpr std::array<std::string_view, 4> kChosenFrames = {"auto", "north", "relative", "true"};
 
 /// Below this no vane turns, and anemometers leave out the direction.
@@ -20,6 +23,32 @@ constexpr Nanoseconds kJoinTime = std::chrono::seconds(2);
 
 bool is_calm(std::optional<double> speed_m_s) {
   return speed_m_s && *speed_m_s < kCalm_m_s;
+}
+
+std::optional<WindFrame> frame_named(const std::string& word) {
+  const auto at = std::ranges::find(kChosenFrames, word) - kChosenFrames.begin();
+  return at > 0 ? std::optional(static_cast<WindFrame>(at - 1)) : std::nullopt;
+}
+
+const Fields<ChosenWindSettings>& chosen_wind_fields() {
+  static const Fields<ChosenWindSettings> kChosenFields = {
+      {{.name = "reference",
+        .unit = "",
+        .default_value = std::string("auto"),
+        .help =
+            "which wind to use where several are sent: from north, relative to the device's mark or the bow "
+            "(apparent), true (from the bow, without the vessel's own motion); auto: the first of these that is sent",
+        .choices = kChosenFrames},
+       &ChosenWindSettings::frame,
+       frame_named},
+      {{"north_offset", "deg", 0.0, -360.0, 360.0,
+        "bearing of the device's north mark, clockwise from north: added to relative and true directions"},
+       &ChosenWindSettings::north_offset_deg},
+      {{"variation", "deg", 0.0, -180.0, 180.0,
+        "magnetic variation of the place, east positive: added to magnetic directions"},
+       &ChosenWindSettings::variation_deg},
+  };
+  return kChosenFields;
 }
 
 }  // namespace
@@ -38,39 +67,17 @@ WindFrame frame_of_reference(decode::WindReference reference) noexcept {
   return WindFrame::kRelative;
 }
 
-std::vector<Parameter> chosen_wind_parameters() {
-  return {
-      {.name = "reference",
-       .unit = "",
-       .default_value = std::string("auto"),
-       .help =
-           "which wind to use where several are sent: from north, relative to the device's mark or the bow "
-           "(apparent), true (from the bow, without the vessel's own motion); auto: the first of these that is sent",
-       .choices = kChosenFrames},
-      {.name = "north_offset",
-       .unit = "deg",
-       .default_value = 0.0,
-       .min = -360.0,
-       .max = 360.0,
-       .help = "bearing of the device's north mark, clockwise from north: added to relative and true directions"},
-      {.name = "variation",
-       .unit = "deg",
-       .default_value = 0.0,
-       .min = -180.0,
-       .max = 180.0,
-       .help = "magnetic variation of the place, east positive: added to magnetic directions"},
-  };
+std::span<const Parameter> chosen_wind_parameters() {
+  return chosen_wind_fields().parameters();
 }
 
 ChosenWindSettings chosen_wind_settings_of(const ParameterValues& values) {
-  ChosenWindSettings settings;
-  const std::string& reference = values.text("reference");
-  if (reference == "north") settings.frame = WindFrame::kNorth;
-  if (reference == "relative") settings.frame = WindFrame::kRelative;
-  if (reference == "true") settings.frame = WindFrame::kTrue;
-  settings.north_offset_deg = values.number("north_offset");
-  settings.variation_deg = values.number("variation");
-  return settings;
+  return chosen_wind_fields().of(values);
+}
+
+sensor::SelectedPart reference_part(const ChosenWindSettings& settings) {
+  return {.key = "reference",
+          .value = settings.frame ? std::string(kChosenFrames.at(1 + static_cast<std::size_t>(*settings.frame))) : ""};
 }
 
 Result<std::optional<wind::WindReading>, decode::Refusal> ChosenWind::offer(const WindChoice::Source& source,

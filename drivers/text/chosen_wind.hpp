@@ -1,10 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "drivers/decode/decoded_wind.hpp"
+#include "drivers/sensor/value_selection.hpp"
 #include "drivers/text/wind_choice.hpp"
 #include "engine/base/parameter.hpp"
 #include "engine/wind/wind_reading.hpp"
@@ -20,8 +21,11 @@ struct ChosenWindSettings {
 };
 
 /// The parameters of these: reference, north_offset, variation.
-std::vector<Parameter> chosen_wind_parameters();
+std::span<const Parameter> chosen_wind_parameters();
 ChosenWindSettings chosen_wind_settings_of(const ParameterValues& values);
+
+/// What the setting "reference" selects.
+sensor::SelectedPart reference_part(const ChosenWindSettings& settings);
 
 /// The frame in which a direction of that reference is. Thread-safe and realtime-safe: yes.
 WindFrame frame_of_reference(decode::WindReference reference) noexcept;

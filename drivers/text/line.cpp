@@ -15,6 +15,7 @@
 #include "drivers/sensor/speed_unit.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/line_sensor.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::text {
 namespace {
@@ -23,91 +24,99 @@ constexpr std::array<std::string_view, 4> kLineFormats = {"auto", "columns", "ke
 constexpr std::array<std::string_view, 4> kLineSeparators = {"comma", "semicolon", "tab", "blank"};
 constexpr std::array<char, 4> kLineSeparatorBytes = {',', ';', '\t', ' '};
 
-/// How a line is read.
-const std::array kLineReading = {
-    Parameter{
-        .name = "format",
-        .unit = "",
-        .default_value = std::string("auto"),
-        .help =
-            "columns: 4.2,270; keys: speed=4.2 direction=270; json: {\"speed\": 4.2}; auto: json where the line begins "
-            "with '{', keys where it has '=' or ':'",
-        .choices = kLineFormats},
-    Parameter{.name = "separator",
-              .unit = "",
-              .default_value = std::string("comma"),
-              .help = "between columns; blank: any number of spaces and tabs",
-              .choices = kLineSeparators},
-    Parameter{.name = "speed_column",
-              .unit = "",
-              .default_value = std::int64_t{1},
-              .min = 0,
-              .max = static_cast<double>(decode::kMaxTextFields),
-              .help = "number of the column, from 1; 0: none"},
-    Parameter{.name = "direction_column",
-              .unit = "",
-              .default_value = std::int64_t{2},
-              .min = 0,
-              .max = static_cast<double>(decode::kMaxTextFields),
-              .help = "0: none"},
-    Parameter{.name = "gust_column",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = static_cast<double>(decode::kMaxTextFields),
-              .help = "0: none"},
-    Parameter{.name = "speed_key",
-              .unit = "",
-              .default_value = std::string("speed"),
-              .help = "exact; json: or a pointer such as /wind/speed; empty: none"},
-    Parameter{
-        .name = "direction_key", .unit = "", .default_value = std::string("direction"), .help = "exact; empty: none"},
-    Parameter{.name = "gust_key", .unit = "", .default_value = std::string("gust"), .help = "exact; empty: none"},
-    Parameter{.name = "speed_unit",
-              .unit = "",
-              .default_value = std::string("m/s"),
-              .help = "of speed and gust, after scale and offset, where the line itself says none (speed: 15 km/h)",
-              .choices = sensor::kSpeedUnitNames},
-    Parameter{.name = "speed_scale",
-              .unit = "",
-              .default_value = 1.0,
-              .help = "factor on speed and gust (0.1 for tenths), before speed_offset is added"},
-    Parameter{
-        .name = "speed_offset", .unit = "", .default_value = 0.0, .help = "added to speed and gust, in speed_unit"},
-    Parameter{.name = "direction_scale",
-              .unit = "",
-              .default_value = 1.0,
-              .help = "factor that gives the direction in degrees (22.5 for points 0 to 15)"},
-    Parameter{.name = "invalid",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "number that means \"no value\", such as \"-999\"; empty: none. nan and null always mean it"},
-};
+using decode::text::LineOptions;
+using decode::text::LineQuantity;
 
-std::vector<Parameter> line_driver_parameters() {
-  std::vector<Parameter> own(kLineReading.begin(), kLineReading.end());
-  own.push_back({.name = "north_offset",
-                 .unit = "deg",
-                 .default_value = 0.0,
-                 .min = -360.0,
-                 .max = 360.0,
-                 .help = "bearing of the vane's north mark, clockwise from north"});
-  return with_byte_port_parameters(std::move(own), 2.0);
+char separator_named(const std::string& name) {
+  return kLineSeparatorBytes.at(
+      static_cast<std::size_t>(std::ranges::find(kLineSeparators, name) - kLineSeparators.begin()));
 }
-const std::vector<Parameter> kLineParameters = line_driver_parameters();
 
 /// Columns are counted from 1 by people.
 std::optional<std::size_t> column_of(std::int64_t number) {
   return number > 0 ? std::optional(static_cast<std::size_t>(number - 1)) : std::nullopt;
 }
 
-std::optional<double> invalid_number_of(const std::string& text) {
-  if (text.empty()) return {};
+Result<std::optional<double>, Failure> invalid_number_of(const std::string& text) {
+  if (text.empty()) return std::optional<double>();
   const auto number = decode::parse_number(text);
-  if (!number || !*number)
-    throw std::runtime_error("invalid: \"" + text + "\" is not a number; allowed: a number such as \"-999\"");
-  return *number;
+  if (!number || !*number) return Failure{"\"" + text + "\" is not a number; allowed: a number such as \"-999\""};
+  return {boost::system::in_place_value, *number};
 }
+
+template <class Member>
+auto of(LineQuantity LineOptions::*quantity, Member LineQuantity::*member) {
+  return [quantity, member](LineOptions& line) -> Member& { return line.*quantity.*member; };
+}
+
+/// How a line is read. The gust has the speed's scale and unit.
+const Fields<LineOptions> kLineReading = {
+    {{.name = "format",
+      .unit = "",
+      .default_value = std::string("auto"),
+      .help = "columns: 4.2,270; keys: speed=4.2 direction=270; json: {\"speed\": 4.2}; auto: json where the line "
+              "begins with '{', keys where it has '=' or ':'",
+      .choices = kLineFormats},
+     &LineOptions::format},
+    {{.name = "separator",
+      .unit = "",
+      .default_value = std::string("comma"),
+      .help = "between columns; blank: any number of spaces and tabs",
+      .choices = kLineSeparators},
+     &LineOptions::separator,
+     separator_named},
+    {{"speed_column", "", std::int64_t{1}, 0, static_cast<double>(decode::kMaxTextFields),
+      "number of the column, from 1; 0: none"},
+     of(&LineOptions::speed, &LineQuantity::column),
+     column_of},
+    {{"direction_column", "", std::int64_t{2}, 0, static_cast<double>(decode::kMaxTextFields), "0: none"},
+     of(&LineOptions::direction, &LineQuantity::column),
+     column_of},
+    {{"gust_column", "", std::int64_t{0}, 0, static_cast<double>(decode::kMaxTextFields), "0: none"},
+     of(&LineOptions::gust, &LineQuantity::column),
+     column_of},
+    {{.name = "speed_key",
+      .unit = "",
+      .default_value = std::string("speed"),
+      .help = "exact; json: or a pointer such as /wind/speed; empty: none"},
+     of(&LineOptions::speed, &LineQuantity::key)},
+    {{.name = "direction_key", .unit = "", .default_value = std::string("direction"), .help = "exact; empty: none"},
+     of(&LineOptions::direction, &LineQuantity::key)},
+    {{.name = "gust_key", .unit = "", .default_value = std::string("gust"), .help = "exact; empty: none"},
+     of(&LineOptions::gust, &LineQuantity::key)},
+    {{.name = "speed_unit",
+      .unit = "",
+      .default_value = std::string("m/s"),
+      .help = "of speed and gust, after scale and offset, where the line itself says none (speed: 15 km/h)",
+      .choices = sensor::kSpeedUnitNames},
+     of(&LineOptions::speed, &LineQuantity::unit),
+     sensor::metres_per_second_in},
+    {{.name = "speed_scale",
+      .unit = "",
+      .default_value = 1.0,
+      .help = "factor on speed and gust (0.1 for tenths), before speed_offset is added"},
+     of(&LineOptions::speed, &LineQuantity::scale)},
+    {{.name = "speed_offset", .unit = "", .default_value = 0.0, .help = "added to speed and gust, in speed_unit"},
+     of(&LineOptions::speed, &LineQuantity::offset)},
+    {{.name = "direction_scale",
+      .unit = "",
+      .default_value = 1.0,
+      .help = "factor that gives the direction in degrees (22.5 for points 0 to 15)"},
+     of(&LineOptions::direction, &LineQuantity::scale)},
+    {{.name = "invalid",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "number that means \"no value\", such as \"-999\"; empty: none. nan and null always mean it"},
+     &LineOptions::invalid,
+     invalid_number_of},
+};
+
+const Fields<LineSensorSettings> kLineFields = {
+    {{"north_offset", "deg", 0.0, -360.0, 360.0, "bearing of the vane's north mark, clockwise from north"},
+     &LineSensorSettings::north_offset_deg},
+};
+const std::vector<Parameter> kLineParameters =
+    with_byte_port_parameters(together(kLineReading.parameters(), kLineFields.parameters()), 2.0);
 
 /// A key that begins with a slash is a JSON pointer wherever lines may be JSON.
 void check_key(std::string_view name, const std::string& key, decode::text::LineFormat format) {
@@ -121,29 +130,14 @@ void check_key(std::string_view name, const std::string& key, decode::text::Line
 }  // namespace
 
 std::span<const Parameter> line_reading_parameters() {
-  return kLineReading;
+  return kLineReading.parameters();
 }
 
 decode::text::LineOptions line_options_of(const ParameterValues& values) {
-  decode::text::LineOptions line;
-  line.format = static_cast<decode::text::LineFormat>(std::ranges::find(kLineFormats, values.text("format")) -
-                                                      kLineFormats.begin());
-  const auto separator = std::ranges::find(kLineSeparators, values.text("separator")) - kLineSeparators.begin();
-  line.separator = kLineSeparatorBytes[static_cast<std::size_t>(separator)];
-  line.invalid = invalid_number_of(values.text("invalid"));
-
-  const double m_s_per_unit = sensor::metres_per_second_in(values.text("speed_unit"));
-  line.speed = {.column = column_of(values.integer("speed_column")),
-                .key = values.text("speed_key"),
-                .scale = values.number("speed_scale"),
-                .offset = values.number("speed_offset"),
-                .unit = m_s_per_unit};
-  line.gust = line.speed;
-  line.gust.column = column_of(values.integer("gust_column"));
-  line.gust.key = values.text("gust_key");
-  line.direction = {.column = column_of(values.integer("direction_column")),
-                    .key = values.text("direction_key"),
-                    .scale = values.number("direction_scale")};
+  LineOptions line = kLineReading.of(values);
+  line.gust.scale = line.speed.scale;
+  line.gust.offset = line.speed.offset;
+  line.gust.unit = line.speed.unit;
   for (const auto& [name, key] :
        {std::pair("speed_key", &line.speed.key), std::pair("direction_key", &line.direction.key),
         std::pair("gust_key", &line.gust.key)})
@@ -158,11 +152,10 @@ decode::text::LineOptions line_options_of(const ParameterValues& values) {
 }
 
 LineSensorSettings line_sensor_settings_of(const ParameterValues& values) {
-  LineSensorSettings settings;
+  LineSensorSettings settings = kLineFields.of(values);
   settings.text = text_sensor_settings_of(values);
   settings.text.ending = decode::text::LineEnding::kEtx;
   settings.line = line_options_of(values);
-  settings.north_offset_deg = values.number("north_offset");
 
   // Only the end of the line before it proves that a line is complete from its beginning on.
   const bool flows = settings.text.address.kind == bus::BytePortKind::kSerial ||
@@ -179,12 +172,14 @@ namespace {
 
 /// Where the speed stands in a line; what the format does not use is any.
 sensor::ValueSelection line_selection(const ParameterValues& values) {
-  const std::string& format = values.text("format");
-  const bool has_columns = format == "auto" || format == "columns";
+  const LineSensorSettings settings = line_sensor_settings_of(values);
+  const LineQuantity& speed = settings.line.speed;
+  const bool is_columns = settings.line.format == decode::text::LineFormat::kColumns;
+  const bool has_columns = is_columns || settings.line.format == decode::text::LineFormat::kAuto;
   return text_selection(
-      line_sensor_settings_of(values).text,
-      {{.key = "speed_column", .value = has_columns ? std::to_string(values.integer("speed_column")) : ""},
-       {.key = "speed_key", .value = format == "columns" ? "" : values.text("speed_key")}});
+      settings.text,
+      {{.key = "speed_column", .value = has_columns ? std::to_string(speed.column ? *speed.column + 1 : 0) : ""},
+       {.key = "speed_key", .value = is_columns ? "" : speed.key}});
 }
 
 }  // namespace

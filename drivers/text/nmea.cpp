@@ -19,6 +19,7 @@
 #include "drivers/sensor/serial_or_tcp.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/nmea_sensor.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::text {
 namespace {
@@ -29,67 +30,75 @@ constexpr std::array<std::string_view, 2> kMissingStatus = {"accept", "refuse"};
 constexpr std::array<std::string_view, 6> kSentences = {"MWV", "MWD", "VWR", "VWT", "MDA", "XDR"};
 constexpr Nanoseconds kUmbInterval = std::chrono::seconds(1);
 
+struct NmeaKeys {
+  NmeaSensorSettings settings;
+  std::string sentences;
+  std::string missing_checksum;
+  std::string address;
+};
+
+template <class Member>
+auto of(Member NmeaSensorSettings::*member) {
+  return [member](NmeaKeys& keys) -> Member& { return keys.settings.*member; };
+}
+
+decode::WhenMissing when_missing(const std::string& word) {
+  return word == "accept" ? decode::WhenMissing::kAccept : decode::WhenMissing::kRefuse;
+}
+
+const Fields<NmeaKeys> kNmeaFields = {
+    {{.name = "format",
+      .unit = "",
+      .default_value = std::string("auto"),
+      .help = "auto: detected for each line; ft, umb and wxt also send the requests of these devices",
+      .choices = kNmeaFormats},
+     of(&NmeaSensorSettings::format)},
+    {{.name = "sentences",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "nmea: accept only these, separated by commas: MWV, MWD, VWR, VWT, MDA, XDR; empty: all"},
+     &NmeaKeys::sentences},
+    {{.name = "talker",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "accept only this talker: two characters before the sentence (WI), Gill's node letter (Q), a WXT's "
+              "address (0); empty: any"},
+     of(&NmeaSensorSettings::talker)},
+    {{.name = "missing_checksum",
+      .unit = "",
+      .default_value = std::string("auto"),
+      .help = "lines without a checksum; auto: NMEA sentences and those of a WXT are accepted over a network and from "
+              "a file, and refused on a serial line, where nothing else detects a wrong bit; the other makers' own "
+              "formats always have one. A wrong checksum is always refused",
+      .choices = kMissingChecksum},
+     &NmeaKeys::missing_checksum},
+    {{.name = "missing_status",
+      .unit = "",
+      .default_value = std::string("accept"),
+      .help = "lines without their status field; accepted ones are marked uncertain",
+      .choices = kMissingStatus},
+     of(&NmeaSensorSettings::status),
+     when_missing},
+    {{.name = "address",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "ft, umb: address of the device, two characters (01 by default); wxt: one (0 by default)"},
+     &NmeaKeys::address},
+    {{"xdr_id", "", std::int64_t{0}, 0, 99, "nmea: number of the device in XDR sentences (Vaisala's address)"},
+     of(&NmeaSensorSettings::xdr_first_id)},
+    {{"speed_range", "m/s", 75.0, 1.0, 120.0, "umb: full scale in Lufft's ASCII mode; a VENTUS has 90"},
+     of(&NmeaSensorSettings::speed_range_m_s)},
+};
+
 std::vector<Parameter> nmea_parameters() {
-  std::vector<Parameter> own = {
-      {.name = "format",
-       .unit = "",
-       .default_value = std::string("auto"),
-       .help = "auto: detected for each line; ft, umb and wxt also send the requests of these devices",
-       .choices = kNmeaFormats},
-      {.name = "sentences",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "nmea: accept only these, separated by commas: MWV, MWD, VWR, VWT, MDA, XDR; empty: all"},
-      {.name = "talker",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "accept only this talker: two characters before the sentence (WI), Gill's node letter (Q), a WXT's "
-               "address "
-               "(0); empty: any"},
-      {.name = "missing_checksum",
-       .unit = "",
-       .default_value = std::string("auto"),
-       .help = "lines without a checksum; auto: NMEA sentences and those of a WXT are accepted over a network and "
-               "from a file, and "
-               "refused on a serial line, where nothing else detects a wrong bit; the other makers' own formats "
-               "always have "
-               "one. A wrong checksum is always refused",
-       .choices = kMissingChecksum},
-      {.name = "missing_status",
-       .unit = "",
-       .default_value = std::string("accept"),
-       .help = "lines without their status field; accepted ones are marked uncertain",
-       .choices = kMissingStatus},
-      {.name = "address",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "ft, umb: address of the device, two characters (01 by default); wxt: one (0 by default)"},
-      {.name = "xdr_id",
-       .unit = "",
-       .default_value = std::int64_t{0},
-       .min = 0,
-       .max = 99,
-       .help = "nmea: number of the device in XDR sentences (Vaisala's address)"},
-      {.name = "speed_range",
-       .unit = "m/s",
-       .default_value = 75.0,
-       .min = 1.0,
-       .max = 120.0,
-       .help = "umb: full scale in Lufft's ASCII mode; a VENTUS has 90"},
-  };
-  std::vector<Parameter> chosen = chosen_wind_parameters();
-  std::ranges::find(chosen, "reference", &Parameter::name)->help =
+  std::vector<Parameter> own = together(kNmeaFields.parameters(), chosen_wind_parameters());
+  std::ranges::find(own, "reference", &Parameter::name)->help =
       "which direction to use where a device sends several: from north (MWD, MDA), relative to its own mark (MWV R, "
       "VWR, "
       "XDR, Gill, FT, UMB, WXT), true (MWV T, VWT); auto: the first of these that it sends";
-  std::ranges::move(chosen, std::back_inserter(own));
   return with_byte_port_parameters(std::move(own), 0.0);
 }
 const std::vector<Parameter> kNmeaParameters = nmea_parameters();
-
-NmeaFormat nmea_format_of(std::string_view name) {
-  return static_cast<NmeaFormat>(std::ranges::find(kNmeaFormats, name) - kNmeaFormats.begin());
-}
 
 std::vector<std::string> sentences_of(const std::string& list) {
   std::vector<std::string> sentences;
@@ -115,9 +124,8 @@ std::string request_of(NmeaFormat format, const std::string& device) {
 }
 
 /// The address of the device to request from.
-std::string device_of(NmeaFormat format, const ParameterValues& values) {
+std::string device_of(NmeaFormat format, const std::string& given) {
   const bool is_wxt = format == NmeaFormat::kWxt;
-  const std::string& given = values.text("address");
   if (given.empty()) return is_wxt ? "0" : "01";
   if (given.size() != (is_wxt ? 1U : 2U)) {
     throw std::runtime_error(fmt::format("address: is \"{}\"; allowed: {}", given,
@@ -127,7 +135,7 @@ std::string device_of(NmeaFormat format, const ParameterValues& values) {
 }
 
 /// The request and its interval, for a polled device.
-void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
+void set_request(NmeaSensorSettings& settings, const std::string& address) {
   TextSensorSettings& text = settings.text;
   const bool can_be_polled =
       text.address.kind == bus::BytePortKind::kSerial || text.address.kind == bus::BytePortKind::kTcpClient;
@@ -136,7 +144,7 @@ void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
     text.poll_interval = kUmbInterval;
   }
   if (text.poll_interval == Nanoseconds::zero() || !text.request.empty()) return;
-  text.request = request_of(settings.format, device_of(settings.format, values));
+  text.request = request_of(settings.format, device_of(settings.format, address));
   if (text.request.empty()) {
     throw std::runtime_error("request: is missing; only formats ft, umb and wxt have a default request");
   }
@@ -145,23 +153,18 @@ void set_request(NmeaSensorSettings& settings, const ParameterValues& values) {
 }  // namespace
 
 NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values) {
-  NmeaSensorSettings settings;
+  NmeaKeys keys = kNmeaFields.of(values);
+  NmeaSensorSettings& settings = keys.settings;
   settings.text = text_sensor_settings_of(values);
-  settings.format = nmea_format_of(values.text("format"));
-  settings.sentences = sentences_of(values.text("sentences"));
-  settings.talker = values.text("talker");
+  settings.sentences = sentences_of(keys.sentences);
   settings.wind = chosen_wind_settings_of(values);
 
-  const std::string& checksum = values.text("missing_checksum");
+  const std::string& checksum = keys.missing_checksum;
   const bool is_serial = settings.text.address.kind == bus::BytePortKind::kSerial;
   const bool accepts = checksum == "accept" || (checksum == "auto" && !is_serial);
   settings.checksum = accepts ? decode::WhenMissing::kAccept : decode::WhenMissing::kRefuse;
-  settings.makers_checksum = checksum == "accept" ? decode::WhenMissing::kAccept : decode::WhenMissing::kRefuse;
-  settings.status =
-      values.text("missing_status") == "accept" ? decode::WhenMissing::kAccept : decode::WhenMissing::kRefuse;
-  settings.xdr_first_id = static_cast<int>(values.integer("xdr_id"));
-  settings.speed_range_m_s = values.number("speed_range");
-  set_request(settings, values);
+  settings.makers_checksum = when_missing(checksum);
+  set_request(settings, keys.address);
   settings.wind.comes_in_bursts = settings.text.poll_interval == Nanoseconds::zero();
   return settings;
 }
@@ -175,14 +178,14 @@ sensor::ValueSelection nmea_selection(const ParameterValues& values) {
                                         {.key = "sentences",
                                          .value = fmt::format("{}", fmt::join(settings.sentences, ",")),
                                          .covers = sensor::list_covers},
-                                        reference_part(values),
+                                        reference_part(settings.wind),
                                         {.key = "xdr_id", .value = std::to_string(settings.xdr_first_id)}});
 }
 
 /// A WXT's "Sm" is the mean of its averaging time. Of the other formats it depends on the device. Source:
 /// drivers/SOURCES.md S4.7.
 std::optional<sensor::StatedValue> nmea_value(const ParameterValues& values) {
-  if (values.text("format") != "wxt") return std::nullopt;
+  if (kNmeaFields.of(values).settings.format != NmeaFormat::kWxt) return std::nullopt;
   return sensor::StatedValue{.value = wind::ReadingValue::kMean, .source = "Vaisala M211840EN: Sm"};
 }
 

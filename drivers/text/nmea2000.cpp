@@ -12,9 +12,13 @@
 #include "drivers/sensor/driver.hpp"
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/nmea2000_sensor.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::text {
 namespace {
+
+using decode::marine::AngleUnit;
+using decode::marine::BusLineOptions;
 
 constexpr std::array<std::string_view, 5> kNmea2000Transports = {"serial", "tcp", "udp", "file", "can"};
 constexpr std::array<std::string_view, 4> kNmea2000Formats = {"auto", "yacht-devices", "canboat", "candump"};
@@ -22,29 +26,44 @@ constexpr std::array<std::string_view, 3> kAngleUnits = {"auto", "deg", "rad"};
 /// Of an identifier, the PGN of the wind; its priority and the sender's address do not matter.
 constexpr bus::CanFilter kWindFrames = {.identifier = decode::marine::kWindDataPgn << 8U, .mask = 0x3FFFFU << 8U};
 
+std::optional<std::uint8_t> address_of(std::int64_t number) {
+  return number < 0 ? std::nullopt : std::optional(static_cast<std::uint8_t>(number));
+}
+
+std::optional<AngleUnit> angle_unit_of(const std::string& word) {
+  if (word == "deg") return AngleUnit::kDegrees;
+  return word == "rad" ? std::optional(AngleUnit::kRadians) : std::nullopt;
+}
+
+template <class Member>
+auto of(Member BusLineOptions::*member) {
+  return [member](Nmea2000SensorSettings& settings) -> Member& { return settings.lines.*member; };
+}
+
+const Fields<Nmea2000SensorSettings> kNmea2000Fields = {
+    {{.name = "format",
+      .unit = "",
+      .default_value = std::string("auto"),
+      .help = "yacht-devices: RAW mode of YDWG-02, YDEN-02, YDNU-02; canboat: JSON of canboat's analyzer (n2kd) or "
+              "canboatjs; candump: can-utils' lines; auto: detected for each line",
+      .choices = kNmea2000Formats},
+     of(&BusLineOptions::format)},
+    {{"address", "", std::int64_t{-1}, -1, 255,
+      "accept only the wind of the device with this address on the bus; -1: any"},
+     &Nmea2000SensorSettings::address,
+     address_of},
+    {{.name = "angle_unit",
+      .unit = "",
+      .default_value = std::string("auto"),
+      .help = "canboat: rad with analyzer -si and canboatjs, deg otherwise; auto: as the analyzer's first line says, "
+              "or degrees once an angle comes that cannot be in radians; until then there is no direction",
+      .choices = kAngleUnits},
+     of(&BusLineOptions::angle_unit),
+     angle_unit_of},
+};
+
 std::vector<Parameter> nmea2000_parameters() {
-  std::vector<Parameter> own = {
-      {.name = "format",
-       .unit = "",
-       .default_value = std::string("auto"),
-       .help = "yacht-devices: RAW mode of YDWG-02, YDEN-02, YDNU-02; canboat: JSON of canboat's analyzer (n2kd) or "
-               "canboatjs; candump: can-utils' lines; auto: detected for each line",
-       .choices = kNmea2000Formats},
-      {.name = "address",
-       .unit = "",
-       .default_value = std::int64_t{-1},
-       .min = -1,
-       .max = 255,
-       .help = "accept only the wind of the device with this address on the bus; -1: any"},
-      {.name = "angle_unit",
-       .unit = "",
-       .default_value = std::string("auto"),
-       .help =
-           "canboat: rad with analyzer -si and canboatjs, deg otherwise; auto: as the analyzer's first line says, or "
-           "degrees once an angle comes that cannot be in radians; until then there is no direction",
-       .choices = kAngleUnits},
-  };
-  std::ranges::move(chosen_wind_parameters(), std::back_inserter(own));
+  std::vector<Parameter> own = together(kNmea2000Fields.parameters(), chosen_wind_parameters());
   own.push_back({.name = "interface",
                  .unit = "",
                  .default_value = std::string("can0"),
@@ -74,16 +93,9 @@ std::vector<sensor::FoundDevice> find_behind_can_interfaces() {
 }  // namespace
 
 Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values) {
-  Nmea2000SensorSettings settings;
+  Nmea2000SensorSettings settings = kNmea2000Fields.of(values);
   settings.text = text_sensor_settings_of(values);
   settings.text.longest_line = decode::marine::kLongestBusLine;
-  settings.lines.format = static_cast<decode::marine::BusLineFormat>(
-      std::ranges::find(kNmea2000Formats, values.text("format")) - kNmea2000Formats.begin());
-  if (const std::int64_t address = values.integer("address"); address >= 0)
-    settings.address = static_cast<std::uint8_t>(address);
-  const std::string& unit = values.text("angle_unit");
-  if (unit == "deg") settings.lines.angle_unit = decode::marine::AngleUnit::kDegrees;
-  if (unit == "rad") settings.lines.angle_unit = decode::marine::AngleUnit::kRadians;
   settings.wind = chosen_wind_settings_of(values);
   if (settings.text.address.kind == bus::BytePortKind::kCan) {
     settings.lines.format = decode::marine::BusLineFormat::kCandump;
@@ -107,10 +119,10 @@ const sensor::DriverDescription kNmea2000Driver{
     .claims = byte_port_claims,
     .selection =
         [](const ParameterValues& values) {
-          const std::int64_t address = values.integer("address");
-          return text_selection(
-              text_sensor_settings_of(values),
-              {{.key = "address", .value = address < 0 ? "" : std::to_string(address)}, reference_part(values)});
+          const std::optional<std::uint8_t> address = kNmea2000Fields.of(values).address;
+          return text_selection(text_sensor_settings_of(values),
+                                {{.key = "address", .value = address ? std::to_string(*address) : ""},
+                                 reference_part(chosen_wind_settings_of(values))});
         }};
 
 }  // namespace yuragi::drivers::text

@@ -15,6 +15,7 @@
 #include "drivers/text/byte_port_parameters.hpp"
 #include "drivers/text/signalk_finder.hpp"
 #include "drivers/text/signalk_sensor.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::text {
 namespace {
@@ -23,42 +24,51 @@ constexpr std::string_view kOwnVessel = "vessels.self";
 constexpr std::string_view kSignalKStream = "/signalk/v1/stream?subscribe=none";
 constexpr std::uint16_t kWebSocketPort = 3000;
 constexpr std::uint16_t kTcpPort = 8375;
-/// Deltas of one message have some hundred bytes, those of many values some thousand.
-constexpr std::size_t kLongestDelta = 16384;
 
 constexpr std::array<std::string_view, 5> kSignalKTransports = {"websocket", "tcp", "udp", "serial", "file"};
 
+struct SignalKKeys {
+  std::string source;
+  std::string context;
+  std::string path;
+};
+
+const Fields<SignalKKeys> kSignalKFields = {
+    {{.name = "source",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "accept only this one of the server's sources, as its deltas name it in $source (n2k.105); empty: any"},
+     &SignalKKeys::source},
+    {{.name = "context",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "the vessel, as deltas name it (vessels.urn:mrn:imo:mmsi:230099999); empty: the server's own"},
+     &SignalKKeys::context},
+    {{.name = "path",
+      .unit = "",
+      .default_value = std::string(kSignalKStream),
+      .help = "websocket: the stream's place on the server"},
+     &SignalKKeys::path},
+    Parameter{
+        .name = "token",
+        .unit = "",
+        .default_value = Secret(),
+        .help = "websocket: the token of a server that lets nobody read without one, from its \"Access Requests\"; "
+                "sent as it is (no TLS); or one of token_file and token_env, which keep it out of this file"},
+    Parameter{.name = "token_file",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "websocket: a file that holds the token, at most 4096 bytes; its mode should be 0640 or stricter",
+              .is_secret_file = true},
+    Parameter{.name = "token_env",
+              .unit = "",
+              .default_value = std::string(""),
+              .help = "websocket: the environment variable that holds the token"},
+};
+
 std::vector<Parameter> signalk_parameters() {
-  std::vector<Parameter> own = {
-      {.name = "source",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "accept only this one of the server's sources, as its deltas name it in $source (n2k.105); empty: any"},
-      {.name = "context",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "the vessel, as deltas name it (vessels.urn:mrn:imo:mmsi:230099999); empty: the server's own"},
-      {.name = "path",
-       .unit = "",
-       .default_value = std::string(kSignalKStream),
-       .help = "websocket: the stream's place on the server"},
-      {.name = "token",
-       .unit = "",
-       .default_value = Secret(),
-       .help = "websocket: the token of a server that lets nobody read without one, from its \"Access Requests\"; sent "
-               "as it is (no TLS); or one of token_file and token_env, which keep it out of this file"},
-      {.name = "token_file",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "websocket: a file that holds the token, at most 4096 bytes; its mode should be 0640 or stricter",
-       .is_secret_file = true},
-      {.name = "token_env",
-       .unit = "",
-       .default_value = std::string(""),
-       .help = "websocket: the environment variable that holds the token"},
-  };
-  std::ranges::move(chosen_wind_parameters(), std::back_inserter(own));
-  std::vector<Parameter> all = with_byte_port_parameters(std::move(own), 0.0);
+  std::vector<Parameter> all =
+      with_byte_port_parameters(together(kSignalKFields.parameters(), chosen_wind_parameters()), 0.0);
   for (Parameter& parameter : all) {
     if (parameter.name == "transport") {
       parameter.default_value = std::string("tcp");
@@ -93,14 +103,15 @@ bool is_visible(char c) {
   return c > ' ' && c <= '~';
 }
 
-bus::BytePortAddress signalk_address_of(const ParameterValues& values) {
-  bus::BytePortAddress address = byte_port_address_of(values);
+TextSensorSettings signalk_text_settings_of(const ParameterValues& values) {
+  TextSensorSettings text = text_sensor_settings_of(values);
+  bus::BytePortAddress& address = text.address;
   if (address.port == 0) address.port = address.kind == bus::BytePortKind::kWebSocket ? kWebSocketPort : kTcpPort;
-  return address;
+  return text;
 }
 
-void set_up_websocket(bus::BytePortAddress& address, const ParameterValues& values) {
-  address.path = values.text("path");
+void set_up_websocket(bus::BytePortAddress& address, const std::string& path, const ParameterValues& values) {
+  address.path = path;
   if (!address.path.starts_with('/') || !std::ranges::all_of(address.path, is_visible))
     throw std::runtime_error("path: is none on a server; allowed: such as " + std::string(kSignalKStream));
   address.token = sensor::secret_of(values, "token");
@@ -111,15 +122,14 @@ void set_up_websocket(bus::BytePortAddress& address, const ParameterValues& valu
 }  // namespace
 
 SignalKSensorSettings signalk_sensor_settings_of(const ParameterValues& values) {
-  SignalKSensorSettings settings;
-  settings.text = text_sensor_settings_of(values);
+  const SignalKKeys keys = kSignalKFields.of(values);
+  SignalKSensorSettings settings{.text = signalk_text_settings_of(values),
+                                 .source = keys.source,
+                                 .context = keys.context,
+                                 .wind = chosen_wind_settings_of(values)};
   settings.text.longest_line = decode::marine::kLongestDelta;
-  settings.source = values.text("source");
-  settings.context = values.text("context");
-  settings.wind = chosen_wind_settings_of(values);
-  settings.text.address = signalk_address_of(values);
   const bool is_websocket = settings.text.address.kind == bus::BytePortKind::kWebSocket;
-  if (is_websocket) set_up_websocket(settings.text.address, values);
+  if (is_websocket) set_up_websocket(settings.text.address, keys.path, values);
   if (settings.text.poll_interval > Nanoseconds::zero())
     throw std::runtime_error("poll_interval: a server sends without requests; leave it out");
   if (std::ranges::any_of(settings.context, needs_escape))
@@ -143,18 +153,18 @@ const sensor::DriverDescription kSignalKDriver{
     .find_in_network = find_signalk_servers,
     .claims =
         [](const ParameterValues& values) {
-          return sensor::claims_of(bus::sole_device_of(signalk_address_of(values)));
+          return sensor::claims_of(bus::sole_device_of(signalk_text_settings_of(values).address));
         },
     .selection =
         [](const ParameterValues& values) {
-          TextSensorSettings text = text_sensor_settings_of(values);
-          text.address = signalk_address_of(values);
+          const SignalKKeys keys = kSignalKFields.of(values);
+          const TextSensorSettings text = signalk_text_settings_of(values);
           const bool is_websocket = text.address.kind == bus::BytePortKind::kWebSocket;
-          const std::string& context = values.text("context");
-          return text_selection(text, {{.key = "path", .value = is_websocket ? values.text("path") : ""},
-                                       {.key = "context", .value = context.empty() ? std::string(kOwnVessel) : context},
-                                       {.key = "source", .value = values.text("source")},
-                                       reference_part(values)});
+          return text_selection(
+              text, {{.key = "path", .value = is_websocket ? keys.path : ""},
+                     {.key = "context", .value = keys.context.empty() ? std::string(kOwnVessel) : keys.context},
+                     {.key = "source", .value = keys.source},
+                     reference_part(chosen_wind_settings_of(values))});
         }};
 
 }  // namespace yuragi::drivers::text

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "drivers/bus/sender_filter.hpp"
-#include "drivers/text/byte_port_parameters.hpp"
 #include "engine/base/printable_text.hpp"
 
 namespace yuragi::drivers::text {
@@ -53,19 +52,6 @@ bool is_text(std::string_view line) noexcept {
   constexpr std::string_view kOthers("\0\x02\x03\t", 4);
   return std::ranges::all_of(
       line, [&](char c) { return (c >= ' ' && c <= '~') || kOthers.find(c) != std::string_view::npos; });
-}
-
-TextSensorSettings text_sensor_settings_of(const ParameterValues& values) {
-  TextSensorSettings settings;
-  settings.address = byte_port_address_of(values);
-  settings.delay_after_open =
-      settings.address.kind == bus::BytePortKind::kSerial ? from_seconds(values.number("delay_after_open")) : 0ns;
-  settings.silence_timeout = from_seconds(values.number("silence_timeout"));
-  settings.play_rate_hz = values.number("play_rate");
-  settings.request = values.text("request");
-  settings.poll_interval = from_seconds(values.number("poll_interval"));
-  settings.response_timeout = from_seconds(values.number("response_timeout"));
-  return settings;
 }
 
 sensor::ValueSelection text_selection(const TextSensorSettings& settings, std::vector<sensor::SelectedPart> own) {

@@ -15,7 +15,6 @@
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/sensor/value_selection.hpp"
 #include "drivers/text/arrival_watch.hpp"
-#include "engine/base/parameter.hpp"
 #include "engine/wind/station_quantities.hpp"
 #include "engine/wind/wind_reading.hpp"
 
@@ -35,9 +34,6 @@ struct TextSensorSettings {
   Nanoseconds poll_interval{};     ///< zero: the device sends without requests
   Nanoseconds response_timeout{};  ///< at most the poll interval
 };
-
-/// Those of the parameters that with_byte_port_parameters() adds. Throws std::runtime_error.
-TextSensorSettings text_sensor_settings_of(const ParameterValues& values);
 
 /// What a sensor of such settings reads: `own` are the driver's parts, to which senders and the request are added.
 sensor::ValueSelection text_selection(const TextSensorSettings& settings, std::vector<sensor::SelectedPart> own);

@@ -16,140 +16,96 @@
 
 #include "drivers/sensor/driver.hpp"
 #include "drivers/usb/usb_sensor.hpp"
+#include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::usb {
 namespace {
 
+using decode::usb::CupCalibration;
+using decode::usb::VaneCalibration;
+
 constexpr std::array<std::string_view, 3> kUsbDevices = {"auto", "mcc1208", "labjack-u3"};
 
-const std::array kUsbParameters = {
-    Parameter{.name = "device",
-              .unit = "",
-              .default_value = std::string("auto"),
-              .help = "which kind of counter and ADC device; auto: the first of any that is plugged in",
-              .choices = kUsbDevices},
-    Parameter{.name = "serial",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "its serial number; not needed where there is only one device"},
-    Parameter{.name = "port",
-              .unit = "",
-              .default_value = std::string(""),
-              .help = "the USB port that it is plugged into, such as 1-2.3, where serial numbers do not help"},
-    Parameter{.name = "counter",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = 0,
-              .max = 1,
-              .help = "the counter that the cup is connected to"},
-    Parameter{.name = "metres_per_pulse",
-              .unit = "m",
-              .default_value = 0.1,
-              .min = 0.001,
-              .max = 20.0,
-              .help = "the cup's slope: m/s for each pulse per second"},
-    Parameter{.name = "offset",
-              .unit = "m/s",
-              .default_value = 0.0,
-              .min = -5.0,
-              .max = 5.0,
-              .help = "the cup's offset: added while it turns"},
-    Parameter{.name = "window_pulses",
-              .unit = "",
-              .default_value = std::int64_t{4},
-              .min = 1,
-              .max = 100000,
-              .help = "pulses per reading; more give smoother, but later speeds"},
-    Parameter{.name = "window",
-              .unit = "s",
-              .default_value = 1.0,
-              .min = 0.05,
-              .max = 60.0,
-              .help = "longest wait for these pulses, and so the longest interval between readings"},
-    Parameter{.name = "sample_rate",
-              .unit = "Hz",
-              .default_value = 10.0,
-              .min = 0.2,
-              .max = 100.0,
-              .help = "how often the counter and the vane are read"},
-    Parameter{.name = "vane_channel",
-              .unit = "",
-              .default_value = std::int64_t{0},
-              .min = -1,
-              .max = 7,
-              .help = "the analogue input that the vane's wiper is connected to; -1: there is no vane"},
-    Parameter{.name = "vane_start",
-              .unit = "deg",
-              .default_value = 0.0,
-              .min = -360.0,
-              .max = 360.0,
-              .help = "the direction at the beginning of the vane's track, where the voltage is lowest"},
-    Parameter{.name = "vane_span",
-              .unit = "deg",
-              .default_value = 356.0,
-              .min = 1.0,
-              .max = 360.0,
-              .help = "the angle of the track, clockwise; the rest of the circle is its dead band, without direction"},
-    Parameter{.name = "vane_lowest",
-              .unit = "",
-              .default_value = 0.0,
-              .min = 0.0,
-              .max = 1.0,
-              .help = "share of the reference voltage at the beginning of the track"},
-    Parameter{.name = "vane_highest",
-              .unit = "",
-              .default_value = 1.0,
-              .min = 0.0,
-              .max = 1.0,
-              .help = "share of the reference voltage at its end"},
-    Parameter{.name = "reference_voltage",
-              .unit = "V",
-              .default_value = 5.0,
-              .min = 0.1,
-              .max = 20.0,
-              .help = "voltage across the track, where it is not measured"},
-    Parameter{.name = "reference_channel",
-              .unit = "",
-              .default_value = std::int64_t{-1},
-              .min = -1,
-              .max = 7,
-              .help = "analogue input that measures this voltage, since the 5 V of a USB port are not exact; -1: none"},
-    Parameter{.name = "response_timeout",
-              .unit = "s",
-              .default_value = 0.5,
-              .min = 0.01,
-              .max = 10.0,
-              .help = "longest wait for a reply"},
-};
+std::vector<const UsbDaqModel*> models_named(const std::string& name) {
+  std::vector<const UsbDaqModel*> models;
+  for (const UsbDaqModel* const model : usb_daq_models()) {
+    if (name == kUsbDevices[0] || name == model->name) models.push_back(model);
+  }
+  return models;
+}
 
-std::optional<std::uint8_t> channel_of(const ParameterValues& values, std::string_view name) {
-  const std::int64_t channel = values.integer(name);
+std::optional<std::uint8_t> channel_of(std::int64_t channel) {
   return channel < 0 ? std::nullopt : std::optional(static_cast<std::uint8_t>(channel));
 }
 
-UsbSettings usb_settings_of(const ParameterValues& values) {
-  UsbSettings settings;
-  for (const UsbDaqModel* const model : usb_daq_models()) {
-    if (values.text("device") == "auto" || values.text("device") == model->name) settings.models.push_back(model);
-  }
-  settings.serial = values.text("serial");
-  settings.port = values.text("port");
-  settings.wiring.counter = static_cast<std::uint8_t>(values.integer("counter"));
-  settings.wiring.vane_channel = channel_of(values, "vane_channel");
-  settings.wiring.reference_channel = channel_of(values, "reference_channel");
+template <class Member>
+auto of(Member DaqWiring::*member) {
+  return [member](UsbSettings& settings) -> Member& { return settings.wiring.*member; };
+}
+template <class Member>
+auto of(Member CupCalibration::*member) {
+  return [member](UsbSettings& settings) -> Member& { return settings.cup.*member; };
+}
+template <class Member>
+auto of(Member VaneCalibration::*member) {
+  return [member](UsbSettings& settings) -> Member& { return settings.vane.*member; };
+}
 
-  settings.cup.metres_per_pulse = values.number("metres_per_pulse");
-  settings.cup.offset_m_s = values.number("offset");
-  settings.cup.enough_pulses = static_cast<std::uint32_t>(values.integer("window_pulses"));
-  settings.cup.longest_window_s = values.number("window");
+const Fields<UsbSettings> kUsbFields = {
+    {{.name = "device",
+      .unit = "",
+      .default_value = std::string("auto"),
+      .help = "which kind of counter and ADC device; auto: the first of any that is plugged in",
+      .choices = kUsbDevices},
+     &UsbSettings::models,
+     models_named},
+    {{.name = "serial",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "its serial number; not needed where there is only one device"},
+     &UsbSettings::serial},
+    {{.name = "port",
+      .unit = "",
+      .default_value = std::string(""),
+      .help = "the USB port that it is plugged into, such as 1-2.3, where serial numbers do not help"},
+     &UsbSettings::port},
+    {{"counter", "", std::int64_t{0}, 0, 1, "the counter that the cup is connected to"}, of(&DaqWiring::counter)},
+    {{"metres_per_pulse", "m", 0.1, 0.001, 20.0, "the cup's slope: m/s for each pulse per second"},
+     of(&CupCalibration::metres_per_pulse)},
+    {{"offset", "m/s", 0.0, -5.0, 5.0, "the cup's offset: added while it turns"}, of(&CupCalibration::offset_m_s)},
+    {{"window_pulses", "", std::int64_t{4}, 1, 100000, "pulses per reading; more give smoother, but later speeds"},
+     of(&CupCalibration::enough_pulses)},
+    {{"window", "s", 1.0, 0.05, 60.0, "longest wait for these pulses, and so the longest interval between readings"},
+     of(&CupCalibration::longest_window_s)},
+    {{"sample_rate", "Hz", 10.0, 0.2, 100.0, "how often the counter and the vane are read"},
+     &UsbSettings::period,
+     [](double rate_hz) { return from_seconds(1.0 / rate_hz); }},
+    {{"vane_channel", "", std::int64_t{0}, -1, 7,
+      "the analogue input that the vane's wiper is connected to; -1: there is no vane"},
+     of(&DaqWiring::vane_channel),
+     channel_of},
+    {{"vane_start", "deg", 0.0, -360.0, 360.0,
+      "the direction at the beginning of the vane's track, where the voltage is lowest"},
+     of(&VaneCalibration::start_deg)},
+    {{"vane_span", "deg", 356.0, 1.0, 360.0,
+      "the angle of the track, clockwise; the rest of the circle is its dead band, without direction"},
+     of(&VaneCalibration::electrical_deg)},
+    {{"vane_lowest", "", 0.0, 0.0, 1.0, "share of the reference voltage at the beginning of the track"},
+     of(&VaneCalibration::lowest_ratio)},
+    {{"vane_highest", "", 1.0, 0.0, 1.0, "share of the reference voltage at its end"},
+     of(&VaneCalibration::highest_ratio)},
+    {{"reference_voltage", "V", 5.0, 0.1, 20.0, "voltage across the track, where it is not measured"},
+     &UsbSettings::reference_v},
+    {{"reference_channel", "", std::int64_t{-1}, -1, 7,
+      "analogue input that measures this voltage, since the 5 V of a USB port are not exact; -1: none"},
+     of(&DaqWiring::reference_channel),
+     channel_of},
+    {{"response_timeout", "s", 0.5, 0.01, 10.0, "longest wait for a reply"}, &UsbSettings::timeout, from_seconds},
+};
+
+UsbSettings usb_settings_of(const ParameterValues& values) {
+  UsbSettings settings = kUsbFields.of(values);
   settings.cup.shortest_window_s = std::min(settings.cup.shortest_window_s, settings.cup.longest_window_s);
-  settings.vane.start_deg = values.number("vane_start");
-  settings.vane.electrical_deg = values.number("vane_span");
-  settings.vane.lowest_ratio = values.number("vane_lowest");
-  settings.vane.highest_ratio = values.number("vane_highest");
-  settings.reference_v = values.number("reference_voltage");
-  settings.period = from_seconds(1.0 / values.number("sample_rate"));
-  settings.timeout = from_seconds(values.number("response_timeout"));
   return settings;
 }
 
@@ -187,11 +143,12 @@ std::unique_ptr<sensor::Sensor> open_usb(const ParameterValues& values) {
 }
 
 sensor::ValueSelection usb_selection(const ParameterValues& values) {
-  const std::string& device = values.text("device");
+  const UsbSettings settings = kUsbFields.of(values);
   return {.device = "USB device",
-          .parts = {{.key = "device", .value = device == "auto" ? "" : device},
-                    {.key = "serial", .value = values.text("serial")},
-                    {.key = "port", .value = values.text("port")}}};
+          .parts = {
+              {.key = "device", .value = settings.models.size() > 1 ? "" : std::string(settings.models.front()->name)},
+              {.key = "serial", .value = settings.serial},
+              {.key = "port", .value = settings.port}}};
 }
 
 std::vector<sensor::FoundDevice> find_usb() {
@@ -223,7 +180,7 @@ extern const sensor::DriverDescription kUsbDriver;
 const sensor::DriverDescription kUsbDriver{
     .name = "usb",
     .summary = "a cup and a vane on a counter and ADC device: MCC USB-1208FS-Plus, LabJack U3",
-    .parameters = kUsbParameters,
+    .parameters = kUsbFields.parameters(),
     .open = open_usb,
     .find = find_usb,
     .selection = usb_selection,
