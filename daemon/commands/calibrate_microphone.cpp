@@ -211,7 +211,7 @@ void calibrate_microphone(const MicrophoneOptions& options) {
     throw ExitError(kExitUsage, "--part: give one with --reference, or one for each --speed, in the same order");
   }
   tools::calibration::CalibrationSession session(options.request, has_reference ? 900.0 : 60.0);
-  if (session.sensor().driver->name != std::string_view("microphone")) {
+  if (session.sensor().driver->calibration != drivers::sensor::CalibrationMeans::kSoundLevel) {
     throw ExitError(kExitUsage,
                     fmt::format("\"{}\" is not a microphone; use `yuragi calibrate span`", session.sensor().name));
   }

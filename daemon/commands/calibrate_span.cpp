@@ -119,7 +119,7 @@ std::vector<double> shown_speeds(const std::vector<wind::judging::CalibrationPoi
 void calibrate_span(const SpanOptions& options) {
   check_options(options);
   tools::calibration::CalibrationSession session(options.request, options.request.reference.empty() ? 60.0 : 900.0);
-  if (session.sensor().driver->name == std::string_view("microphone")) {
+  if (session.sensor().driver->calibration == drivers::sensor::CalibrationMeans::kSoundLevel) {
     throw ExitError(kExitUsage, "a microphone is calibrated with `yuragi calibrate microphone`");
   }
   const std::vector<wind::judging::CalibrationPoint> pairs = known_pairs(session, options);

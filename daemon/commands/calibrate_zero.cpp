@@ -12,7 +12,7 @@ namespace {
 
 void calibrate_zero(const tools::calibration::CalibrationRequest& request) {
   tools::calibration::CalibrationSession session(request, 30.0);
-  if (session.sensor().driver->name == std::string_view("microphone")) {
+  if (session.sensor().driver->calibration == drivers::sensor::CalibrationMeans::kSoundLevel) {
     throw ExitError(kExitUsage,
                     "a microphone has no zero: its noise in a calm is found while it runs, or set as its noise_floor");
   }

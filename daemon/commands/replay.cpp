@@ -63,7 +63,7 @@ double parse_rate(const std::string& text) {
 
 /// The one sensor of a replay: the windlog driver on this file.
 settings::SensorConfig replay_sensor(const ReplayOptions& options, double rate) {
-  const drivers::sensor::DriverDescription& windlog = *drivers::sensor::find_driver("windlog");
+  const drivers::sensor::DriverDescription& windlog = drivers::sensor::recording_driver();
   const ParameterValues::Map given{{"file", options.file.string()},    {"rate", rate},
                                    {"loop", options.playback.loop},    {"start", options.playback.start},
                                    {"seam", options.seam_s},           {"same_time_of_day", options.at_time_of_day},

@@ -16,7 +16,7 @@ namespace {
 constexpr Nanoseconds kRetryInterval = std::chrono::minutes(1);
 
 settings::SensorConfig fallback_sensor(const settings::FallbackConfig& fallback) {
-  const drivers::sensor::DriverDescription& windlog = *drivers::sensor::find_driver("windlog");
+  const drivers::sensor::DriverDescription& windlog = drivers::sensor::recording_driver();
   const ParameterValues::Map given{{"file", fallback.recording.string()}, {"loop", true}, {"same_time_of_day", true}};
   return settings::default_sensor("fall-back", windlog, ParameterValues::resolve(windlog.parameters, given).value(),
                                   fallback.origin);

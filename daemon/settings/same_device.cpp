@@ -13,7 +13,7 @@
 namespace yuragi::daemon::settings {
 namespace {
 
-using drivers::sensor::DeviceClaim;
+using drivers::sensor::Endpoint;
 using drivers::sensor::ValueSelection;
 
 /// What one sensor needs of its device; nothing if that cannot be told: open_sensor() reports the reason, unless the
@@ -21,17 +21,17 @@ using drivers::sensor::ValueSelection;
 struct DeviceUse {
   const SensorConfig* sensor;
   std::optional<ValueSelection> selection;
-  std::vector<DeviceClaim> claims;
+  std::vector<Endpoint> endpoints;
 };
 
 DeviceUse use_of(const SensorConfig& sensor) {
   const drivers::sensor::DriverDescription& driver = *sensor.driver;
-  DeviceUse use = {.sensor = &sensor, .selection = {}, .claims = {}};
+  DeviceUse use = {.sensor = &sensor, .selection = {}, .endpoints = {}};
   try {
     if (driver.selection != nullptr) use.selection = driver.selection(sensor.values);
-    if (driver.claims != nullptr) use.claims = driver.claims(sensor.values);
+    if (driver.endpoints != nullptr) use.endpoints = driver.endpoints(sensor.values);
   } catch (const std::runtime_error&) {
-    return {.sensor = &sensor, .selection = {}, .claims = {}};
+    return {.sensor = &sensor, .selection = {}, .endpoints = {}};
   }
   return use;
 }
@@ -69,12 +69,13 @@ void refuse_same_values(const DeviceUse& first, const DeviceUse& second) {
 
 void refuse_same_claim(const DeviceUse& first, const DeviceUse& second) {
   const bool is_one_driver = first.sensor->driver == second.sensor->driver;
-  for (const DeviceClaim& claim : second.claims) {
-    const auto other = std::ranges::find(first.claims, claim.device, &DeviceClaim::device);
-    if (other == first.claims.end() || (is_one_driver && claim.is_shared && other->is_shared)) continue;
+  for (const Endpoint& endpoint : second.endpoints) {
+    const auto other = std::ranges::find(first.endpoints, endpoint.claim, &Endpoint::claim);
+    if (endpoint.claim.empty() || other == first.endpoints.end()) continue;
+    if (is_one_driver && endpoint.is_shared && other->is_shared) continue;
     throw same_device(
         first, second,
-        fmt::format("need {}, which only one can have: leave one out, or give one of them another", claim.device));
+        fmt::format("need {}, which only one can have: leave one out, or give one of them another", endpoint.claim));
   }
 }
 

@@ -94,7 +94,7 @@ std::string_view keys_of(BytePortKind kind) noexcept {
 }
 
 std::string sole_device_of(const BytePortAddress& address) {
-  const bool is_sole_udp = address.kind == BytePortKind::kUdp && !address.is_port_shared && !is_multicast(address.host);
+  const bool is_sole_udp = address.kind == BytePortKind::kUdp && !is_multicast(address.host);
   return address.kind == BytePortKind::kSerial || is_sole_udp ? device_of(address) : "";
 }
 

@@ -77,8 +77,8 @@ std::string device_of(const BytePortAddress& address);
 /// The settings that select it: "host, port".
 std::string_view keys_of(BytePortKind kind) noexcept;
 
-/// device_of() a port that cannot be open twice: a serial port, a UDP port that is neither shared nor a multicast
-/// group's. Empty: others may open it, too.
+/// device_of() a port that sensors of different drivers cannot both have: a serial port, a UDP port that is no
+/// multicast group's. Empty: all may open it.
 std::string sole_device_of(const BytePortAddress& address);
 
 enum class ByteStatus : std::uint8_t {

@@ -85,11 +85,9 @@ const sensor::DriverDescription kDavisDriver{
     .parameters = kDavisFields.parameters(),
     .open = open_davis,
     .find = [] { return sensor::find_behind_serial_ports(); },
-    .claims =
-        [](const ParameterValues& values) {
-          return sensor::claims_of(bus::sole_device_of(vantage_settings_of(values).address));
-        },
+    .endpoints = [](const ParameterValues& values) { return sensor::endpoints_at(kDavisFields.of(values).address); },
     .selection =
-        [](const ParameterValues& values) { return sensor::selection_at(vantage_settings_of(values).address); }};
+        [](const ParameterValues& values) { return sensor::selection_at(vantage_settings_of(values).address); },
+    .formats = "davis"};
 
 }  // namespace yuragi::drivers::davis

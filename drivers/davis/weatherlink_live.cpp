@@ -29,6 +29,21 @@ const Fields<WeatherLinkLiveSettings> kWeatherLinkLiveFields = {
      &WeatherLinkLiveSettings::transmitter},
 };
 
+WeatherLinkLiveSettings configured(const ParameterValues& values) {
+  WeatherLinkLiveSettings settings = kWeatherLinkLiveFields.of(values);
+  settings.http.kind = bus::BytePortKind::kTcpClient;
+  settings.broadcasts.kind = bus::BytePortKind::kUdp;
+  settings.broadcasts.is_port_shared = true;  // by the sensors of one device's transmitters
+  return settings;
+}
+
+std::vector<sensor::Endpoint> weatherlink_live_endpoints(const ParameterValues& values) {
+  const WeatherLinkLiveSettings settings = configured(values);
+  std::vector<sensor::Endpoint> endpoints = sensor::endpoints_at(settings.http);
+  endpoints.push_back(sensor::endpoints_at(settings.broadcasts).front());
+  return endpoints;
+}
+
 std::unique_ptr<sensor::Sensor> open_weatherlink_live(const ParameterValues& values) {
   const WeatherLinkLiveSettings settings = weatherlink_live_settings_of(values);
   return std::make_unique<WeatherLinkLiveSensor>(settings, bus::make_byte_port(settings.http),
@@ -38,11 +53,8 @@ std::unique_ptr<sensor::Sensor> open_weatherlink_live(const ParameterValues& val
 }  // namespace
 
 WeatherLinkLiveSettings weatherlink_live_settings_of(const ParameterValues& values) {
-  WeatherLinkLiveSettings settings = kWeatherLinkLiveFields.of(values);
-  settings.http.kind = bus::BytePortKind::kTcpClient;
+  WeatherLinkLiveSettings settings = configured(values);
   if (settings.http.host.empty()) throw std::runtime_error("host: is missing; give the WeatherLink Live's address");
-  settings.broadcasts.kind = bus::BytePortKind::kUdp;
-  settings.broadcasts.is_port_shared = true;  // by the sensors of one device's transmitters
   return settings;
 }
 
@@ -53,9 +65,7 @@ const sensor::DriverDescription kWeatherLinkLiveDriver{
     .parameters = kWeatherLinkLiveFields.parameters(),
     .open = open_weatherlink_live,
     .find_in_network = find_weatherlink_lives,
-    .claims = [](const ParameterValues& values) -> std::vector<sensor::DeviceClaim> {
-      return {{.device = bus::device_of(weatherlink_live_settings_of(values).broadcasts), .is_shared = true}};
-    },
+    .endpoints = weatherlink_live_endpoints,
     .selection =
         [](const ParameterValues& values) {
           const WeatherLinkLiveSettings settings = weatherlink_live_settings_of(values);
@@ -64,6 +74,7 @@ const sensor::DriverDescription kWeatherLinkLiveDriver{
               .device_keys = "host, http_port",
               .parts = {{.key = "transmitter",
                          .value = settings.transmitter == 0 ? "" : std::to_string(settings.transmitter)}}};
-        }};
+        },
+    .formats = "weatherlink"};
 
 }  // namespace yuragi::drivers::davis

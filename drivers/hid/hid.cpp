@@ -121,14 +121,18 @@ std::optional<sensor::StatedValue> hid_value(const ParameterValues& values) {
 }  // namespace
 
 extern const sensor::DriverDescription kHidDriver;
-const sensor::DriverDescription kHidDriver{.name = "hid",
-                                           .summary =
-                                               "USB weather stations: Oregon Scientific WMR100 and WMR300, Fine Offset "
-                                               "WH1080 and WH3080, AcuRite, Hideki TE923",
-                                           .parameters = kHidFields.parameters(),
-                                           .open = open_hid,
-                                           .find = find_hid,
-                                           .selection = hid_selection,
-                                           .stated_value = hid_value};
+const sensor::DriverDescription kHidDriver{
+    .name = "hid",
+    .summary =
+        "USB weather stations: Oregon Scientific WMR100 and WMR300, Fine Offset "
+        "WH1080 and WH3080, AcuRite, Hideki TE923",
+    .parameters = kHidFields.parameters(),
+    .open = open_hid,
+    .find = find_hid,
+    .endpoints =
+        [](const ParameterValues&) { return std::vector{sensor::Endpoint{.kind = sensor::EndpointKind::kHid}}; },
+    .selection = hid_selection,
+    .stated_value = hid_value,
+    .formats = "wmr100 wmr300 fineoffset acurite te923"};
 
 }  // namespace yuragi::drivers::hid

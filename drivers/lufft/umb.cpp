@@ -85,10 +85,8 @@ const sensor::DriverDescription kUmbDriver{
       return std::make_unique<UmbSensor>(settings, bus::make_byte_port(settings.address));
     },
     .find = [] { return sensor::find_behind_serial_ports(); },
-    .claims =
-        [](const ParameterValues& values) {
-          return sensor::claims_of(bus::sole_device_of(umb_settings_of(values).address));
-        },
+    .endpoints =
+        [](const ParameterValues& values) { return sensor::endpoints_at(kUmbFields.of(values).settings.address); },
     .selection =
         [](const ParameterValues& values) {
           const UmbKeys keys = kUmbFields.of(values);
@@ -101,6 +99,7 @@ const sensor::DriverDescription kUmbDriver{
           // Channel 401, each second's value; 400, "actual", of a VENTUS, which has a new one four times a second.
           return std::optional(sensor::StatedValue{.value = wind::ReadingValue::kInstant,
                                                    .source = "Lufft WS manual 6.8: channels 400, 401"});
-        }};
+        },
+    .formats = "umb-binary"};
 
 }  // namespace yuragi::drivers::lufft

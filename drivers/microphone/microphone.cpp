@@ -193,13 +193,17 @@ std::optional<sensor::StatedValue> microphone_value(const ParameterValues& value
 }  // namespace
 
 extern const sensor::DriverDescription kMicrophoneDriver;
-const sensor::DriverDescription kMicrophoneDriver{.name = "microphone",
-                                                  .summary = "one to four bare microphones, by PortAudio",
-                                                  .parameters = kMicrophoneParameters,
-                                                  .open = open_microphone,
-                                                  .find = find_plugged_microphones,
-                                                  .selection = microphone_selection,
-                                                  .stated_value = microphone_value,
-                                                  .is_relative = true};
+const sensor::DriverDescription kMicrophoneDriver{
+    .name = "microphone",
+    .summary = "one to four bare microphones, by PortAudio",
+    .parameters = kMicrophoneParameters,
+    .open = open_microphone,
+    .find = find_plugged_microphones,
+    .endpoints =
+        [](const ParameterValues&) { return std::vector{sensor::Endpoint{.kind = sensor::EndpointKind::kSoundCard}}; },
+    .selection = microphone_selection,
+    .stated_value = microphone_value,
+    .calibration = sensor::CalibrationMeans::kSoundLevel,
+    .is_relative = true};
 
 }  // namespace yuragi::drivers::microphone

@@ -13,6 +13,7 @@
 #include "drivers/modbus/modbus_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/serial_or_tcp.hpp"
+#include "engine/base/address.hpp"
 #include "engine/base/fields.hpp"
 
 namespace yuragi::drivers::modbus {
@@ -177,14 +178,19 @@ std::unique_ptr<sensor::Sensor> open_modbus(const ParameterValues& values) {
 }
 
 /// Sensors on one line share it (ModbusBus); devices and gateways in a network have no line.
-std::vector<sensor::DeviceClaim> modbus_claims(const ParameterValues& values) {
+std::vector<sensor::Endpoint> modbus_endpoints(const ParameterValues& values) {
   const ModbusKeys keys = kModbusFields.of(values);
-  std::vector<sensor::DeviceClaim> claims;
-  if (keys.framing == ModbusFraming::kTcp) return claims;
+  if (keys.framing == ModbusFraming::kTcp)
+    return {{.kind = sensor::EndpointKind::kServer, .name = to_string(Address{keys.host, keys.port})}};
+  std::vector<sensor::Endpoint> lines;
   for (const std::string& device : {keys.device, keys.direction_device}) {
-    if (!device.empty()) claims.push_back({.device = bus::serial_device_of(device), .is_shared = true});
+    if (device.empty() && !lines.empty()) continue;
+    lines.push_back({.kind = sensor::EndpointKind::kSerialPort,
+                     .name = device,
+                     .claim = device.empty() ? std::string() : bus::serial_device_of(device),
+                     .is_shared = true});
   }
-  return claims;
+  return lines;
 }
 
 /// The register that holds the speed: sensors may have a vane in common.
@@ -249,10 +255,11 @@ const sensor::DriverDescription kModbusDriver{
     .parameters = kModbusFields.parameters(),
     .open = open_modbus,
     .find = find_modbus,
-    .claims = modbus_claims,
+    .endpoints = modbus_endpoints,
     .selection = modbus_selection,
     .known_devices = known_modbus_devices,
     .promises = modbus_promises,
-    .stated_value = modbus_value};
+    .stated_value = modbus_value,
+    .formats = "modbus:PROFILE"};
 
 }  // namespace yuragi::drivers::modbus

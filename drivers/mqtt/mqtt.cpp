@@ -22,6 +22,7 @@
 #include "drivers/sensor/reopening_sensor.hpp"
 #include "drivers/sensor/secret_source.hpp"
 #include "drivers/sensor/speed_unit.hpp"
+#include "engine/base/address.hpp"
 #include "engine/base/fields.hpp"
 #include "engine/base/printable_text.hpp"
 
@@ -435,6 +436,12 @@ std::uint16_t broker_port_of(const MqttSubscription& subscription) {
   return subscription.port != 0 ? subscription.port : usual;
 }
 
+std::vector<sensor::Endpoint> mqtt_endpoints(const ParameterValues& values) {
+  const MqttKeys keys = kMqttFields.of(values);
+  const MqttSubscription& broker = keys.settings.subscription;
+  return {{.kind = sensor::EndpointKind::kBroker, .name = to_string(Address{broker.host, broker_port_of(broker)})}};
+}
+
 MqttSettings mqtt_settings_of(const ParameterValues& values) {
   const MqttKeys keys = kMqttFields.of(values);
   MqttSettings settings = keys.settings;
@@ -514,6 +521,7 @@ const sensor::DriverDescription kMqttDriver{
     .summary = "wind that is published on an MQTT broker, as a number or in JSON",
     .parameters = kMqttFields.parameters(),
     .open = open_mqtt,
+    .endpoints = mqtt_endpoints,
     .selection = mqtt_selection,
     .unchanged_for_s = mqtt_unchanged_for_s};
 

@@ -178,6 +178,8 @@ const sensor::DriverDescription kEcowittDriver{
     .parameters = kEcowittFields.parameters(),
     .open = open_ecowitt,
     .find_in_network = find_ecowitt_gateways,
-    .selection = ecowitt_selection};
+    .endpoints = [](const ParameterValues& values) { return sensor::endpoints_at(kEcowittFields.of(values).port); },
+    .selection = ecowitt_selection,
+    .formats = "ecowitt"};
 
 }  // namespace yuragi::drivers::network

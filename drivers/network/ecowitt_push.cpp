@@ -25,6 +25,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/reading_limit.hpp"
 #include "drivers/sensor/reopening_sensor.hpp"
+#include "engine/base/address.hpp"
 #include "engine/base/fields.hpp"
 #include "engine/base/known_host.hpp"
 #include "engine/base/printable_text.hpp"
@@ -338,8 +339,11 @@ std::unique_ptr<sensor::Sensor> open_ecowitt_push(const ParameterValues& values)
   return std::make_unique<EcowittPushSensor>(ecowitt_push_settings_of(values));
 }
 
-std::vector<sensor::DeviceClaim> ecowitt_push_claims(const ParameterValues& values) {
-  return sensor::claims_of(fmt::format("TCP port {}", kEcowittPushFields.of(values).address.port));
+std::vector<sensor::Endpoint> ecowitt_push_endpoints(const ParameterValues& values) {
+  const auto& address = kEcowittPushFields.of(values).address;
+  return {{.kind = sensor::EndpointKind::kTcpPort,
+           .name = to_string(address),
+           .claim = fmt::format("TCP port {}", address.port)}};
 }
 
 }  // namespace
@@ -350,13 +354,14 @@ const sensor::DriverDescription kEcowittPushDriver{
     .summary = "stations that push their values here by HTTP: Ecowitt, Ambient Weather, Wunderground",
     .parameters = kEcowittPushFields.parameters(),
     .open = open_ecowitt_push,
-    .claims = ecowitt_push_claims,
+    .endpoints = ecowitt_push_endpoints,
     .selection =
         [](const ParameterValues& values) {
           return sensor::ValueSelection{
               .device = fmt::format("pushes to TCP port {}", kEcowittPushFields.of(values).address.port),
               .device_keys = "port"};
         },
-    .device_setup = kEcowittPushSetup};
+    .device_setup = kEcowittPushSetup,
+    .formats = "ecowitt-push"};
 
 }  // namespace yuragi::drivers::network

@@ -200,10 +200,6 @@ std::unique_ptr<sensor::Sensor> open_tempest(const ParameterValues& values) {
 }
 
 /// Sensors of different stations share the port.
-std::vector<sensor::DeviceClaim> tempest_claims(const ParameterValues& values) {
-  return {{.device = bus::device_of(kTempestFields.of(values).port), .is_shared = true}};
-}
-
 sensor::ValueSelection tempest_selection(const ParameterValues& values) {
   const TempestSettings settings = kTempestFields.of(values);
   return sensor::selection_at(settings.port,
@@ -220,7 +216,8 @@ const sensor::DriverDescription kTempestDriver{
     .parameters = kTempestFields.parameters(),
     .open = open_tempest,
     .find_in_network = find_tempest_stations,
-    .claims = tempest_claims,
-    .selection = tempest_selection};
+    .endpoints = [](const ParameterValues& values) { return sensor::endpoints_at(kTempestFields.of(values).port); },
+    .selection = tempest_selection,
+    .formats = "tempest"};
 
 }  // namespace yuragi::drivers::network

@@ -230,10 +230,6 @@ std::unique_ptr<sensor::Sensor> open_osc(const ParameterValues& values) {
   return std::make_unique<OscSensor>(std::move(settings));
 }
 
-std::vector<sensor::DeviceClaim> osc_claims(const ParameterValues& values) {
-  return sensor::claims_of(bus::sole_device_of(kOscFields.of(values).port));
-}
-
 bool osc_address_covers(const std::string& wide, const std::string& narrow) {
   return bus::osc_address_matches(narrow, wide);
 }
@@ -254,12 +250,13 @@ double osc_unchanged_for_s(const ParameterValues& values) {
 }  // namespace
 
 extern const sensor::DriverDescription kOscDriver;
-const sensor::DriverDescription kOscDriver{.name = "osc",
-                                           .summary = "wind that another program sends as Open Sound Control messages",
-                                           .parameters = kOscFields.parameters(),
-                                           .open = open_osc,
-                                           .claims = osc_claims,
-                                           .selection = osc_selection,
-                                           .unchanged_for_s = osc_unchanged_for_s};
+const sensor::DriverDescription kOscDriver{
+    .name = "osc",
+    .summary = "wind that another program sends as Open Sound Control messages",
+    .parameters = kOscFields.parameters(),
+    .open = open_osc,
+    .endpoints = [](const ParameterValues& values) { return sensor::endpoints_at(kOscFields.of(values).port); },
+    .selection = osc_selection,
+    .unchanged_for_s = osc_unchanged_for_s};
 
 }  // namespace yuragi::drivers::osc

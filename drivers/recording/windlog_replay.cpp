@@ -249,6 +249,10 @@ sensor::ValueSelection windlog_selection(const ParameterValues& values) {
                     {.key = "start", .value = playback.start.empty() ? "the first reading" : playback.start}}};
 }
 
+std::vector<sensor::Endpoint> windlog_endpoints(const ParameterValues& values) {
+  return {{.kind = sensor::EndpointKind::kFile, .name = kWindlogFields.of(values).file}};
+}
+
 }  // namespace
 
 std::unique_ptr<sensor::Sensor> play_recording(std::filesystem::path file, windlog::PlayerOptions options) {
@@ -260,6 +264,7 @@ const sensor::DriverDescription kWindlogDriver{.name = "windlog",
                                                .summary = "plays a recording",
                                                .parameters = kWindlogFields.parameters(),
                                                .open = open_windlog,
+                                               .endpoints = windlog_endpoints,
                                                .selection = windlog_selection,
                                                .plays_recordings = true};
 

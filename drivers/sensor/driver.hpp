@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -8,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/sensor/device_claim.hpp"
+#include "drivers/sensor/endpoint.hpp"
 #include "drivers/sensor/found_device.hpp"
 #include "drivers/sensor/network_search.hpp"
 #include "drivers/sensor/sensor.hpp"
@@ -39,6 +40,12 @@ struct PromisedQuantities {
   bool gust = false;
 };
 
+/// How a sensor is calibrated.
+enum class CalibrationMeans : std::uint8_t {
+  kFactors,     ///< by gain, offset and north offset of [sensor.calibration]
+  kSoundLevel,  ///< by the level of its sound beside another anemometer
+};
+
 /// A family of sensors: one constant `kXDriver` in its own file, listed in drivers/CMakeLists.txt.
 struct DriverDescription {
   std::string_view name;
@@ -53,9 +60,9 @@ struct DriverDescription {
   /// Searches the local networks for stations that it can read, for as long as the search takes; nullptr where it
   /// cannot. Sends only what the search is for. Throws FailureError where the network cannot be searched.
   std::vector<FoundDevice> (*find_in_network)(const NetworkSearch& search) = nullptr;
-  /// The devices that a sensor of these values has to itself, without touching them, of values that open() takes;
-  /// nullptr: none. Two sensors that claim the same device are refused.
-  std::vector<DeviceClaim> (*claims)(const ParameterValues& values) = nullptr;
+  /// What a sensor of these values needs, without touching it; nullptr: nothing. The doctor looks whether it is there,
+  /// and two sensors that claim the same are refused. Does not throw, even for values that open() refuses.
+  std::vector<Endpoint> (*endpoints)(const ParameterValues& values) = nullptr;
   /// Which values a sensor of these values reads, without touching its device, of values that open() takes; nullptr:
   /// no two sensors read the same. Two sensors of the driver are refused where one's selection covers the other's.
   ValueSelection (*selection)(const ParameterValues& values) = nullptr;
@@ -74,6 +81,10 @@ struct DriverDescription {
   std::string_view device_setup = {};
   /// It plays a recording: never to be taken for the live wind.
   bool plays_recordings = false;
+  /// What `yuragi calibrate` finds out of it.
+  CalibrationMeans calibration = CalibrationMeans::kFactors;
+  /// The formats of `yuragi decode` that read its messages, with blanks between them; empty: it has none of its own.
+  std::string_view formats = {};
   /// A relative sensor: only the fluctuations of its readings are valid, not their scale, which depends on where it
   /// is mounted. It is compared with no other sensor, and beside others only its gusts count, unless configured
   /// otherwise.
@@ -89,6 +100,14 @@ inline const DriverDescription* find_driver(std::string_view name) {
     if (driver->name == name) return driver;
   }
   return nullptr;
+}
+
+/// The driver that plays recordings.
+inline const DriverDescription& recording_driver() {
+  for (const DriverDescription* const driver : driver_table()) {
+    if (driver->plays_recordings) return *driver;
+  }
+  throw std::logic_error("no driver plays recordings");
 }
 
 }  // namespace yuragi::drivers::sensor

@@ -163,8 +163,15 @@ TextSensorSettings text_sensor_settings_of(const ParameterValues& values) {
   return text;
 }
 
-std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values) {
-  return sensor::claims_of(bus::sole_device_of(text_sensor_settings_of(values).address));
+bus::BytePortAddress byte_port_address_of(const ParameterValues& values) {
+  const BytePortKeys keys = byte_port_fields().of(values);
+  bus::BytePortAddress address = keys.text.address;
+  if (address.kind == BytePortKind::kFile) address.path = keys.file;
+  return address;
+}
+
+std::vector<sensor::Endpoint> byte_port_endpoints(const ParameterValues& values) {
+  return sensor::endpoints_at(byte_port_address_of(values));
 }
 
 }  // namespace yuragi::drivers::text

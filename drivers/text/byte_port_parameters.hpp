@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "drivers/sensor/device_claim.hpp"
+#include "drivers/sensor/endpoint.hpp"
 #include "drivers/text/text_sensor.hpp"
 #include "engine/base/parameter.hpp"
 
@@ -16,7 +16,8 @@ std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, dou
 /// what to do, where they cannot work together.
 TextSensorSettings text_sensor_settings_of(const ParameterValues& values);
 
-/// What a sensor of such values has to itself: its serial port, or its UDP port.
-std::vector<sensor::DeviceClaim> byte_port_claims(const ParameterValues& values);
+/// Where a sensor of such values reads, as it is configured, and the endpoint that this is. Do not throw.
+bus::BytePortAddress byte_port_address_of(const ParameterValues& values);
+std::vector<sensor::Endpoint> byte_port_endpoints(const ParameterValues& values);
 
 }  // namespace yuragi::drivers::text

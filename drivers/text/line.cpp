@@ -198,7 +198,8 @@ const sensor::DriverDescription kLineDriver{
           return sensor::find_behind_serial_ports("transport = \"serial\"\n",
                                                   "\nbaud = 9600  # as Serial.begin() of the sketch says");
         },
-    .claims = byte_port_claims,
-    .selection = line_selection};
+    .endpoints = byte_port_endpoints,
+    .selection = line_selection,
+    .formats = "line"};
 
 }  // namespace yuragi::drivers::text

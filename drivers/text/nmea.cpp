@@ -205,8 +205,9 @@ const sensor::DriverDescription kNmeaDriver{
           return sensor::find_behind_serial_ports("transport = \"serial\"\n",
                                                   "\nbaud = 4800  # or 9600, 19200: as the anemometer is set");
         },
-    .claims = byte_port_claims,
+    .endpoints = byte_port_endpoints,
     .selection = nmea_selection,
-    .stated_value = nmea_value};
+    .stated_value = nmea_value,
+    .formats = "nmea gill umb ft wxt"};
 
 }  // namespace yuragi::drivers::text

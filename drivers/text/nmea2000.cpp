@@ -116,13 +116,14 @@ const sensor::DriverDescription kNmea2000Driver{
       return std::make_unique<Nmea2000Sensor>(settings, bus::make_byte_port(settings.text.address));
     },
     .find = find_behind_can_interfaces,
-    .claims = byte_port_claims,
+    .endpoints = byte_port_endpoints,
     .selection =
         [](const ParameterValues& values) {
           const std::optional<std::uint8_t> address = kNmea2000Fields.of(values).address;
           return text_selection(text_sensor_settings_of(values),
                                 {{.key = "address", .value = address ? std::to_string(*address) : ""},
                                  reference_part(chosen_wind_settings_of(values))});
-        }};
+        },
+    .formats = "nmea2000"};
 
 }  // namespace yuragi::drivers::text

@@ -49,12 +49,12 @@ const Fields<SignalKKeys> kSignalKFields = {
       .default_value = std::string(kSignalKStream),
       .help = "websocket: the stream's place on the server"},
      &SignalKKeys::path},
-    Parameter{
-        .name = "token",
-        .unit = "",
-        .default_value = Secret(),
-        .help = "websocket: the token of a server that lets nobody read without one, from its \"Access Requests\"; "
-                "sent as it is (no TLS); or one of token_file and token_env, which keep it out of this file"},
+    Parameter{.name = "token",
+              .unit = "",
+              .default_value = Secret(),
+              .help =
+                  "websocket: the token of a server that lets nobody read without one, from its \"Access Requests\"; "
+                  "sent as it is (no TLS); or one of token_file and token_env, which keep it out of this file"},
     Parameter{.name = "token_file",
               .unit = "",
               .default_value = std::string(""),
@@ -103,11 +103,21 @@ bool is_visible(char c) {
   return c > ' ' && c <= '~';
 }
 
+/// In place of 0.
+void set_usual_port(bus::BytePortAddress& address) {
+  if (address.port == 0) address.port = address.kind == bus::BytePortKind::kWebSocket ? kWebSocketPort : kTcpPort;
+}
+
 TextSensorSettings signalk_text_settings_of(const ParameterValues& values) {
   TextSensorSettings text = text_sensor_settings_of(values);
-  bus::BytePortAddress& address = text.address;
-  if (address.port == 0) address.port = address.kind == bus::BytePortKind::kWebSocket ? kWebSocketPort : kTcpPort;
+  set_usual_port(text.address);
   return text;
+}
+
+std::vector<sensor::Endpoint> signalk_endpoints(const ParameterValues& values) {
+  bus::BytePortAddress address = byte_port_address_of(values);
+  set_usual_port(address);
+  return sensor::endpoints_at(address);
 }
 
 void set_up_websocket(bus::BytePortAddress& address, const std::string& path, const ParameterValues& values) {
@@ -149,12 +159,8 @@ const sensor::DriverDescription kSignalKDriver{
       const SignalKSensorSettings settings = signalk_sensor_settings_of(values);
       return std::make_unique<SignalKSensor>(settings, bus::make_byte_port(settings.text.address));
     },
-    .find = nullptr,
     .find_in_network = find_signalk_servers,
-    .claims =
-        [](const ParameterValues& values) {
-          return sensor::claims_of(bus::sole_device_of(signalk_text_settings_of(values).address));
-        },
+    .endpoints = signalk_endpoints,
     .selection =
         [](const ParameterValues& values) {
           const SignalKKeys keys = kSignalKFields.of(values);
@@ -165,6 +171,7 @@ const sensor::DriverDescription kSignalKDriver{
                      {.key = "context", .value = keys.context.empty() ? std::string(kOwnVessel) : keys.context},
                      {.key = "source", .value = keys.source},
                      reference_part(chosen_wind_settings_of(values))});
-        }};
+        },
+    .formats = "signalk"};
 
 }  // namespace yuragi::drivers::text

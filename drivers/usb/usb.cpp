@@ -183,7 +183,10 @@ const sensor::DriverDescription kUsbDriver{
     .parameters = kUsbFields.parameters(),
     .open = open_usb,
     .find = find_usb,
+    .endpoints =
+        [](const ParameterValues&) { return std::vector{sensor::Endpoint{.kind = sensor::EndpointKind::kUsb}}; },
     .selection = usb_selection,
-    .stated_value = usb_value};
+    .stated_value = usb_value,
+    .formats = "mcc1208 labjack"};
 
 }  // namespace yuragi::drivers::usb

@@ -39,7 +39,7 @@ std::string key_of(const settings::ConfigChange& change) {
 /// The driver's parameters whose values differ from those in the recording, except a microphone's own calibration,
 /// which is undone, and secrets, which are not recorded.
 std::set<std::string> settings_that_differ(const settings::SensorConfig& sensor, const SensorReadings& collected) {
-  const bool is_microphone = sensor.driver->name == std::string_view("microphone");
+  const bool is_microphone = sensor.driver->calibration == drivers::sensor::CalibrationMeans::kSoundLevel;
   std::set<std::string> keys;
   for (const std::string& text : collected.settings) {
     const auto values = settings::parse_values(text, sensor.driver->parameters);

@@ -270,7 +270,7 @@ Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(SensorConfi
       obstacle = "plays a recording; use --recording with it";
     } else if (status->readings > 0 && !status->raw_speed_m_s) {
       obstacle = "is an older version, which sends calibrated readings only";
-    } else if (sensor->driver->name == std::string_view("microphone")) {
+    } else if (sensor->driver->calibration == drivers::sensor::CalibrationMeans::kSoundLevel) {
       // Its readings were computed with the gain and exponent, or the curve, of when the daemon was started.
       obstacle = "uses the microphone, perhaps with another calibration than the file has now";
     }

@@ -5,32 +5,26 @@
 #include <string>
 #include <vector>
 
+#include "drivers/sensor/endpoint.hpp"
 #include "engine/base/time.hpp"
 
 namespace yuragi::daemon::tools::doctor {
 
 // What the probes (machine_probe.hpp, sensor_probe.hpp) find, and the judgements (judgements.hpp) judge.
 
-/// What a sensor reads.
-enum class DeviceKind : std::uint8_t {
-  kNone,
-  kSerialPort,
-  kUsb,
-  kSoundCard,
-  kNetwork,
-  kBroker,
-  kUdpPort,
-  kTcpPort,
-  kFile
-};
+using drivers::sensor::EndpointKind;
+
+constexpr bool is_usb(const std::optional<EndpointKind>& kind) noexcept {
+  return kind == EndpointKind::kHid || kind == EndpointKind::kUsb;
+}
 
 /// One device that a sensor of the configuration names.
 struct DeviceFacts {
   std::string sensor{};
-  DeviceKind kind = DeviceKind::kNone;
-  std::string name{};      ///< as the configuration calls it: "/dev/serial/by-id/...", "192.168.1.20:502"
-  bool is_shared = false;  ///< a UDP port at which other programs may listen, too
-  bool is_used = false;    ///< the running daemon has readings from this sensor; it was not touched then
+  std::optional<EndpointKind> kind{};  ///< none: it needs no device
+  std::string name{};                  ///< as the configuration calls it: "/dev/serial/by-id/...", "192.168.1.20:502"
+  bool is_shared = false;              ///< a UDP port at which other programs may listen, too
+  bool is_used = false;                ///< the running daemon has readings from this sensor; it was not touched then
   bool is_there = false;
   std::string trouble{};  ///< why it cannot be used; of the network: why it cannot be reached
   std::string remedy{};   ///< what the driver says to do about that; may be empty

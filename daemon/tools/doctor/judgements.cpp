@@ -26,23 +26,24 @@ std::string host_of(const std::string& address) {
   return host.starts_with('[') && host.ends_with(']') ? host.substr(1, host.size() - 2) : host;
 }
 
-std::string_view title_of(DeviceKind kind) {
-  switch (kind) {
-    case DeviceKind::kSerialPort:
+std::string_view title_of(const std::optional<EndpointKind>& kind) {
+  if (!kind) return "";
+  switch (*kind) {
+    case EndpointKind::kSerialPort:
       return "serial port ";
-    case DeviceKind::kSoundCard:
+    case EndpointKind::kSoundCard:
       return "sound card ";
-    case DeviceKind::kBroker:
+    case EndpointKind::kBroker:
       return "MQTT broker ";
-    case DeviceKind::kUdpPort:
+    case EndpointKind::kUdpPort:
       return "UDP port ";
-    case DeviceKind::kTcpPort:
+    case EndpointKind::kTcpPort:
       return "TCP port ";
-    case DeviceKind::kFile:
+    case EndpointKind::kFile:
       return "file ";
-    case DeviceKind::kUsb:
-    case DeviceKind::kNetwork:
-    case DeviceKind::kNone:
+    case EndpointKind::kHid:
+    case EndpointKind::kUsb:
+    case EndpointKind::kServer:
       break;
   }
   return "";
@@ -50,23 +51,23 @@ std::string_view title_of(DeviceKind kind) {
 
 /// Where a device is not there, or cannot be reached: what shows why.
 std::string remedy_for_absent(const DeviceFacts& device) {
-  switch (device.kind) {
-    case DeviceKind::kSerialPort:
+  switch (device.kind.value_or(EndpointKind::kFile)) {
+    case EndpointKind::kSerialPort:
       return "plug it in, and write one of the names that `yuragi sensors list` shows";
-    case DeviceKind::kUsb:
+    case EndpointKind::kHid:
+    case EndpointKind::kUsb:
       return "plug it in; `yuragi sensors list` shows what is found, `lsusb` everything on the bus";
-    case DeviceKind::kSoundCard:
+    case EndpointKind::kSoundCard:
       return "plug it in, and write a name that `yuragi sensors list` shows; `arecord -l` lists the cards";
-    case DeviceKind::kNetwork:
+    case EndpointKind::kServer:
       return fmt::format("ping -c 3 {}; check its power, cable and address", host_of(device.name));
-    case DeviceKind::kBroker:
+    case EndpointKind::kBroker:
       return fmt::format("ping -c 3 {}; on the broker's machine: systemctl status mosquitto", host_of(device.name));
-    case DeviceKind::kUdpPort:
+    case EndpointKind::kUdpPort:
       return fmt::format("sudo ss -lunp 'sport = :{}'", device.name.substr(device.name.rfind(':') + 1));
-    case DeviceKind::kTcpPort:
+    case EndpointKind::kTcpPort:
       return fmt::format("sudo ss -ltnp 'sport = :{}'", device.name.substr(device.name.rfind(':') + 1));
-    case DeviceKind::kFile:
-    case DeviceKind::kNone:
+    case EndpointKind::kFile:
       break;
   }
   return fmt::format("ls -l {}", device.name);
@@ -77,7 +78,7 @@ std::string remedy_for_absent(const DeviceFacts& device) {
 Finding judge(const DeviceFacts& device) {
   const std::string what = fmt::format("{}: {}{}", device.sensor, title_of(device.kind), device.name);
   if (device.is_used) return ok("sensor", what + ": the running daemon has readings from it");
-  if (device.kind == DeviceKind::kNone) return ok("sensor", what);
+  if (!device.kind) return ok("sensor", what);
   if (!device.is_there) {
     const std::string why = device.trouble.empty() ? "is not there" : device.trouble;
     return error("sensor", what + ": " + why, remedy_for_absent(device));

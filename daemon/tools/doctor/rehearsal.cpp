@@ -160,8 +160,8 @@ std::vector<ListenFacts> listen_facts(const Rehearsal& rehearsal) {
   for (const settings::SensorConfig& sensor : rehearsal.config.sensors) {
     for (const DeviceFacts& device : named_devices(sensor)) {
       const std::string what = "sensor " + sensor.name;
-      if (device.kind == DeviceKind::kTcpPort) all.push_back(listen_facts(what, device.name, rehearsal));
-      if (device.kind == DeviceKind::kUdpPort)
+      if (device.kind == EndpointKind::kTcpPort) all.push_back(listen_facts(what, device.name, rehearsal));
+      if (device.kind == EndpointKind::kUdpPort)
         all.push_back(listen_facts(what, device.name, rehearsal, device.is_shared));
     }
   }
@@ -172,12 +172,12 @@ std::vector<ListenFacts> listen_facts(const Rehearsal& rehearsal) {
 std::vector<PathFacts> plugged_paths(const settings::SensorConfig& sensor, const DeviceFacts& device,
                                      const std::optional<std::span<const sensors::DeviceFinding>>& plugged) {
   std::vector<fs::path> nodes;
-  if (device.kind == DeviceKind::kSoundCard) nodes = sound_nodes();
-  if (device.kind == DeviceKind::kUsb) {
+  if (device.kind == EndpointKind::kSoundCard) nodes = sound_nodes();
+  if (is_usb(device.kind)) {
     if (!plugged) return {};
     for (const sensors::DeviceFinding& found : *plugged) {
       if (!is_chosen(sensor, found)) continue;
-      for (fs::path& node : usb_nodes(found.device.what, sensor.driver->name == "hid"))
+      for (fs::path& node : usb_nodes(found.device.what, device.kind == EndpointKind::kHid))
         nodes.push_back(std::move(node));
     }
   }
@@ -313,9 +313,9 @@ std::vector<PathFacts> named_paths(const Rehearsal& rehearsal) {
     }
     for (const DeviceFacts& device : named_devices(sensor)) {
       const std::string what = "sensor " + sensor.name;
-      if (device.kind == DeviceKind::kSerialPort) add(what, device.name, PathUse::kDevice);
-      if (device.kind == DeviceKind::kFile) add(what, device.name, PathUse::kRead, true);
-      if (device.kind == DeviceKind::kUsb || device.kind == DeviceKind::kSoundCard) {
+      if (device.kind == EndpointKind::kSerialPort) add(what, device.name, PathUse::kDevice);
+      if (device.kind == EndpointKind::kFile) add(what, device.name, PathUse::kRead, true);
+      if (is_usb(device.kind) || device.kind == EndpointKind::kSoundCard) {
         for (PathFacts& path : plugged_paths(sensor, device, rehearsal.plugged)) all.push_back(std::move(path));
       }
     }
@@ -345,8 +345,9 @@ std::vector<sensors::DeviceFinding> plugged_devices(const settings::Config& conf
   std::vector<const drivers::sensor::DriverDescription*> drivers;
   for (const settings::SensorConfig& sensor : config.sensors) {
     const auto devices = named_devices(sensor);
-    const bool is_usb = std::ranges::find(devices, DeviceKind::kUsb, &DeviceFacts::kind) != devices.end();
-    if (is_usb && std::ranges::find(drivers, sensor.driver) == drivers.end()) drivers.push_back(sensor.driver);
+    if (std::ranges::any_of(devices, is_usb, &DeviceFacts::kind) &&
+        std::ranges::find(drivers, sensor.driver) == drivers.end())
+      drivers.push_back(sensor.driver);
   }
   return sensors::find_devices(drivers);
 }

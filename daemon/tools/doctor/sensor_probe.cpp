@@ -27,17 +27,6 @@ std::string text_or_empty(const ParameterValues& values, std::string_view name) 
   return text == nullptr ? std::string() : *text;
 }
 
-std::string address_of(const ParameterValues& values) {
-  return to_string(Address{text_or_empty(values, "host"), static_cast<std::uint16_t>(values.integer("port"))});
-}
-
-/// Port 0 is the usual one (IANA: mqtt 1883, secure-mqtt 8883).
-std::string broker_of(const ParameterValues& values) {
-  const std::int64_t port = values.integer("port");
-  const std::int64_t usual_port = values.flag("tls") ? 8883 : 1883;
-  return to_string(Address{text_or_empty(values, "host"), static_cast<std::uint16_t>(port == 0 ? usual_port : port)});
-}
-
 std::string in_small_letters(std::string text) {
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
@@ -51,6 +40,12 @@ std::string chosen_text(const settings::SensorConfig& sensor) {
     if (!value.empty() && value != "auto") text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, value);
   }
   return text;
+}
+
+/// "hid (station wmr300)".
+std::string plugged_name(const settings::SensorConfig& sensor) {
+  const std::string chosen = chosen_text(sensor);
+  return fmt::format("{}{}", sensor.driver->name, chosen.empty() ? "" : " (" + chosen + ")");
 }
 
 /// Why nobody can connect; empty: somebody can.
@@ -80,11 +75,12 @@ void probe_plugged(DeviceFacts& device, const settings::SensorConfig& sensor,
 void probe_device(DeviceFacts& device, const settings::SensorConfig& sensor,
                   std::span<const sensors::DeviceFinding> plugged, Nanoseconds timeout) {
   std::error_code error;
-  switch (device.kind) {
-    case DeviceKind::kNone:
-      device.is_there = true;
-      return;
-    case DeviceKind::kSerialPort:
+  if (!device.kind) {
+    device.is_there = true;
+    return;
+  }
+  switch (*device.kind) {
+    case EndpointKind::kSerialPort:
       device.is_there = std::filesystem::exists(device.name, error);
       if (device.is_there) {
         const drivers::bus::AccessTrouble access = drivers::bus::access_trouble(device.name);
@@ -92,25 +88,26 @@ void probe_device(DeviceFacts& device, const settings::SensorConfig& sensor,
         device.remedy = access.remedy;
       }
       return;
-    case DeviceKind::kUsb:
-    case DeviceKind::kSoundCard:
+    case EndpointKind::kHid:
+    case EndpointKind::kUsb:
+    case EndpointKind::kSoundCard:
       return probe_plugged(device, sensor, plugged);
-    case DeviceKind::kNetwork:
-    case DeviceKind::kBroker:
+    case EndpointKind::kServer:
+    case EndpointKind::kBroker:
       device.trouble = tcp_trouble(device.name, timeout);
       device.is_there = device.trouble.empty();
       return;
-    case DeviceKind::kUdpPort:
+    case EndpointKind::kUdpPort:
       device.trouble = udp_trouble(device.name, device.is_shared);
       device.is_there = device.trouble.empty();
       return;
-    case DeviceKind::kTcpPort: {
+    case EndpointKind::kTcpPort: {
       bool is_in_use = false;
       device.trouble = listen_trouble(device.name, is_in_use);
       device.is_there = device.trouble.empty();
       return;
     }
-    case DeviceKind::kFile:
+    case EndpointKind::kFile:
       device.is_there = drivers::windlog::recording_exists(device.name) || std::filesystem::exists(device.name, error);
       if (device.is_there && access(device.name.c_str(), F_OK) == 0 && access(device.name.c_str(), R_OK) != 0) {
         device.trouble = "this user may not read it";
@@ -123,46 +120,22 @@ void probe_device(DeviceFacts& device, const settings::SensorConfig& sensor,
 }  // namespace
 
 std::vector<DeviceFacts> named_devices(const settings::SensorConfig& sensor) {
-  const std::string_view driver = sensor.driver->name;
-  const ParameterValues& values = sensor.values;
-  const auto one = [&](DeviceKind kind, std::string name) {
-    DeviceFacts device;
-    device.sensor = sensor.name;
-    device.kind = kind;
-    device.name = std::move(name);
-    return device;
-  };
-  const auto plugged = [&](DeviceKind kind) {
-    const std::string chosen = chosen_text(sensor);
-    return one(kind, fmt::format("{}{}", driver, chosen.empty() ? "" : " (" + chosen + ")"));
-  };
-  if (driver == "hid" || driver == "usb") return {plugged(DeviceKind::kUsb)};
-  if (driver == "microphone") return {plugged(DeviceKind::kSoundCard)};
-  if (driver == "mqtt") return {one(DeviceKind::kBroker, broker_of(values))};
-  if (driver == "osc") return {one(DeviceKind::kUdpPort, address_of(values))};
-  if (driver == "tempest") {
-    DeviceFacts port = one(DeviceKind::kUdpPort, address_of(values));
-    port.is_shared = true;
-    return {port};
+  const drivers::sensor::DriverDescription& driver = *sensor.driver;
+  std::vector<DeviceFacts> devices;
+  if (driver.endpoints != nullptr) {
+    for (drivers::sensor::Endpoint& endpoint : driver.endpoints(sensor.values)) {
+      DeviceFacts& device = devices.emplace_back();
+      device.sensor = sensor.name;
+      device.kind = endpoint.kind;
+      device.name = is_usb(endpoint.kind) || endpoint.kind == EndpointKind::kSoundCard ? plugged_name(sensor)
+                                                                                       : std::move(endpoint.name);
+      device.is_shared = endpoint.is_shared;
+    }
   }
-  if (driver == "weatherlink") {
-    return {one(DeviceKind::kNetwork, fmt::format("{}:{}", values.text("host"), values.integer("http_port"))),
-            one(DeviceKind::kUdpPort, fmt::format(":{}", values.integer("port")))};
+  if (devices.empty()) {
+    devices.push_back({.sensor = sensor.name, .name = fmt::format("{} needs no device", driver.name)});
   }
-  if (driver == "ecowitt") return {one(DeviceKind::kNetwork, address_of(values))};
-  if (driver == "ecowitt-push") return {one(DeviceKind::kTcpPort, address_of(values))};
-  if (sensor.driver->plays_recordings) return {one(DeviceKind::kFile, text_or_empty(values, "file"))};
-  const std::string transport = text_or_empty(values, "transport");
-  if (transport == "tcp") return {one(DeviceKind::kNetwork, address_of(values))};
-  if (transport == "udp") return {one(DeviceKind::kUdpPort, address_of(values))};
-  if (transport == "file") return {one(DeviceKind::kFile, text_or_empty(values, "file"))};
-  if (transport == "serial" || transport == "rtu") {
-    std::vector<DeviceFacts> all = {one(DeviceKind::kSerialPort, text_or_empty(values, "device"))};
-    if (const std::string vane = text_or_empty(values, "direction_device"); !vane.empty())
-      all.push_back(one(DeviceKind::kSerialPort, vane));
-    return all;
-  }
-  return {one(DeviceKind::kNone, fmt::format("{} needs no device", driver))};
+  return devices;
 }
 
 bool is_chosen(const settings::SensorConfig& sensor, const sensors::DeviceFinding& found) {
@@ -175,7 +148,8 @@ bool is_chosen(const settings::SensorConfig& sensor, const sensors::DeviceFindin
     const std::string there = text_or_empty(*offered, key);
     const std::string left_out = text_or_empty(defaults, key);
     if (wanted.empty() || wanted == left_out || there == left_out) continue;
-    const bool is_sound_card = sensor.driver->name == "microphone";
+    const auto endpoints = sensor.driver->endpoints(sensor.values);
+    const bool is_sound_card = endpoints.front().kind == EndpointKind::kSoundCard;
     const bool is_same =
         is_sound_card ? in_small_letters(there).find(in_small_letters(wanted)) != std::string::npos : wanted == there;
     if (!is_same) return false;
@@ -190,9 +164,9 @@ std::vector<std::string> needed_groups(const settings::Config& config) {
   };
   for (const settings::SensorConfig& sensor : config.sensors) {
     for (const DeviceFacts& device : named_devices(sensor)) {
-      if (device.kind == DeviceKind::kSerialPort) need("dialout");
-      if (device.kind == DeviceKind::kUsb) need("plugdev");
-      if (device.kind == DeviceKind::kSoundCard) need("audio");
+      if (device.kind == EndpointKind::kSerialPort) need("dialout");
+      if (is_usb(device.kind)) need("plugdev");
+      if (device.kind == EndpointKind::kSoundCard) need("audio");
     }
   }
   return groups;
@@ -210,7 +184,7 @@ std::vector<DeviceFacts> probe_devices(const settings::Config& config, std::span
   for (const settings::SensorConfig& sensor : config.sensors) {
     for (DeviceFacts& device : named_devices(sensor)) {
       device.is_used = is_used(sensor.name);
-      const bool is_of_network = device.kind == DeviceKind::kNetwork || device.kind == DeviceKind::kBroker;
+      const bool is_of_network = device.kind == EndpointKind::kServer || device.kind == EndpointKind::kBroker;
       if (device.is_used) {
         device.is_there = true;
       } else if (const auto known = of_network.find(device.name); is_of_network && known != of_network.end()) {

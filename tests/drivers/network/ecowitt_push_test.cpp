@@ -380,10 +380,10 @@ TEST(EcowittPushSettings, AreChecked) {
   throws({{"from", std::string("gateway")}}, "from: ");
   throws({{"path", std::string("data/report")}}, "path: must begin with a slash");
 
-  const auto claims = driver_named("ecowitt-push").claims(values_for("ecowitt-push", {}));
-  ASSERT_EQ(claims.size(), 1U);
-  EXPECT_EQ(claims[0].device, "TCP port 8090");
-  EXPECT_FALSE(claims[0].is_shared);
+  const auto endpoints = driver_named("ecowitt-push").endpoints(values_for("ecowitt-push", {}));
+  ASSERT_EQ(endpoints.size(), 1U);
+  EXPECT_EQ(endpoints[0].claim, "TCP port 8090");
+  EXPECT_FALSE(endpoints[0].is_shared);
 }
 
 /// Answers everything with 200, and keeps what failed.

@@ -361,10 +361,10 @@ TEST(TempestSettings, AreChecked) {
 }
 
 TEST(TempestSettings, ShareThePort) {
-  const auto claims = driver_named("tempest").claims(values_for("tempest", {}));
-  ASSERT_EQ(claims.size(), 1U);
-  EXPECT_EQ(claims[0].device, "UDP port 50222");
-  EXPECT_TRUE(claims[0].is_shared);
+  const auto endpoints = driver_named("tempest").endpoints(values_for("tempest", {}));
+  ASSERT_EQ(endpoints.size(), 1U);
+  EXPECT_EQ(endpoints[0].claim, "UDP port 50222");
+  EXPECT_TRUE(endpoints[0].is_shared);
 }
 
 }  // namespace

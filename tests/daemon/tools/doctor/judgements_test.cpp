@@ -27,38 +27,40 @@ UtcTime in_year(int year) {
       std::chrono::year_month_day(std::chrono::year(year), std::chrono::month(6), std::chrono::day(1)));
 }
 
-DeviceFacts there(DeviceKind kind, const std::string& name) {
+DeviceFacts there(std::optional<EndpointKind> kind, const std::string& name) {
   return {.sensor = "roof", .kind = kind, .name = name, .is_there = true};
 }
 
 TEST(JudgeDevice, IsWellWhereItIsThereAndCanBeUsed) {
-  EXPECT_THAT(judge(there(DeviceKind::kSerialPort, "/dev/ttyUSB0")),
+  EXPECT_THAT(judge(there(EndpointKind::kSerialPort, "/dev/ttyUSB0")),
               is(Verdict::kOk, "roof: serial port /dev/tty", ""));
-  EXPECT_THAT(judge(there(DeviceKind::kNone, "synthetic needs no device")), is(Verdict::kOk, "needs no device", ""));
-  DeviceFacts used = there(DeviceKind::kNetwork, "10.0.0.5:502");
+  EXPECT_THAT(judge(there(std::nullopt, "synthetic needs no device")), is(Verdict::kOk, "needs no device", ""));
+  DeviceFacts used = there(EndpointKind::kServer, "10.0.0.5:502");
   used.is_used = true;
   EXPECT_THAT(judge(used), is(Verdict::kOk, "the running daemon has readings", ""));
 }
 
 TEST(JudgeDevice, SaysOfEachKindHowToFindOneThatIsNotThere) {
-  const auto absent = [](DeviceKind kind, const std::string& name) {
+  const auto absent = [](EndpointKind kind, const std::string& name) {
     return judge(DeviceFacts{.sensor = "roof", .kind = kind, .name = name});
   };
-  EXPECT_THAT(absent(DeviceKind::kSerialPort, "/dev/ttyUSB0"),
+  EXPECT_THAT(absent(EndpointKind::kSerialPort, "/dev/ttyUSB0"),
               is(Verdict::kError, "/dev/ttyUSB0: is not there", "yuragi sensors list"));
-  EXPECT_THAT(absent(DeviceKind::kUsb, "hid (station wmr300)"), is(Verdict::kError, "is not there", "lsusb"));
-  EXPECT_THAT(absent(DeviceKind::kSoundCard, "microphone"), is(Verdict::kError, "is not there", "arecord -l"));
-  EXPECT_THAT(absent(DeviceKind::kNetwork, "[fd00::5]:502"), is(Verdict::kError, "is not there", "ping -c 3 fd00::5;"));
-  EXPECT_THAT(absent(DeviceKind::kBroker, "broker.lan:1883"),
+  EXPECT_THAT(absent(EndpointKind::kUsb, "hid (station wmr300)"), is(Verdict::kError, "is not there", "lsusb"));
+  EXPECT_THAT(absent(EndpointKind::kSoundCard, "microphone"), is(Verdict::kError, "is not there", "arecord -l"));
+  EXPECT_THAT(absent(EndpointKind::kServer, "[fd00::5]:502"),
+              is(Verdict::kError, "is not there", "ping -c 3 fd00::5;"));
+  EXPECT_THAT(absent(EndpointKind::kBroker, "broker.lan:1883"),
               is(Verdict::kError, "MQTT broker", "ping -c 3 broker.lan;"));
-  EXPECT_THAT(absent(DeviceKind::kUdpPort, ":9000"), is(Verdict::kError, "UDP port", "sudo ss -lunp 'sport = :9000'"));
-  EXPECT_THAT(absent(DeviceKind::kTcpPort, "0.0.0.0:8090"),
+  EXPECT_THAT(absent(EndpointKind::kUdpPort, ":9000"),
+              is(Verdict::kError, "UDP port", "sudo ss -lunp 'sport = :9000'"));
+  EXPECT_THAT(absent(EndpointKind::kTcpPort, "0.0.0.0:8090"),
               is(Verdict::kError, "TCP port", "sudo ss -ltnp 'sport = :8090'"));
-  EXPECT_THAT(absent(DeviceKind::kFile, "day.windlog"), is(Verdict::kError, "file", "ls -l day.windlog"));
+  EXPECT_THAT(absent(EndpointKind::kFile, "day.windlog"), is(Verdict::kError, "file", "ls -l day.windlog"));
 }
 
 TEST(JudgeDevice, PassesOnWhatTheDriverSaysAboutOneThatCannotBeOpened) {
-  DeviceFacts device = there(DeviceKind::kUsb, "WMR100 (0fde:ca01)");
+  DeviceFacts device = there(EndpointKind::kUsb, "WMR100 (0fde:ca01)");
   device.trouble = "cannot open /dev/hidraw0";
   device.remedy = "install the rule";
   EXPECT_THAT(judge(device), is(Verdict::kError, "cannot open /dev/hidraw0", "install the rule"));

@@ -27,50 +27,51 @@ settings::Config config_of(const std::string& toml) {
   return settings::parse_config(toml, "test.toml");
 }
 
-std::vector<std::pair<DeviceKind, std::string>> names_in(const std::string& lines) {
-  std::vector<std::pair<DeviceKind, std::string>> names;
+std::vector<std::pair<std::optional<EndpointKind>, std::string>> names_in(const std::string& lines) {
+  std::vector<std::pair<std::optional<EndpointKind>, std::string>> names;
   for (const DeviceFacts& device : named_devices(config_of("[[sensor]]\nname = \"roof\"\n" + lines).sensors[0]))
     names.emplace_back(device.kind, device.name);
   return names;
 }
 
 TEST(NamedDevices, AreWhatTheConfigurationSays) {
-  using Named = std::pair<DeviceKind, std::string>;
+  using Named = std::pair<std::optional<EndpointKind>, std::string>;
   EXPECT_THAT(names_in("driver = \"modbus\"\nhost = \"10.0.0.5\"\nport = 1502"),
-              ElementsAre(Named(DeviceKind::kNetwork, "10.0.0.5:1502")));
+              ElementsAre(Named(EndpointKind::kServer, "10.0.0.5:1502")));
   EXPECT_THAT(names_in("driver = \"modbus\"\ntransport = \"rtu\"\ndevice = \"/dev/a\"\ndirection_device = \"/dev/b\""),
-              ElementsAre(Named(DeviceKind::kSerialPort, "/dev/a"), Named(DeviceKind::kSerialPort, "/dev/b")));
+              ElementsAre(Named(EndpointKind::kSerialPort, "/dev/a"), Named(EndpointKind::kSerialPort, "/dev/b")));
   EXPECT_THAT(names_in("driver = \"nmea\"\ndevice = \"/dev/ttyS0\""),
-              ElementsAre(Named(DeviceKind::kSerialPort, "/dev/ttyS0")));
+              ElementsAre(Named(EndpointKind::kSerialPort, "/dev/ttyS0")));
   EXPECT_THAT(names_in("driver = \"nmea\"\ntransport = \"tcp\"\nhost = \"mast\""),
-              ElementsAre(Named(DeviceKind::kNetwork, "mast:10110")));
+              ElementsAre(Named(EndpointKind::kServer, "mast:10110")));
   EXPECT_THAT(names_in("driver = \"nmea\"\ntransport = \"udp\"\nport = 5000"),
-              ElementsAre(Named(DeviceKind::kUdpPort, ":5000")));
+              ElementsAre(Named(EndpointKind::kUdpPort, ":5000")));
   EXPECT_THAT(names_in("driver = \"line\"\ntransport = \"file\"\nfile = \"/tmp/x\""),
-              ElementsAre(Named(DeviceKind::kFile, "/tmp/x")));
-  EXPECT_THAT(names_in("driver = \"mqtt\"\ntopic = \"a\""), ElementsAre(Named(DeviceKind::kBroker, "127.0.0.1:1883")));
+              ElementsAre(Named(EndpointKind::kFile, "/tmp/x")));
+  EXPECT_THAT(names_in("driver = \"mqtt\"\ntopic = \"a\""),
+              ElementsAre(Named(EndpointKind::kBroker, "127.0.0.1:1883")));
   EXPECT_THAT(names_in("driver = \"mqtt\"\ntopic = \"a\"\nhost = \"lan\"\ntls = true"),
-              ElementsAre(Named(DeviceKind::kBroker, "lan:8883")));
-  EXPECT_THAT(names_in("driver = \"tempest\""), ElementsAre(Named(DeviceKind::kUdpPort, ":50222")));
-  EXPECT_THAT(names_in("driver = \"ecowitt\"\nhost = \"gw\""), ElementsAre(Named(DeviceKind::kNetwork, "gw:45000")));
-  EXPECT_THAT(names_in("driver = \"ecowitt-push\""), ElementsAre(Named(DeviceKind::kTcpPort, "127.0.0.1:8090")));
+              ElementsAre(Named(EndpointKind::kBroker, "lan:8883")));
+  EXPECT_THAT(names_in("driver = \"tempest\""), ElementsAre(Named(EndpointKind::kUdpPort, ":50222")));
+  EXPECT_THAT(names_in("driver = \"ecowitt\"\nhost = \"gw\""), ElementsAre(Named(EndpointKind::kServer, "gw:45000")));
+  EXPECT_THAT(names_in("driver = \"ecowitt-push\""), ElementsAre(Named(EndpointKind::kTcpPort, "127.0.0.1:8090")));
   EXPECT_THAT(names_in("driver = \"davis\"\ndevice = \"/dev/ttyUSB0\""),
-              ElementsAre(Named(DeviceKind::kSerialPort, "/dev/ttyUSB0")));
+              ElementsAre(Named(EndpointKind::kSerialPort, "/dev/ttyUSB0")));
   EXPECT_THAT(names_in("driver = \"weatherlink\"\nhost = \"wll\""),
-              ElementsAre(Named(DeviceKind::kNetwork, "wll:80"), Named(DeviceKind::kUdpPort, ":22222")));
+              ElementsAre(Named(EndpointKind::kServer, "wll:80"), Named(EndpointKind::kUdpPort, ":22222")));
   EXPECT_THAT(names_in("driver = \"hid\"\nstation = \"wmr300\""),
-              ElementsAre(Named(DeviceKind::kUsb, "hid (station wmr300)")));
-  EXPECT_THAT(names_in("driver = \"microphone\""), ElementsAre(Named(DeviceKind::kSoundCard, "microphone")));
+              ElementsAre(Named(EndpointKind::kHid, "hid (station wmr300)")));
+  EXPECT_THAT(names_in("driver = \"microphone\""), ElementsAre(Named(EndpointKind::kSoundCard, "microphone")));
   EXPECT_THAT(names_in("driver = \"windlog\"\nfile = \"a.windlog\""),
-              ElementsAre(Named(DeviceKind::kFile, "a.windlog")));
-  EXPECT_EQ(names_in("driver = \"synthetic\"").at(0).first, DeviceKind::kNone);
+              ElementsAre(Named(EndpointKind::kFile, "a.windlog")));
+  EXPECT_EQ(names_in("driver = \"synthetic\"").at(0).first, std::nullopt);
 }
 
 TEST(NamedDevices, OfEveryDriverAreKnown) {
   for (const drivers::sensor::DriverDescription* driver : drivers::sensor::driver_table()) {
     const auto sensor = settings::default_sensor("a", *driver, *settings::parse_values("", driver->parameters));
     for (const DeviceFacts& device : named_devices(sensor))
-      EXPECT_EQ(device.kind == DeviceKind::kNone, driver->name == "synthetic") << driver->name;
+      EXPECT_EQ(device.kind == std::nullopt, driver->name == "synthetic") << driver->name;
   }
 }
 
