@@ -30,6 +30,7 @@ void add_modbus_command(CLI::App& app);
 namespace yuragi::simulators::network {
 void add_ecowitt_command(CLI::App& app);
 void add_ecowitt_push_command(CLI::App& app);
+void add_osc_command(CLI::App& app);
 void add_tempest_command(CLI::App& app);
 }  // namespace yuragi::simulators::network
 

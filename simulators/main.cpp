@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
   yuragi::simulators::lufft::add_umb_command(app);
   yuragi::simulators::network::add_ecowitt_command(app);
   yuragi::simulators::network::add_ecowitt_push_command(app);
+  yuragi::simulators::network::add_osc_command(app);
   yuragi::simulators::network::add_tempest_command(app);
   yuragi::simulators::usb::add_hid_command(app);
   yuragi::simulators::usb::add_usb_command(app);

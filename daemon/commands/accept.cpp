@@ -168,7 +168,7 @@ tools::acceptance::SimulatedPart measure_simulated(const settings::Config& confi
   fmt::print(stderr, "sensor {} of {}: {}, simulated at 127.0.0.1:{}\n", index + 1, config.sensors.size(), sensor.name,
              simulator->port());
   tools::acceptance::SensorMeasurement measurement(sensor.name);
-  OwnDaemon daemon(with_one_sensor(config, tools::acceptance::at_port(plan->sensor, simulator->port())),
+  OwnDaemon daemon(with_one_sensor(config, tools::acceptance::at_port(*plan, simulator->port())),
                    kSetUp_s + 2.0 * options.duration_s);
   daemon.measure(measurement, options.duration_s, [&] { return measurement.has_reading(); });
   if (measurement.has_reading())

@@ -146,7 +146,7 @@ drivers::decode::microphone::MicLevelAndSpeed measure_level(tools::calibration::
 }
 
 drivers::decode::microphone::MicCalibration calibration_by_two_winds(
-    tools::calibration::CalibrationSession& session, std::vector<double> speeds_m_s, LevelConversion& conversion,
+    tools::calibration::CalibrationSession& session, const std::vector<double>& speeds_m_s, LevelConversion& conversion,
     std::vector<drivers::decode::microphone::MicLevelAndSpeed>& pairs) {
   for (const double speed_m_s : speeds_m_s) pairs.push_back(measure_level(session, speed_m_s, conversion));
   if (conversion.kind == drivers::decode::microphone::MicFitKind::kCurve) {

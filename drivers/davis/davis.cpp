@@ -15,6 +15,7 @@
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/serial_or_tcp.hpp"
 #include "engine/base/fields.hpp"
+#include "engine/base/units.hpp"
 
 namespace yuragi::drivers::davis {
 namespace {
@@ -76,6 +77,12 @@ std::unique_ptr<sensor::Sensor> open_davis(const ParameterValues& values) {
   return std::make_unique<VantageSensor>(settings, bus::make_byte_port(settings.address));
 }
 
+Result<sensor::SimulatedDevice, Failure> davis_simulated(const ParameterValues& values) {
+  sensor::SimulatedDevice simulated = sensor::simulated_by_tcp("davis", values);
+  simulated.speed_step_m_s = kMetresPerSecondPerMph;  // it says whole miles per hour
+  return simulated;
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kDavisDriver;
@@ -88,6 +95,7 @@ const sensor::DriverDescription kDavisDriver{
     .endpoints = [](const ParameterValues& values) { return sensor::endpoints_at(kDavisFields.of(values).address); },
     .selection =
         [](const ParameterValues& values) { return sensor::selection_at(vantage_settings_of(values).address); },
+    .simulated = davis_simulated,
     .formats = "davis"};
 
 }  // namespace yuragi::drivers::davis

@@ -4,6 +4,9 @@
 //   GET /v1/current_conditions         all that its stations say; at most every 10 s
 //   GET /v1/real_time?duration=300    the wind every 2.5 s for so many seconds, broadcast to UDP port 22222
 #include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/davis/weatherlink_live_finder.hpp"
@@ -58,6 +61,19 @@ WeatherLinkLiveSettings weatherlink_live_settings_of(const ParameterValues& valu
   return settings;
 }
 
+namespace {
+
+Result<sensor::SimulatedDevice, Failure> weatherlink_live_simulated(const ParameterValues& values) {
+  const std::string broadcasts = fmt::format("127.0.0.1:{}", configured(values).broadcasts.port);
+  sensor::SimulatedDevice simulated =
+      sensor::simulated_server("weatherlink-live", values, {"--udp", broadcasts, "--interval", "1"});
+  simulated.values.set("transmitter", std::int64_t{0});
+  simulated.port_key = "http_port";  // `port` is where its broadcasts come
+  return simulated;
+}
+
+}  // namespace
+
 extern const sensor::DriverDescription kWeatherLinkLiveDriver;
 const sensor::DriverDescription kWeatherLinkLiveDriver{
     .name = "weatherlink",
@@ -75,6 +91,7 @@ const sensor::DriverDescription kWeatherLinkLiveDriver{
               .parts = {{.key = "transmitter",
                          .value = settings.transmitter == 0 ? "" : std::to_string(settings.transmitter)}}};
         },
+    .simulated = weatherlink_live_simulated,
     .formats = "weatherlink"};
 
 }  // namespace yuragi::drivers::davis

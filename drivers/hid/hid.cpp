@@ -133,6 +133,9 @@ const sensor::DriverDescription kHidDriver{
         [](const ParameterValues&) { return std::vector{sensor::Endpoint{.kind = sensor::EndpointKind::kHid}}; },
     .selection = hid_selection,
     .stated_value = hid_value,
+    .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
+      return Failure{"a simulated hid needs USB or sound of its own, and rights for it"};
+    },
     .formats = "wmr100 wmr300 fineoffset acurite te923"};
 
 }  // namespace yuragi::drivers::hid

@@ -75,6 +75,16 @@ UmbSettings umb_settings_of(const ParameterValues& values) {
   return keys.settings;
 }
 
+namespace {
+
+Result<sensor::SimulatedDevice, Failure> umb_simulated(const ParameterValues& values) {
+  const UmbKeys keys = kUmbFields.of(values);
+  return sensor::simulated_by_tcp("umb", values,
+                                  {"--class", std::to_string(keys.device_class), "--id", std::to_string(keys.id)});
+}
+
+}  // namespace
+
 extern const sensor::DriverDescription kUmbDriver;
 const sensor::DriverDescription kUmbDriver{
     .name = "umb",
@@ -100,6 +110,7 @@ const sensor::DriverDescription kUmbDriver{
           return std::optional(sensor::StatedValue{.value = wind::ReadingValue::kInstant,
                                                    .source = "Lufft WS manual 6.8: channels 400, 401"});
         },
+    .simulated = umb_simulated,
     .formats = "umb-binary"};
 
 }  // namespace yuragi::drivers::lufft

@@ -203,6 +203,9 @@ const sensor::DriverDescription kMicrophoneDriver{
         [](const ParameterValues&) { return std::vector{sensor::Endpoint{.kind = sensor::EndpointKind::kSoundCard}}; },
     .selection = microphone_selection,
     .stated_value = microphone_value,
+    .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
+      return Failure{"a simulated microphone needs USB or sound of its own, and rights for it"};
+    },
     .calibration = sensor::CalibrationMeans::kSoundLevel,
     .is_relative = true};
 

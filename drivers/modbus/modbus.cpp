@@ -3,6 +3,7 @@
 // (MODBUS Application Protocol Specification V1.1b3).
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -246,6 +247,22 @@ sensor::PromisedQuantities modbus_promises(const ParameterValues& values) {
   return {.direction = profile.direction.has_value(), .gust = profile.gust.has_value()};
 }
 
+/// yuragi-sim plays one line.
+Result<sensor::SimulatedDevice, Failure> modbus_simulated(const ParameterValues& values) {
+  const ModbusKeys keys = kModbusFields.of(values);
+  if (!keys.direction_device.empty()) return Failure{"yuragi-sim plays one line, and its vane is on a line of its own"};
+  if (keys.direction_slave != 0 && keys.direction_slave != keys.speed_slave &&
+      keys.direction_slave != keys.speed_slave + 1)
+    return Failure{"yuragi-sim plays only a direction_slave that is the speed_slave of its entry, or the next"};
+  if (keys.direction_slave != 0 && keys.speed_slave == 0)
+    return Failure{"yuragi-sim plays a direction_slave only where its entry has a speed_slave, too"};
+  std::string device = std::filesystem::path(keys.profile).stem().string();
+  if (keys.speed_slave != 0) device += fmt::format("@{}", keys.speed_slave);
+  sensor::SimulatedDevice simulated = sensor::simulated_by_tcp("modbus", values, {"--profile", device});
+  simulated.values.set("direction_device", std::string());
+  return simulated;
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kModbusDriver;
@@ -260,6 +277,7 @@ const sensor::DriverDescription kModbusDriver{
     .known_devices = known_modbus_devices,
     .promises = modbus_promises,
     .stated_value = modbus_value,
+    .simulated = modbus_simulated,
     .formats = "modbus:PROFILE"};
 
 }  // namespace yuragi::drivers::modbus

@@ -523,6 +523,9 @@ const sensor::DriverDescription kMqttDriver{
     .open = open_mqtt,
     .endpoints = mqtt_endpoints,
     .selection = mqtt_selection,
-    .unchanged_for_s = mqtt_unchanged_for_s};
+    .unchanged_for_s = mqtt_unchanged_for_s,
+    .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
+      return Failure{"there is no simulated device for the driver mqtt: it would take a broker, too"};
+    }};
 
 }  // namespace yuragi::drivers::mqtt

@@ -169,6 +169,13 @@ sensor::ValueSelection ecowitt_selection(const ParameterValues& values) {
   return {.device = "gateway " + bus::device_of(ecowitt_settings_of(values).port), .device_keys = "host, port"};
 }
 
+Result<sensor::SimulatedDevice, Failure> ecowitt_simulated(const ParameterValues& values) {
+  sensor::SimulatedDevice simulated = sensor::simulated_server("ecowitt", values, {"--interval", "1"});
+  simulated.values.set("sensor_interval", 1.0);
+  simulated.values.set("poll_interval", 0.5);
+  return simulated;
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kEcowittDriver;
@@ -180,6 +187,7 @@ const sensor::DriverDescription kEcowittDriver{
     .find_in_network = find_ecowitt_gateways,
     .endpoints = [](const ParameterValues& values) { return sensor::endpoints_at(kEcowittFields.of(values).port); },
     .selection = ecowitt_selection,
+    .simulated = ecowitt_simulated,
     .formats = "ecowitt"};
 
 }  // namespace yuragi::drivers::network

@@ -346,6 +346,15 @@ std::vector<sensor::Endpoint> ecowitt_push_endpoints(const ParameterValues& valu
            .claim = fmt::format("TCP port {}", address.port)}};
 }
 
+Result<sensor::SimulatedDevice, Failure> ecowitt_push_simulated(const ParameterValues& values) {
+  std::vector<std::string> options = {"--interval", "1"};
+  const std::string path = kEcowittPushFields.of(values).path;
+  if (!path.empty()) options.insert(options.end(), {"--path", path});
+  sensor::SimulatedDevice simulated = sensor::simulated_sender("ecowitt-push", "--to", values, options);
+  simulated.values.set("station_key", Secret());  // no key on a command line, which others can see
+  return simulated;
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kEcowittPushDriver;
@@ -361,6 +370,7 @@ const sensor::DriverDescription kEcowittPushDriver{
               .device = fmt::format("pushes to TCP port {}", kEcowittPushFields.of(values).address.port),
               .device_keys = "port"};
         },
+    .simulated = ecowitt_push_simulated,
     .device_setup = kEcowittPushSetup,
     .formats = "ecowitt-push"};
 

@@ -207,6 +207,13 @@ sensor::ValueSelection tempest_selection(const ParameterValues& values) {
                                {.key = "from", .value = settings.port.senders, .covers = bus::senders_cover}});
 }
 
+Result<sensor::SimulatedDevice, Failure> tempest_simulated(const ParameterValues& values) {
+  std::vector<std::string> options = {"--interval", "1"};  // else it would say too little in the time that there is
+  const std::string station = kTempestFields.of(values).serial_number;
+  if (!station.empty()) options.insert(options.end(), {"--station", station});
+  return sensor::simulated_sender("tempest", "--udp", values, options);
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kTempestDriver;
@@ -218,6 +225,7 @@ const sensor::DriverDescription kTempestDriver{
     .find_in_network = find_tempest_stations,
     .endpoints = [](const ParameterValues& values) { return sensor::endpoints_at(kTempestFields.of(values).port); },
     .selection = tempest_selection,
+    .simulated = tempest_simulated,
     .formats = "tempest"};
 
 }  // namespace yuragi::drivers::network

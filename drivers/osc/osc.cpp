@@ -247,6 +247,18 @@ double osc_unchanged_for_s(const ParameterValues& values) {
   return settings.speaks_on_change ? seconds(settings.silence) : 0.0;
 }
 
+Result<sensor::SimulatedDevice, Failure> osc_simulated(const ParameterValues& values) {
+  const OscSettings settings = kOscFields.of(values);
+  if (settings.address.find_first_of("?*[]{}") != std::string::npos)
+    return Failure{"yuragi-sim sends to one OSC address, and this one is a pattern"};
+  if (settings.metres_per_second != 1.0) return Failure{"yuragi-sim sends speeds in m/s"};
+  if (settings.direction_argument < 0) return Failure{"yuragi-sim sends a direction, too"};
+  return sensor::simulated_sender(
+      "osc", "--to", values,
+      {"--address", settings.address, "--speed-argument", std::to_string(settings.speed_argument),
+       "--direction-argument", std::to_string(settings.direction_argument)});
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kOscDriver;
@@ -257,6 +269,7 @@ const sensor::DriverDescription kOscDriver{
     .open = open_osc,
     .endpoints = [](const ParameterValues& values) { return sensor::endpoints_at(kOscFields.of(values).port); },
     .selection = osc_selection,
-    .unchanged_for_s = osc_unchanged_for_s};
+    .unchanged_for_s = osc_unchanged_for_s,
+    .simulated = osc_simulated};
 
 }  // namespace yuragi::drivers::osc

@@ -260,12 +260,16 @@ std::unique_ptr<sensor::Sensor> play_recording(std::filesystem::path file, windl
 }
 
 extern const sensor::DriverDescription kWindlogDriver;
-const sensor::DriverDescription kWindlogDriver{.name = "windlog",
-                                               .summary = "plays a recording",
-                                               .parameters = kWindlogFields.parameters(),
-                                               .open = open_windlog,
-                                               .endpoints = windlog_endpoints,
-                                               .selection = windlog_selection,
-                                               .plays_recordings = true};
+const sensor::DriverDescription kWindlogDriver{
+    .name = "windlog",
+    .summary = "plays a recording",
+    .parameters = kWindlogFields.parameters(),
+    .open = open_windlog,
+    .endpoints = windlog_endpoints,
+    .selection = windlog_selection,
+    .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
+      return Failure{"there is no simulated device for the driver windlog, which plays a recording"};
+    },
+    .plays_recordings = true};
 
 }  // namespace yuragi::drivers::recording

@@ -13,9 +13,11 @@
 #include "drivers/sensor/found_device.hpp"
 #include "drivers/sensor/network_search.hpp"
 #include "drivers/sensor/sensor.hpp"
+#include "drivers/sensor/simulated_device.hpp"
 #include "drivers/sensor/stated_value.hpp"
 #include "drivers/sensor/value_selection.hpp"
 #include "engine/base/parameter.hpp"
+#include "engine/base/result.hpp"
 
 namespace yuragi::drivers::sensor {
 
@@ -77,6 +79,9 @@ struct DriverDescription {
   /// Returns what the speed of a sensor of these values is, as documented by the maker or the protocol; nullptr, or
   /// nullopt, if that is unknown. Does not touch the device. Does not throw, even for values that open() refuses.
   std::optional<StatedValue> (*stated_value)(const ParameterValues& values) = nullptr;
+  /// How yuragi-sim plays the device of a sensor of these values, or why it does not, for a technician. A device has
+  /// its factory settings, or those of the sensor's entry; never those of a profile: one with mistakes is to show.
+  Result<SimulatedDevice, Failure> (*simulated)(const ParameterValues& values) = nullptr;
   /// What a person sets at the device itself: lines of text; empty: nothing.
   std::string_view device_setup = {};
   /// It plays a recording: never to be taken for the live wind.

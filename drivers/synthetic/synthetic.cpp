@@ -81,6 +81,9 @@ const sensor::DriverDescription kSyntheticDriver{
         [](const ParameterValues&) {
           return std::optional(
               sensor::StatedValue{.value = wind::ReadingValue::kInstant, .source = "drivers/synthetic"});
-        }};
+        },
+    .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
+      return Failure{"there is no simulated device for the driver synthetic, which is one itself"};
+    }};
 
 }  // namespace yuragi::drivers::synthetic

@@ -182,6 +182,24 @@ sensor::ValueSelection line_selection(const ParameterValues& values) {
        {.key = "speed_key", .value = is_columns ? "" : speed.key}});
 }
 
+Result<sensor::SimulatedDevice, Failure> line_simulated(const ParameterValues& values) {
+  const bool has_keys = values.text("format") == "keys";
+  const std::int64_t direction_column = values.integer("direction_column");
+  const std::string& direction_key = values.text("direction_key");
+  const bool is_laid_out_so =
+      has_keys ? values.text("speed_key") == "speed" && (direction_key.empty() || direction_key == "direction")
+               : values.text("separator") == "comma" && values.integer("speed_column") == 1 &&
+                     (direction_column == 0 || direction_column == 2) && values.integer("gust_column") == 0;
+  const bool has_plain_numbers = values.text("speed_unit") == "m/s" && values.number("speed_scale") == 1.0 &&
+                                 values.number("speed_offset") == 0.0 && values.number("direction_scale") == 1.0;
+  if (!is_laid_out_so || !has_plain_numbers)
+    return Failure{"yuragi-sim plays only lines of speed and direction in m/s and degrees, 4.2,270"};
+  sensor::SimulatedDevice simulated =
+      sensor::simulated_by_tcp("line", values, {"--format", has_keys ? "key-value" : "csv"});
+  simulated.north_offset_deg = values.number("north_offset");
+  return simulated;
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kLineDriver;
@@ -200,6 +218,7 @@ const sensor::DriverDescription kLineDriver{
         },
     .endpoints = byte_port_endpoints,
     .selection = line_selection,
+    .simulated = line_simulated,
     .formats = "line"};
 
 }  // namespace yuragi::drivers::text

@@ -9,6 +9,7 @@
 //   others  as configured (a WindSonic in polled mode M3 needs its node letter)
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -189,6 +190,34 @@ std::optional<sensor::StatedValue> nmea_value(const ParameterValues& values) {
   return sensor::StatedValue{.value = wind::ReadingValue::kMean, .source = "Vaisala M211840EN: Sm"};
 }
 
+/// What yuragi-sim sends for the formats and sentences that a sensor takes.
+std::string simulated_formats(const ParameterValues& values) {
+  const std::string& format = values.text("format");
+  if (format != "auto" && format != "nmea") return format;
+  std::string sentences;
+  for (const char c : values.text("sentences")) {
+    if (std::isspace(static_cast<unsigned char>(c)) == 0)
+      sentences += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  if (!sentences.empty()) return sentences;
+  if (values.text("reference") == "north") return "mwd";
+  return values.text("reference") == "true" ? "vwt" : "mwv";
+}
+
+Result<sensor::SimulatedDevice, Failure> nmea_simulated(const ParameterValues& values) {
+  const std::string formats = simulated_formats(values);
+  const std::string& reference = values.text("reference");
+  sensor::SimulatedDevice simulated = sensor::simulated_by_tcp("nmea", values, {"--format", formats});
+  // The simulator's own names, which are no fault of the configuration.
+  simulated.values.set("talker", std::string());
+  simulated.values.set("address", std::string("01"));
+  simulated.values.set("xdr_id", std::int64_t{0});
+  const bool says_north = formats.find("mwd") != std::string::npos || formats.find("mda") != std::string::npos;
+  if (!says_north || (reference != "north" && reference != "auto"))
+    simulated.north_offset_deg = values.number("north_offset");
+  return simulated;
+}
+
 }  // namespace
 
 extern const sensor::DriverDescription kNmeaDriver;
@@ -208,6 +237,7 @@ const sensor::DriverDescription kNmeaDriver{
     .endpoints = byte_port_endpoints,
     .selection = nmea_selection,
     .stated_value = nmea_value,
+    .simulated = nmea_simulated,
     .formats = "nmea gill umb ft wxt"};
 
 }  // namespace yuragi::drivers::text

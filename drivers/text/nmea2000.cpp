@@ -106,6 +106,33 @@ Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values
   return settings;
 }
 
+namespace {
+
+/// What yuragi-sim sends for the lines that a sensor takes; a CAN interface's are those of candump.
+std::string simulated_format(const ParameterValues& values) {
+  const std::string& format = values.text("format");
+  if (values.text("transport") == "can") return "candump";
+  if (format == "canboat" && values.text("angle_unit") == "rad") return "canboat-si";
+  return format == "auto" ? "yacht-devices" : format;
+}
+
+Result<sensor::SimulatedDevice, Failure> nmea2000_simulated(const ParameterValues& values) {
+  const std::string format = simulated_format(values);
+  const std::string& wanted = values.text("reference");
+  const bool is_from_north = wanted == "north";
+  sensor::SimulatedDevice simulated = sensor::simulated_by_tcp("nmea2000", values,
+                                                               {"--format", format, "--reference",
+                                                                is_from_north      ? "north"
+                                                                : wanted == "true" ? "boat"
+                                                                                   : "apparent"});
+  if (values.text("transport") == "can") simulated.values.set("format", format);
+  simulated.values.set("address", std::int64_t{-1});  // the simulator's own, which is no fault of the configuration
+  if (!is_from_north) simulated.north_offset_deg = values.number("north_offset");
+  return simulated;
+}
+
+}  // namespace
+
 extern const sensor::DriverDescription kNmea2000Driver;
 const sensor::DriverDescription kNmea2000Driver{
     .name = "nmea2000",
@@ -124,6 +151,7 @@ const sensor::DriverDescription kNmea2000Driver{
                                 {{.key = "address", .value = address ? std::to_string(*address) : ""},
                                  reference_part(chosen_wind_settings_of(values))});
         },
+    .simulated = nmea2000_simulated,
     .formats = "nmea2000"};
 
 }  // namespace yuragi::drivers::text

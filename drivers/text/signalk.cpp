@@ -150,6 +150,22 @@ SignalKSensorSettings signalk_sensor_settings_of(const ParameterValues& values) 
   return settings;
 }
 
+namespace {
+
+Result<sensor::SimulatedDevice, Failure> signalk_simulated(const ParameterValues& values) {
+  const std::string& reference = values.text("reference");
+  if (reference != "auto" && reference != "relative")
+    return Failure{"yuragi-sim plays a Signal K server that says the apparent wind alone"};
+  sensor::SimulatedDevice simulated = sensor::simulated_by_tcp("signalk", values);
+  // The simulator's own names, which are no fault of the configuration.
+  simulated.values.set("source", std::string());
+  simulated.values.set("context", std::string());
+  simulated.north_offset_deg = values.number("north_offset");
+  return simulated;
+}
+
+}  // namespace
+
 extern const sensor::DriverDescription kSignalKDriver;
 const sensor::DriverDescription kSignalKDriver{
     .name = "signalk",
@@ -172,6 +188,7 @@ const sensor::DriverDescription kSignalKDriver{
                      {.key = "source", .value = keys.source},
                      reference_part(chosen_wind_settings_of(values))});
         },
+    .simulated = signalk_simulated,
     .formats = "signalk"};
 
 }  // namespace yuragi::drivers::text

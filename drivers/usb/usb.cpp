@@ -187,6 +187,9 @@ const sensor::DriverDescription kUsbDriver{
         [](const ParameterValues&) { return std::vector{sensor::Endpoint{.kind = sensor::EndpointKind::kUsb}}; },
     .selection = usb_selection,
     .stated_value = usb_value,
+    .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
+      return Failure{"a simulated usb needs USB or sound of its own, and rights for it"};
+    },
     .formats = "mcc1208 labjack"};
 
 }  // namespace yuragi::drivers::usb

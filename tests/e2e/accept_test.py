@@ -116,10 +116,11 @@ class Accept(unittest.TestCase):
             self.assertAlmostEqual(one["direction_deg"], direction_deg, delta=1)
 
     def test_stations_in_the_network_are_simulated_on_this_machine(self):
-        # One that pushes, and one that is asked and sends, too; the plans of all are in simulated_sensor_test.cpp.
+        # One that pushes, one that is asked and sends, too, and a program that sends; the plans of all are in simulated_sensor_test.cpp.
         config = self.config('name = "console"\ndriver = "ecowitt-push"\nhost = "0.0.0.0"\nfrom = "192.0.2.0/24"\npath = "/roof/"\n'
                              f'station_key = "hunter2"\nport = {free_port()}',
-                             f'name = "live"\ndriver = "weatherlink"\nhost = "192.0.2.8"\nport = {free_port(socket.SOCK_DGRAM)}')
+                             f'name = "live"\ndriver = "weatherlink"\nhost = "192.0.2.8"\nport = {free_port(socket.SOCK_DGRAM)}',
+                             f'name = "show"\ndriver = "osc"\naddress = "/roof"\nspeed_argument = 2\nport = {free_port(socket.SOCK_DGRAM)}')
         done = self.accept(config, "--simulated-only", "--json")
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         for one in json.loads(done.stdout)["simulated"]:

@@ -21,17 +21,16 @@ inline constexpr double kSimulatedDirection_deg = 225.0;
 struct SimulationPlan {
   std::vector<std::string> arguments;  ///< of yuragi-sim, which listens at a free port of 127.0.0.1, or sends there
   settings::SensorConfig sensor;       ///< the configured one, but for the way to its device; without its port
+  std::string_view port_key;           ///< which of its driver's values that is
   ExpectedWind expected;               ///< of its calibrated readings
 };
 
-/// Plans the simulation of a sensor. Fails, in words for the technician, where yuragi-sim cannot play it without
-/// special rights: a driver of USB, sound or messages; slave ids or lines that it does not play. A Modbus device has
-/// its factory slave ids, or those that the sensor's entry sets, never those of the profile: a profile with wrong ones
-/// is to show. Pure.
+/// Plans the simulation of a sensor, as its driver describes it (DriverDescription::simulated). Fails, in words for the
+/// technician, where yuragi-sim cannot play it without special rights. Pure.
 Result<SimulationPlan, Failure> plan_simulation(const settings::SensorConfig& sensor);
 
-/// The same sensor with its device at this port.
-settings::SensorConfig at_port(settings::SensorConfig sensor, std::uint16_t port);
+/// The plan's sensor with its device at this port.
+settings::SensorConfig at_port(const SimulationPlan& plan, std::uint16_t port);
 
 /// The port in the first line of a simulator ("listening on 127.0.0.1:4001"). None: it says none, or not yet whole.
 std::optional<std::uint16_t> simulator_port(std::string_view output);

@@ -48,6 +48,19 @@ TEST(DriverTable, EachFormatOfDecodeIsADriversAndTheReverse) {
   EXPECT_EQ(of_drivers, known);
 }
 
+TEST(DriverTable, EachDriverIsSimulatedOrSaysWhyNot) {
+  for (const DriverDescription* const driver : drivers::sensor::driver_table()) {
+    ASSERT_NE(driver->simulated, nullptr) << driver->name;
+    const auto device = driver->simulated(defaults_of(*driver));
+    if (!device) {
+      EXPECT_FALSE(device.error().message.empty()) << driver->name;
+      continue;
+    }
+    EXPECT_TRUE(device->values.has(device->port_key)) << driver->name;
+    EXPECT_TRUE(ParameterValues::resolve(driver->parameters, device->values.all())) << driver->name;
+  }
+}
+
 TEST(DriverTable, OneDriverPlaysRecordings) {
   EXPECT_EQ(std::ranges::count(drivers::sensor::driver_table(), true,
                                [](const DriverDescription* driver) { return driver->plays_recordings; }),

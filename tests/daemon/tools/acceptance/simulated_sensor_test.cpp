@@ -34,7 +34,7 @@ TEST(SimulationPlan, PlaysAModbusDeviceOverTcp) {
       "poll_interval = 0.5");
   EXPECT_THAT(plan.arguments, ElementsAre("modbus", "--tcp", "127.0.0.1:0", "--profile", "renke-rs-fsjt-n01", "--speed",
                                           "8", "--direction", "225", "--turbulence", "0"));
-  const settings::SensorConfig sensor = at_port(plan.sensor, 4321);
+  const settings::SensorConfig sensor = at_port(plan, 4321);
   EXPECT_EQ(sensor.values.text("transport"), "tcp");
   EXPECT_EQ(sensor.values.text("host"), "127.0.0.1");
   EXPECT_EQ(sensor.values.text("device"), "");
@@ -110,33 +110,41 @@ TEST(SimulationPlan, PlaysASignalKServer) {
 
 TEST(SimulationPlan, PlaysWhatSendsToTheSensor) {
   const SimulationPlan tempest = plan_of_entry("driver = \"tempest\"\nserial_number = \"ST-1\"\nport = 4000");
-  EXPECT_THAT(tempest.arguments, ElementsAre("tempest", "--udp", "127.0.0.1:4000", "--speed", "8", "--direction", "225",
-                                             "--turbulence", "0", "--interval", "1", "--station", "ST-1"));
+  EXPECT_THAT(tempest.arguments, ElementsAre("tempest", "--udp", "127.0.0.1:4000", "--interval", "1", "--station",
+                                             "ST-1", "--speed", "8", "--direction", "225", "--turbulence", "0"));
   EXPECT_EQ(tempest.sensor.values.text("host"), "127.0.0.1");
   EXPECT_EQ(tempest.sensor.values.text("from"), "127.0.0.1") << "real hubs are not heard";
-  EXPECT_EQ(at_port(tempest.sensor, simulator_port("sending to 127.0.0.1:4000\n").value()).values.integer("port"),
-            4000);
+  EXPECT_EQ(at_port(tempest, simulator_port("sending to 127.0.0.1:4000\n").value()).values.integer("port"), 4000);
 
   const SimulationPlan push = plan_of_entry(
       "driver = \"ecowitt-push\"\nhost = \"0.0.0.0\"\nfrom = \"192.168.1.0/24\"\npath = \"/roof\"\nstation_key = "
       "\"KEY\"");
-  EXPECT_THAT(push.arguments, ElementsAre("ecowitt-push", "--to", "127.0.0.1:8090", "--speed", "8", "--direction",
-                                          "225", "--turbulence", "0", "--interval", "1", "--path", "/roof"));
+  EXPECT_THAT(push.arguments, ElementsAre("ecowitt-push", "--to", "127.0.0.1:8090", "--interval", "1", "--path",
+                                          "/roof", "--speed", "8", "--direction", "225", "--turbulence", "0"));
   EXPECT_EQ(push.sensor.values.text("host"), "127.0.0.1");
   EXPECT_EQ(push.sensor.values.text("from"), "127.0.0.1");
   EXPECT_TRUE(push.sensor.values.secret("station_key").is_empty()) << "no key on a command line";
 }
 
+TEST(SimulationPlan, PlaysAProgramThatSendsMessages) {
+  const SimulationPlan plan = plan_of_entry("driver = \"osc\"\nport = 9100\naddress = \"/roof\"\nspeed_argument = 2");
+  EXPECT_THAT(plan.arguments,
+              ElementsAre("osc", "--to", "127.0.0.1:9100", "--address", "/roof", "--speed-argument", "2",
+                          "--direction-argument", "1", "--speed", "8", "--direction", "225", "--turbulence", "0"));
+  EXPECT_THAT(why_not("driver = \"osc\"\naddress = \"/*\""), HasSubstr("is a pattern"));
+}
+
 TEST(SimulationPlan, PlaysWhatIsAskedInTheNetwork) {
   const SimulationPlan ecowitt = plan_of_entry("driver = \"ecowitt\"\nhost = \"192.168.1.30\"");
-  EXPECT_THAT(ecowitt.arguments, ElementsAre("ecowitt", "--tcp", "127.0.0.1:0", "--speed", "8", "--direction", "225",
-                                             "--turbulence", "0", "--interval", "1"));
+  EXPECT_THAT(ecowitt.arguments, ElementsAre("ecowitt", "--tcp", "127.0.0.1:0", "--interval", "1", "--speed", "8",
+                                             "--direction", "225", "--turbulence", "0"));
   EXPECT_EQ(ecowitt.sensor.values.text("host"), "127.0.0.1");
 
   const SimulationPlan live = plan_of_entry("driver = \"weatherlink\"\nhost = \"192.168.1.40\"\ntransmitter = 3");
-  EXPECT_THAT(live.arguments, ElementsAre("weatherlink-live", "--tcp", "127.0.0.1:0", "--speed", "8", "--direction",
-                                          "225", "--turbulence", "0", "--udp", "127.0.0.1:22222", "--interval", "1"));
-  const settings::SensorConfig sensor = at_port(live.sensor, 4321);
+  EXPECT_THAT(live.arguments,
+              ElementsAre("weatherlink-live", "--tcp", "127.0.0.1:0", "--udp", "127.0.0.1:22222", "--interval", "1",
+                          "--speed", "8", "--direction", "225", "--turbulence", "0"));
+  const settings::SensorConfig sensor = at_port(live, 4321);
   EXPECT_EQ(sensor.values.integer("http_port"), 4321);
   EXPECT_EQ(sensor.values.integer("port"), 22222);
   EXPECT_EQ(sensor.values.text("host"), "127.0.0.1");
