@@ -17,8 +17,8 @@ using wind::blend::BlendSourceSettings;
 constexpr std::string_view kAuto = "auto";
 constexpr std::string_view kAtTheEdge =
     "its gusts enter at the windward edge of the scenes, wherever the wind comes from, and cross all of them";
-constexpr std::array<std::string_view, 4> kValues = {kAuto, wind::kReadingValueNames[0],
-                                                     wind::kReadingValueNames[1], wind::kReadingValueNames[2]};
+constexpr std::array<std::string_view, 4> kValues = {kAuto, wind::kReadingValueNames[0], wind::kReadingValueNames[1],
+                                                     wind::kReadingValueNames[2]};
 constexpr std::array<std::string_view, 3> kRoles = {kAuto, "absolute", "relative"};
 
 enum class Role : std::uint8_t { kOfDriver, kAbsolute, kRelative };

@@ -33,7 +33,7 @@ MISTAKES = (
          "const std::size_t body = frame.size() - kWmr100Sum - 1;"),),
         "asan", "drivers_tests_threadless", "^drivers_tests_threadless"),
     Mistake("a constant in a shader", (
-        ("viewer/gl/shaders/clouds.frag.glsl", "const float kDensity = 26.0;", "const float kDensity = 2.6;"),),
+        ("viewer/gl/shaders/sky/clouds.frag.glsl", "const float kDensity = 26.0;", "const float kDensity = 2.6;"),),
         "test", "pictures_test", "GoldenPictureTest"),
     Mistake("a bound that is missing in the stream's decoder", (
         ("engine/wire/decode.cpp", "  if (count > kMaxScenes) return false;\n  for (std::size_t i = 0; i < count; ++i) {\n"

@@ -115,7 +115,7 @@ PICTURES = {"viewer/meadow.png": draw_meadow, "viewer/garden.png": draw_garden, 
 def hash_of_shaders(sources):
     """Of all shaders, without comments and white space."""
     digest = hashlib.sha256()
-    for shader in sorted((sources / SHADERS).glob("*.glsl")):
+    for shader in sorted((sources / SHADERS).rglob("*.glsl"), key=lambda shader: shader.name):
         code = re.sub(r"/\*.*?\*/|//[^\n]*", "", shader.read_text(), flags=re.DOTALL)
         digest.update(f"{shader.name}\n{''.join(code.split())}\n".encode())
     return digest.hexdigest()[:16]

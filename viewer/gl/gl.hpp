@@ -76,7 +76,7 @@ using GlProgram = GlObject<GlProgramKind>;
 inline constexpr GLuint kViewBinding = 0;
 /// And the block of the light (viewer/light/light.hpp).
 inline constexpr GLuint kLightBinding = 1;
-/// And the block Ground, of those that draw grass (shaders/sward.part.glsl).
+/// And the block Ground, of those that draw grass (shaders/grass/sward.part.glsl).
 inline constexpr GLuint kGroundBinding = 2;
 /// And the block Fires (viewer/light/fire_light.hpp).
 inline constexpr GLuint kFiresBinding = 3;
@@ -112,7 +112,7 @@ enum TextureUnit : GLint {
   kEdgesUnit,        // the picture whose edges are smoothed
 };
 
-/// Compiles and links. Each stage begins with glsl_version_line() and shaders/common.glsl. On an error throws
+/// Compiles and links. Each stage begins with glsl_version_line() and shaders/picture/common.glsl. On an error throws
 /// std::runtime_error with `name` and the compiler's message. The uniform blocks and the samplers of shadows are bound
 /// as above.
 GlProgram link_program(const std::string& name, std::string_view vertex, std::string_view fragment);

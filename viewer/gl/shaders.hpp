@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-/// The text of viewer/gl/shaders/*.glsl, which the build puts into the program.
+/// The text of viewer/gl/shaders/*/*.glsl, which the build puts into the program.
 namespace yuragi::viewer::gl::shaders {
 
 extern const std::string_view kCommon;  ///< in front of each of the others

@@ -12,8 +12,8 @@ namespace yuragi::viewer::looks {
 /// current context.
 ///
 /// A shader finds the Blades in the sampler `blades` (kStripsUnit), the joints in the sampler `joints` (unit 0, see
-/// shaders/common.glsl), and the uniforms `links`, `rings` and `copies`: strip i (StripIndices) is ribbon i % copies of
-/// Blade i / copies.
+/// shaders/picture/common.glsl), and the uniforms `links`, `rings` and `copies`: strip i (StripIndices) is ribbon i %
+/// copies of Blade i / copies.
 class StrandRibbons {
  public:
   /// `strands` must outlive this. Each is drawn as so many ribbons.
