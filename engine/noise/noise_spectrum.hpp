@@ -13,7 +13,7 @@
 #include "engine/math/philox.hpp"
 #include "engine/noise/noise_spec.hpp"
 
-// How a noise's modes are drawn and its samples standardised: what make_noise_1d, 2d, 3d and EvolvingNoise share.
+// How a noise's modes are drawn and its samples standardised: what make_noise_1d, 2d and 3d share.
 // Internal to this folder.
 
 namespace yuragi::noise {

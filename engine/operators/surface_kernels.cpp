@@ -1,7 +1,6 @@
 #include "engine/operators/surface_kernels.hpp"
 
 #include <cstddef>
-#include <cstdint>
 
 #include "engine/base/kernel.hpp"
 
@@ -24,15 +23,6 @@ void threshold_ramp(const ThresholdRampArguments& arguments) noexcept {
   }
 }
 
-void map_colors(const ColorMapArguments& arguments) noexcept {
-  const ColorMapArguments in = arguments;
-  for (std::size_t i = 0; i < in.count; ++i) {
-    const float nearest = from_0_to_1(in.level[i]) * 255.0F + 0.5F;  // of colours 0 to 255, once cut to a whole number
-    const auto color = static_cast<std::int32_t>(nearest);
-    __builtin_memcpy(in.out + 4 * i, in.ramp_rgba + std::ptrdiff_t{4} * color, 4);
-  }
-}
-
 void displace(const DisplacementArguments& arguments) noexcept {
   const DisplacementArguments in = arguments;
   // + 0: what does not move is at 0, and not at -0, for poses are compared bit for bit.
@@ -41,6 +31,6 @@ void displace(const DisplacementArguments& arguments) noexcept {
 
 }  // namespace
 
-const SurfaceKernels YURAGI_ROW_NAME(surface_kernels) = {threshold_ramp, map_colors, displace};
+const SurfaceKernels YURAGI_ROW_NAME(surface_kernels) = {threshold_ramp, displace};
 
 }  // namespace yuragi::operators

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
 #include "engine/base/kernel.hpp"
 
-// Internal: between ThresholdRampJob, ColorMapJob, DisplacementJob and their kernels.
+// Internal: between ThresholdRampJob, DisplacementJob and their kernels.
 
 namespace yuragi::operators {
 
@@ -19,13 +18,6 @@ struct ThresholdRampArguments {
   float* out = nullptr;
 };
 
-struct ColorMapArguments {
-  std::size_t count = 0;
-  const float* level = nullptr;
-  const std::uint8_t* ramp_rgba = nullptr;
-  std::uint8_t* out = nullptr;
-};
-
 struct DisplacementArguments {
   std::size_t count = 0;
   const float* noise = nullptr;
@@ -36,7 +28,6 @@ struct DisplacementArguments {
 
 struct SurfaceKernels {
   void (*threshold_ramp)(const ThresholdRampArguments&) noexcept;
-  void (*map_colors)(const ColorMapArguments&) noexcept;
   void (*displace)(const DisplacementArguments&) noexcept;
 };
 YURAGI_DECLARE_KERNEL_ROWS(SurfaceKernels, surface_kernels);

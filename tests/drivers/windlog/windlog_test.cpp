@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "drivers/windlog/format.hpp"
-#include "drivers/windlog/windlog_summary.hpp"
 #include "tests/drivers/windlog/windlog_samples.hpp"
 #include "tests/support/file_size_limit.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -326,27 +325,10 @@ TEST(Windlog, RemembersWhatMadeIt) {
   EXPECT_EQ(reader->sensors()[0].options, "speed = 5");
 }
 
-TEST(Windlog, SumsUpWhatItHolds) {
-  const test::TemporaryFolder folder;
-  test::write_session(folder / "a.windlog", test::numbered_readings(1001));
-  const auto summary = summarize(folder / "a.windlog");
-  ASSERT_TRUE(summary);
-  EXPECT_EQ(summary->count, 1001U);
-  EXPECT_EQ(summary->skipped, 0U);
-  EXPECT_EQ(summary->duration, 100s);
-  EXPECT_EQ(summary->first, UtcTime(std::chrono::milliseconds(test::kSampleUtc_ms + 1000)));
-  EXPECT_EQ(summary->last - summary->first, 100s);
-  ASSERT_EQ(summary->sensors.size(), 1U);
-  EXPECT_NEAR(summary->sensors[0].mean_speed_m_s, 0.5, 1e-12);
-  EXPECT_EQ(summary->sensors[0].max_speed_m_s, 1.0);
-  EXPECT_NEAR(summary->sensors[0].interval_s, 0.1, 1e-12);
-}
-
 TEST(Windlog, OfNoReadingsIsARecordingToo) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", {});
   EXPECT_TRUE(test::read_all(folder / "a.windlog").empty());
-  EXPECT_EQ(summarize(folder / "a.windlog")->count, 0U);
 }
 
 TEST(Windlog, WriterRefusesAForeignDatabaseAndLeavesItAsItWas) {

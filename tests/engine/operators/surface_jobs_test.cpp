@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "engine/math/philox.hpp"
-#include "engine/operators/color_map_job.hpp"
 #include "engine/operators/displacement_job.hpp"
 #include "engine/operators/threshold_ramp_job.hpp"
 #include "tests/support/bits.hpp"
@@ -40,11 +39,8 @@ TEST_P(SurfaceJobsOnEachRow, HaveTheBitsOfTheBaseRow) {
   for (const std::size_t count : {0U, 1U, 7U, 16U, 33U, 1000U}) {
     const std::vector<float> noise = normals(count, "noise");
     const std::vector<float> along = normals(count, "along");
-    std::vector<std::uint8_t> ramp(4 * kRampColors);
-    for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
     const auto run = [&](SimdRow row) {
       std::vector<float> out(2 * count);
-      std::vector<std::uint8_t> rgba(4 * count);
       const auto level = std::span(out).first(count);
       EXPECT_EQ((ThresholdRampJob{.noise = noise, .along = along, .edge = 0.7F, .row = row, .level = level}.run()),
                 ThresholdRampJob::Problem::kNone);
@@ -55,9 +51,7 @@ TEST_P(SurfaceJobsOnEachRow, HaveTheBitsOfTheBaseRow) {
                                  .displacement_m = std::span(out).last(count)}
                      .run()),
                 DisplacementJob::Problem::kNone);
-      EXPECT_EQ((ColorMapJob{.level = level, .ramp_rgba = ramp, .row = row, .rgba = rgba}.run()),
-                ColorMapJob::Problem::kNone);
-      return std::pair{bits_of(out), rgba};
+      return bits_of(out);
     };
     EXPECT_EQ(run(GetParam()), run(kBaseSimdRow));
   }
@@ -136,37 +130,6 @@ TEST(ThresholdRampJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   job.last_threshold = kNoNumber;
   EXPECT_EQ(job.run(), ThresholdRampJob::Problem::kThresholdNotNumber);
   EXPECT_EQ(std::count(level.begin(), level.end(), -1.0F), 10);
-}
-
-TEST(ColorMapJobTest, TakesTheNearestColorAndKeepsWithinTheRamp) {
-  std::vector<std::uint8_t> ramp;
-  for (unsigned color = 0; color < kRampColors; ++color) {
-    for (const unsigned channel : {color, 255U - color, color / 2, 255U}) {
-      ramp.push_back(static_cast<std::uint8_t>(channel));
-    }
-  }
-  const std::vector<float> level = {0.0F, 1.0F, 100.4F / 255.0F, 100.6F / 255.0F, -5.0F, 7.0F, kNoNumber};
-  std::vector<std::uint8_t> rgba(4 * level.size());
-  EXPECT_EQ((ColorMapJob{.level = level, .ramp_rgba = ramp, .rgba = rgba}.run()), ColorMapJob::Problem::kNone);
-  const std::vector<std::uint8_t> expected = {0, 255, 100, 101, 0, 255, 0};
-  for (std::size_t i = 0; i < level.size(); ++i) {
-    EXPECT_EQ(rgba[4 * i], expected[i]) << level[i];
-    EXPECT_EQ(rgba[4 * i + 1], 255 - expected[i]);
-    EXPECT_EQ(rgba[4 * i + 2], expected[i] / 2);
-    EXPECT_EQ(rgba[4 * i + 3], 255);
-  }
-}
-
-TEST(ColorMapJobTest, SaysWhatIsWrongAndThenDoesNothing) {
-  const std::vector<float> level(5, 0.5F);
-  const std::vector<std::uint8_t> ramp(4 * kRampColors, 1);
-  std::vector<std::uint8_t> rgba(20, 0);
-  ColorMapJob job{.level = level, .ramp_rgba = std::span(ramp).first(1020), .rgba = rgba};
-  EXPECT_EQ(job.run(), ColorMapJob::Problem::kRampSize);
-  job.ramp_rgba = ramp;
-  job.rgba = std::span(rgba).first(5);
-  EXPECT_EQ(job.run(), ColorMapJob::Problem::kSizesDiffer);
-  EXPECT_EQ(std::count(rgba.begin(), rgba.end(), 0), 20);
 }
 
 TEST(DisplacementJobTest, MovesEachPointByItsShareOfTheNoise) {
