@@ -32,7 +32,6 @@ double bytes_of(double megabytes) {
 const Fields<AlertTable>& alert_fields() {
   static const Fields<AlertTable> kFields{
       {{.name = "when",
-        .unit = "",
         .default_value = std::string(kAlertConditionNames[0]),
         .help = "what it is about: a sensor's readings are not used, the measured wind is above speed, the disk "
                 "of the recording has less than free, the animation has made no frame, or readings cannot be "
@@ -40,7 +39,6 @@ const Fields<AlertTable>& alert_fields() {
         .choices = kAlertConditionNames},
        of(&AlertConfig::when)},
       {{.name = "sensor",
-        .unit = "",
         .default_value = std::string(),
         .help = "for sensor_silent: the name of the sensor; empty: each one, told by itself"},
        of(&AlertConfig::sensor)},
@@ -75,7 +73,6 @@ const Fields<AlertTable>& alert_fields() {
         .help = "it ends when it has no longer been so for this long"},
        of(&AlertConfig::end_after_s)},
       {{.name = "command",
-        .unit = "",
         .default_value = Secret(),  // it may hold a password
         .help = "run by /bin/sh at its beginning and at its end, for at most a minute, with YURAGI_ALERT (its "
                 "name), YURAGI_ALERT_STATE (began or ended) and YURAGI_ALERT_MESSAGE (a sentence) in its "
@@ -83,7 +80,6 @@ const Fields<AlertTable>& alert_fields() {
         .takes_control_characters = true},
        &AlertTable::command},
       {{.name = "webhook",
-        .unit = "",
         .default_value = Secret(),
         .help = "an URL, http:// or https://, to which the same is posted as JSON: alert, state, message, host, "
                 "time, and text for chat services; tried again for a day where it does not answer; empty: none"},

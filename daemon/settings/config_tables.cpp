@@ -13,7 +13,6 @@ namespace {
 const Fields<Config>& general_fields() {
   static const Fields<Config> kFields{
       {{.name = "seed",
-        .unit = "",
         .default_value = std::int64_t{1},
         .min = 0,
         .help = "seed of all random numbers: the same seed and wind give the same motion"},
@@ -27,7 +26,6 @@ const Fields<AnimationConfig>& animation_fields() {
       {{.name = "rate", .unit = "Hz", .default_value = 60.0, .min = 1.0, .max = 240.0, .help = "ticks per second"},
        &AnimationConfig::rate_hz},
       {{.name = "threads",
-        .unit = "",
         .default_value = std::int64_t{1},
         .min = 1,
         .max = 64,

@@ -51,21 +51,18 @@ Result<std::vector<std::string>, Failure> addresses(const std::string& text) {
 const Fields<HttpConfig>& http_fields() {
   static const Fields<HttpConfig> kFields{
       {{.name = "listen",
-        .unit = "",
         .default_value = std::string(),
         .help = "address and port that browsers, scripts and Prometheus ask: 127.0.0.1:7480, or 0.0.0.0:7480 for "
                 "other machines, too; empty: none. Who may change something: token_file and [stream] control"},
        &HttpConfig::listen,
        address_or_empty},
       {{.name = "hosts",
-        .unit = "",
         .default_value = std::string(),
         .help = "names, with blanks between them, by which others call this machine, besides its own name, "
                 "localhost and its addresses; a request for any other is refused"},
        &HttpConfig::hosts,
        host_names},
       {{.name = "token_file",
-        .unit = "",
         .default_value = std::string(),
         .help = "a file with the token, which `yuragi token --new` makes; then only clients of the page and the stream "
                 "that show it, and browsers that were paired with `yuragi token`, change something, whatever their "
@@ -73,14 +70,12 @@ const Fields<HttpConfig>& http_fields() {
         .is_secret_file = true},
        &HttpConfig::token_file},
       {{.name = "proxies",
-        .unit = "",
         .default_value = std::string(),
         .help = "addresses, with blanks between them, of reverse proxies whose X-Forwarded-For is believed: 127.0.0.1; "
                 "for the log and the limit of attempts to pair"},
        &HttpConfig::proxies,
        addresses},
       {{.name = "readers",
-        .unit = "",
         .default_value = std::string("anyone"),
         .help = "who may read over HTTP: anyone who reaches the port, or only those with the token; this machine "
                 "always reads /healthz",

@@ -14,7 +14,6 @@ constexpr std::array<std::string_view, 4> kLogLevelNames = {"debug", "info", "wa
 const Fields<LogConfig>& log_fields() {
   static const Fields<LogConfig> kFields{
       {{.name = "level",
-        .unit = "",
         .default_value = std::string("info"),
         .help = "lines of the log below this are not written; debug also has every attempt to connect to a "
                 "sensor, and --verbose sets it",

@@ -25,14 +25,12 @@ std::optional<std::filesystem::path> path_unless_empty(const std::string& text) 
 const Fields<RecordingConfig>& recording_fields() {
   static const Fields<RecordingConfig> kFields{
       {{.name = "file",
-        .unit = "",
         .default_value = std::string(),
         .help = "record every reading into this file (.windlog); empty: record nothing; --record FILE overrides it",
         .change = KeyChange::kTakesRestart},
        &RecordingConfig::file,
        path_unless_empty},
       {{.name = "rotate",
-        .unit = "",
         .default_value = std::string("never"),
         .help = "begin a new file: never, or each day (UTC); completed files lie beside it, each with the moment of "
                 "its beginning in its name, and all of them are read as one recording",

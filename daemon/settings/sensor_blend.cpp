@@ -41,14 +41,12 @@ auto of(Member BlendSourceSettings::*member) {
 const Fields<BlendTable>& blend_fields() {
   static const Fields<BlendTable> kFields{
       {{.name = "role",
-        .unit = "",
         .default_value = std::string(kAuto),
         .help = "relative: only its fluctuations are used, for the gusts that the absolute sensors are too slow "
                 "for, scaled to theirs. auto: relative for a microphone, absolute for all others",
         .choices = kRoles},
        &BlendTable::role},
       {{.name = "priority",
-        .unit = "",
         .default_value = std::int64_t{0},
         .min = 0,
         .max = 1000,
@@ -56,7 +54,6 @@ const Fields<BlendTable>& blend_fields() {
                 "position in the file, from 1"},
        of(&BlendSourceSettings::priority)},
       {{.name = "weight",
-        .unit = "",
         .default_value = 1.0,
         .min = 0.01,
         .max = 100.0,
@@ -88,7 +85,6 @@ const Fields<BlendTable>& blend_fields() {
                 "measured gusts, but later, by lead over wind speed"},
        of(&BlendSourceSettings::lead_m)},
       {{.name = "value",
-        .unit = "",
         .default_value = std::string(kAuto),
         .help =
             "what the station reports: mean, the mean wind over the averaging time; instant, the instantaneous wind: "

@@ -33,14 +33,12 @@ auto of(Member Calibration::*member) {
 const Fields<CalibrationTable>& calibration_fields() {
   static const Fields<CalibrationTable> kFields{
       {{.name = "unit",
-        .unit = "",
         .default_value = std::string("m/s"),
         .help = "unit of the sensor's speeds, where its driver assumes m/s",
         .choices = drivers::sensor::kSpeedUnitNames},
        of(&Calibration::unit_m_s),
        drivers::sensor::metres_per_second_in},
       {{.name = "gain",
-        .unit = "",
         .default_value = 1.0,
         .min = 0.01,
         .max = 100.0,
@@ -109,7 +107,6 @@ auto of(double JudgeSettings::*member) {
 const Fields<JudgeTable>& judge_fields() {
   static const Fields<JudgeTable> kFields{
       {{.name = "enabled",
-        .unit = "",
         .default_value = true,
         .help = "implausible readings are not used for the wind (but recorded); false: all readings are used; "
                 "simulated ones always are"},
@@ -152,7 +149,6 @@ const Fields<JudgeTable>& judge_fields() {
                 "m/s; without other sensors after six times as long, following a windy day"},
        of(&JudgeSettings::seized_s)},
       {{.name = "compare",
-        .unit = "",
         .default_value = true,
         .help = "compare its mean of 5 min with that of the other sensors (never for a microphone); with three "
                 "or more live sensors, one that differs from the majority by more than a factor of 3 and 3 m/s "

@@ -34,13 +34,11 @@ auto of(Member BytePortAddress::*member) {
 
 const Fields<VantageSettings> kDavisFields = {
     {{.name = "transport",
-      .unit = "",
       .default_value = std::string("serial"),
       .help = "serial: the logger's serial port or USB; tcp: a WeatherLinkIP, or a serial port in the network",
       .choices = kDavisTransports},
      of(&BytePortAddress::kind)},
     {{.name = "device",
-      .unit = "",
       .default_value = std::string(""),
       .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
      of(&BytePortAddress::path)},
@@ -48,13 +46,11 @@ const Fields<VantageSettings> kDavisFields = {
       "serial: as set in the console; 8 data bits, no parity, 1 stop bit"},
      of(&BytePortAddress::baud)},
     {{.name = "host",
-      .unit = "",
       .default_value = std::string(""),
       .help = "tcp: name or address; one program at a time can be connected to a WeatherLinkIP"},
      of(&BytePortAddress::host)},
     {{"port", "", std::int64_t{22222}, 1, 65535, "tcp: 22222 is a WeatherLinkIP's"}, of(&BytePortAddress::port)},
     {{.name = "packets",
-      .unit = "",
       .default_value = std::string("auto"),
       .help = "loop2: with the strongest gust of 10 minutes; loop: without, for firmware before 1.90; auto: loop2, or "
               "loop where the console does not know it. Speeds are whole miles per hour",

@@ -19,7 +19,6 @@ namespace {
 
 const Fields<WeatherLinkLiveSettings> kWeatherLinkLiveFields = {
     {{.name = "host",
-      .unit = "",
       .default_value = std::string(""),
       .help = "name or address of the WeatherLink Live; broadcasts come only from one in the same network"},
      [](WeatherLinkLiveSettings& settings) -> std::string& { return settings.http.host; }},

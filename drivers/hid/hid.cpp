@@ -37,19 +37,16 @@ struct HidKeys {
 
 const Fields<HidKeys> kHidFields = {
     {{.name = "station",
-      .unit = "",
       .default_value = std::string("auto"),
       .help = "family of the station; auto takes whichever is plugged in",
       .choices = kStationChoices},
      &HidKeys::station},
     {{.name = "path",
-      .unit = "",
       .default_value = std::string(""),
       .help =
           "USB port of the station, such as 1-1.2, or its /dev/hidraw node or a link to that; selects one of several"},
      [](HidKeys& keys) -> std::string& { return keys.place.path; }},
     {{.name = "serial",
-      .unit = "",
       .default_value = std::string(""),
       .help = "its serial number, where it has one; selects one of several"},
      [](HidKeys& keys) -> std::string& { return keys.place.serial; }},

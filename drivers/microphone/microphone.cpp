@@ -37,13 +37,11 @@ struct MicrophoneInput {
 
 const Fields<MicrophoneInput> kInputFields = {
     {{.name = "device",
-      .unit = "",
       .default_value = std::string(""),
       .help =
           "part of the input's name, ignoring case, as `yuragi mic-worker --list` prints it; empty: the default input"},
      &MicrophoneInput::device},
     {{.name = "host_api",
-      .unit = "",
       .default_value = std::string(""),
       .help = "part of the sound system's name (ALSA, JACK), where several have an input of that name"},
      &MicrophoneInput::host_api},
@@ -69,7 +67,6 @@ const Fields<MicrophoneKeys> kMicrophoneFields = {
       "memory of levels for this; no noise is subtracted in the first hour"},
      of(&MicEstimatorOptions::noise_memory_s)},
     {{.name = "ignore_sound",
-      .unit = "",
       .default_value = true,
       .help = "with two or more channels: sound that reaches all alike, such as voices and music, does not count"},
      of(&MicEstimatorOptions::ignores_sound)},
@@ -88,10 +85,7 @@ const Fields<MicrophoneKeys> kMicrophoneFields = {
     {{"timeout", "s", 3.0, 1.0, 60.0, "silence from the worker after which it is killed and started again"},
      [](MicrophoneKeys& keys) -> Nanoseconds& { return keys.settings.sound_timeout; },
      from_seconds},
-    {{.name = "worker",
-      .unit = "",
-      .default_value = std::string(""),
-      .help = "path of the worker program; empty: this program"},
+    {{.name = "worker", .default_value = std::string(""), .help = "path of the worker program; empty: this program"},
      &MicrophoneKeys::worker},
 };
 

@@ -35,7 +35,6 @@ const Fields<LevelKeys>& level_fields() {
         "calibration: exponent by which the sound's root mean square grows with the wind speed"},
        &LevelKeys::exponent},
       {{.name = "curve",
-        .unit = "",
         .default_value = std::string(""),
         .help = "calibration instead of gain and exponent: points level:speed in dB:m/s, \"-62:0 -50:1.2 -40:3.4\""},
        &LevelKeys::curve},

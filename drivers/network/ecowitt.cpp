@@ -31,7 +31,6 @@ struct EcowittSettings {
 
 const Fields<EcowittSettings> kEcowittFields = {
     {{.name = "host",
-      .unit = "",
       .default_value = std::string(""),
       .help = "the gateway's name or address; its router should always give it the same"},
      [](EcowittSettings& settings) -> std::string& { return settings.port.host; }},

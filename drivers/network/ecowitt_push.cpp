@@ -50,7 +50,6 @@ struct EcowittPushKeys {
 
 const Fields<EcowittPushKeys> kEcowittPushFields = {
     {{.name = "host",
-      .unit = "",
       .default_value = std::string("127.0.0.1"),
       .help = "the local address to listen at: this machine's in the gateway's network; 127.0.0.1 hears this machine "
               "only, 0.0.0.0 listens at all"},
@@ -59,24 +58,20 @@ const Fields<EcowittPushKeys> kEcowittPushFields = {
       "the TCP port to listen at; each sensor of this driver has one of its own"},
      [](EcowittPushKeys& keys) -> std::uint16_t& { return keys.address.port; }},
     {{.name = "from",
-      .unit = "",
       .default_value = std::string(""),
       .help = "who may push: addresses and nets separated by commas (192.168.1.30, 10.0.0.0/8); 0.0.0.0/0: any; may be "
               "empty only where host hears this machine alone"},
      &EcowittPushKeys::from},
     {{.name = "host_name",
-      .unit = "",
       .default_value = std::string(""),
       .help = "what is set as Server IP/Hostname in the gateway, if it is neither an address of this machine nor its "
               "own name: pushes to other names are refused"},
      &EcowittPushKeys::host_name},
     {{.name = "path",
-      .unit = "",
       .default_value = std::string(""),
       .help = "the path that is taken, as it is set in the gateway: /data/report/; empty: any"},
      &EcowittPushKeys::path},
     Parameter{.name = "station_key",
-              .unit = "",
               .default_value = Secret(),
               .help = "the station that is taken: its PASSKEY (Ecowitt, Ambient Weather) or ID (Wunderground); empty: "
                       "the first one that pushes, until it falls silent, with a warning while there are others; no log "

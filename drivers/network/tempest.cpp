@@ -46,7 +46,6 @@ auto of(Member bus::BytePortAddress::*member) {
 
 const Fields<TempestSettings> kTempestFields = {
     {{.name = "serial_number",
-      .unit = "",
       .default_value = std::string(""),
       .help = "the station, as it says on it: ST-00000512 (Tempest), SK-00008453 (Sky); empty: the first one that is "
               "heard, with a warning while there are others"},
@@ -55,12 +54,10 @@ const Fields<TempestSettings> kTempestFields = {
       "the UDP port that hubs broadcast to; other programs on this machine may listen there, too"},
      of(&bus::BytePortAddress::port)},
     {{.name = "host",
-      .unit = "",
       .default_value = std::string(""),
       .help = "the local address to listen at; empty: all, which broadcasts need"},
      of(&bus::BytePortAddress::host)},
     {{.name = "from",
-      .unit = "",
       .default_value = std::string(""),
       .help = "the hubs that are heard: addresses and nets (192.168.1.20, 10.0.0.0/8) separated by commas; empty: any; "
               "at most 100 readings a second are taken"},

@@ -27,11 +27,7 @@ const Fields<SyntheticKeys> kSyntheticFields = {
     {{"rate", "Hz", 4.0, 0.01, 100.0, "readings per second"},
      &SyntheticKeys::interval,
      [](double rate_hz) { return from_seconds(1.0 / rate_hz); }},
-    {{.name = "seed",
-      .unit = "",
-      .default_value = std::int64_t{1},
-      .min = 0,
-      .help = "the same seed gives the same wind"},
+    {{.name = "seed", .default_value = std::int64_t{1}, .min = 0, .help = "the same seed gives the same wind"},
      of(&SyntheticWindSettings::seed)},
 };
 

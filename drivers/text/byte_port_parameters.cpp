@@ -48,7 +48,6 @@ char parity_letter(const std::string& word) {
 const Fields<BytePortKeys>& byte_port_fields() {
   static const Fields<BytePortKeys> kPortFields = {
       {{.name = "transport",
-        .unit = "",
         .default_value = std::string("serial"),
         .help = "serial: a serial port; tcp: a server to connect to; udp: datagrams sent to this machine; file: a file "
                 "or named pipe",
@@ -56,7 +55,6 @@ const Fields<BytePortKeys>& byte_port_fields() {
        of(&BytePortAddress::kind),
        kind_of},
       {{.name = "device",
-        .unit = "",
         .default_value = std::string(""),
         .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
        of(&BytePortAddress::path)},
@@ -66,7 +64,6 @@ const Fields<BytePortKeys>& byte_port_fields() {
       {{"data_bits", "", std::int64_t{8}, 7, 8, "serial: data bits of each character"},
        of(&BytePortAddress::data_bits)},
       {{.name = "parity",
-        .unit = "",
         .default_value = std::string("none"),
         .help = "serial: parity bit of each character",
         .choices = kByteParities},
@@ -75,7 +72,6 @@ const Fields<BytePortKeys>& byte_port_fields() {
       {{"stop_bits", "", std::int64_t{1}, 1, 2, "serial: stop bits of each character"},
        of(&BytePortAddress::stop_bits)},
       {{.name = "host",
-        .unit = "",
         .default_value = std::string(""),
         .help = "tcp: name or address of the server; udp: the local address to listen at, or a multicast address; "
                 "empty: all addresses of this machine"},
@@ -83,19 +79,17 @@ const Fields<BytePortKeys>& byte_port_fields() {
       {{"port", "", std::int64_t{10110}, 1, 65535, "tcp, udp: 10110 is registered for NMEA 0183"},
        of(&BytePortAddress::port)},
       {{.name = "sender",
-        .unit = "",
         .default_value = std::string(""),
         .help = "udp: accept datagrams from these only: addresses and nets (192.168.1.0/24) separated by commas; "
                 "empty: from any; at most 100 readings a second are taken"},
        of(&BytePortAddress::senders)},
-      {{.name = "file", .unit = "", .default_value = std::string(""), .help = "file: path of a file or named pipe"},
+      {{.name = "file", .default_value = std::string(""), .help = "file: path of a file or named pipe"},
        &BytePortKeys::file},
       {{"play_rate", "Hz", 0.0, 0.0, 1e6,
         "file: 0 follows what is appended to it; otherwise it is played once from its beginning, with this many "
         "readings per second"},
        of(&TextSensorSettings::play_rate_hz)},
       {{.name = "request",
-        .unit = "",
         .default_value = std::string(""),
         .help = "request for one reading, with its line end (\"?\\r\\n\"); empty: the format's own",
         .takes_control_characters = true},

@@ -33,7 +33,6 @@ std::optional<WindFrame> frame_named(const std::string& word) {
 const Fields<ChosenWindSettings>& chosen_wind_fields() {
   static const Fields<ChosenWindSettings> kChosenFields = {
       {{.name = "reference",
-        .unit = "",
         .default_value = std::string("auto"),
         .help =
             "which wind to use where several are sent: from north, relative to the device's mark or the bow "

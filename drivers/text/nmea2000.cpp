@@ -42,7 +42,6 @@ auto of(Member BusLineOptions::*member) {
 
 const Fields<Nmea2000SensorSettings> kNmea2000Fields = {
     {{.name = "format",
-      .unit = "",
       .default_value = std::string("auto"),
       .help = "yacht-devices: RAW mode of YDWG-02, YDEN-02, YDNU-02; canboat: JSON of canboat's analyzer (n2kd) or "
               "canboatjs; candump: can-utils' lines; auto: detected for each line",
@@ -53,7 +52,6 @@ const Fields<Nmea2000SensorSettings> kNmea2000Fields = {
      &Nmea2000SensorSettings::address,
      address_of},
     {{.name = "angle_unit",
-      .unit = "",
       .default_value = std::string("auto"),
       .help = "canboat: rad with analyzer -si and canboatjs, deg otherwise; auto: as the analyzer's first line says, "
               "or degrees once an angle comes that cannot be in radians; until then there is no direction",
@@ -65,7 +63,6 @@ const Fields<Nmea2000SensorSettings> kNmea2000Fields = {
 std::vector<Parameter> nmea2000_parameters() {
   std::vector<Parameter> own = together(kNmea2000Fields.parameters(), chosen_wind_parameters());
   own.push_back({.name = "interface",
-                 .unit = "",
                  .default_value = std::string("can0"),
                  .help = "can: the CAN interface, as ip link names it; it must be up, with the bus's bit rate (ip link "
                          "set can0 up type can bitrate 250000)"});

@@ -35,33 +35,27 @@ struct SignalKKeys {
 
 const Fields<SignalKKeys> kSignalKFields = {
     {{.name = "source",
-      .unit = "",
       .default_value = std::string(""),
       .help = "accept only this one of the server's sources, as its deltas name it in $source (n2k.105); empty: any"},
      &SignalKKeys::source},
     {{.name = "context",
-      .unit = "",
       .default_value = std::string(""),
       .help = "the vessel, as deltas name it (vessels.urn:mrn:imo:mmsi:230099999); empty: the server's own"},
      &SignalKKeys::context},
     {{.name = "path",
-      .unit = "",
       .default_value = std::string(kSignalKStream),
       .help = "websocket: the stream's place on the server"},
      &SignalKKeys::path},
     Parameter{.name = "token",
-              .unit = "",
               .default_value = Secret(),
               .help =
                   "websocket: the token of a server that lets nobody read without one, from its \"Access Requests\"; "
                   "sent as it is (no TLS); or one of token_file and token_env, which keep it out of this file"},
     Parameter{.name = "token_file",
-              .unit = "",
               .default_value = std::string(""),
               .help = "websocket: a file that holds the token, at most 4096 bytes; its mode should be 0640 or stricter",
               .is_secret_file = true},
     Parameter{.name = "token_env",
-              .unit = "",
               .default_value = std::string(""),
               .help = "websocket: the environment variable that holds the token"},
 };

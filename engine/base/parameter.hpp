@@ -34,7 +34,7 @@ enum class KeyChange : std::uint8_t {
 /// this one description. Constants of this type stand beside what they set.
 struct Parameter {
   std::string_view name;
-  std::string_view unit;  ///< "m/s", "Hz"; empty for a pure number or a text
+  std::string_view unit = {};  ///< "m/s", "Hz"; empty for a pure number or a text
   ParameterValue default_value;
   double min = -std::numeric_limits<double>::infinity();  ///< numbers only, inclusive
   double max = std::numeric_limits<double>::infinity();

@@ -28,7 +28,6 @@ Result<double, Failure> hour_of(const std::string& text) {
 const Fields<Camera>& camera_fields() {
   static const Fields<Camera> kFields{
       {{.name = "scene",
-        .unit = "",
         .default_value = std::string(),
         .help = "The scene that it looks at, by its name: its middle",
         .left_out = "it looks at x = 0, y = 0, z = 0"},
@@ -138,7 +137,6 @@ const Fields<Camera>& camera_fields() {
         .help = "How long sway, pan, dolly and track take there and back"},
        &Camera::period_s},
       {{.name = "from",
-        .unit = "",
         .default_value = std::string(),
         .help = "The time of day from which it is on, HH:MM in the time zone of [shaping]",
         .left_out = "only where it is asked for; where no camera has it, the first is always on"},

@@ -28,7 +28,6 @@ Result<std::optional<double>, Failure> hour_or_now(const std::string& text) {
 const Fields<Look>& look_fields() {
   static const Fields<Look> kFields{
       {{.name = "sun",
-        .unit = "",
         .default_value = std::string("evening"),
         .help = "\"evening\": always low in the south-west; \"time\": where sun and moon are at a place and time; "
                 "\"fixed\": "
@@ -54,7 +53,6 @@ const Fields<Look>& look_fields() {
         .left_out = "139.77, Tokyo"},
        &Look::longitude_deg},
       {{.name = "time",
-        .unit = "",
         .default_value = std::string(),
         .help =
             "For sun = \"time\": the hour at which the day stands still, HH:MM by the sun (at 12:00 it is highest), "
@@ -79,18 +77,12 @@ const Fields<Look>& look_fields() {
         .left_out = "220"},
        &Look::sun_azimuth_deg},
       {{.name = "clouds",
-        .unit = "",
         .default_value = kDefault.clouds,
         .min = 0.0,
         .max = 1.0,
         .help = "0: a clear sky; 1: overcast"},
        &Look::clouds},
-      {{.name = "haze",
-        .unit = "",
-        .default_value = kDefault.haze,
-        .min = 0.0,
-        .max = 1.0,
-        .help = "0: very clear air; 1: fog"},
+      {{.name = "haze", .default_value = kDefault.haze, .min = 0.0, .max = 1.0, .help = "0: very clear air; 1: fog"},
        &Look::haze},
       {{.name = "exposure",
         .unit = "EV",
@@ -100,26 +92,22 @@ const Fields<Look>& look_fields() {
         .help = "Makes the picture brighter by so many doublings, or darker"},
        &Look::exposure_ev},
       {{.name = "quality",
-        .unit = "",
         .default_value = std::string("auto"),
         .help = "How much work a picture is; \"auto\": as much as the machine can draw in time",
         .choices = kQualities},
        &Look::quality},
       {{.name = "palette",
-        .unit = "",
         .default_value = std::string("meadow"),
         .help =
             "The colors of grass, flowers, leaves and woods; \"winter\" has snow on the hills, \"ink\" no color at all",
         .choices = kPalettes},
        &Look::palette},
       {{.name = "ground",
-        .unit = "",
         .default_value = std::string("grass"),
         .help = "What the ground is around the scenes; \"lawn\" is short everywhere",
         .choices = kGrounds},
        &Look::ground},
       {{.name = "ground_image",
-        .unit = "",
         .default_value = std::string(),
         .help =
             "A PNG or JPEG file, from the configuration's folder on: it lies on the ground, again and again, where no "
@@ -135,7 +123,6 @@ const Fields<Look>& look_fields() {
         .help = "How wide ground_image is on the ground, from west to east; its upper edge is north"},
        &Look::ground_image_width_m},
       {{.name = "density",
-        .unit = "",
         .default_value = kDefault.density,
         .min = 0.1,
         .max = 1.0,

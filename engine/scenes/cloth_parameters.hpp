@@ -10,21 +10,18 @@ namespace yuragi::scenes {
 
 inline const Parameter kClothColor = {
     .name = "color",
-    .unit = "",
     .default_value = std::string(),
     .help = "of the cloth, \"#rrggbb\"; without color_2 it is plain",
     .left_out = "as the viewer paints it",
 };
 inline const Parameter kClothColor2 = {
     .name = "color_2",
-    .unit = "",
     .default_value = std::string(),
     .help = "of its pattern, \"#rrggbb\"",
     .left_out = "as the viewer paints it",
 };
 inline const Parameter kClothImage = {
     .name = "image",
-    .unit = "",
     .default_value = std::string(),
     .help =
         "a PNG or JPEG file that covers the cloth, from this file's folder on; larger pictures are scaled down to a "

@@ -15,8 +15,7 @@ class PanelTest : public ::testing::Test {
 
   wire::ControlReply list(std::uint32_t number, const std::string& haze) const {
     const auto state = [](const char* name, const std::string& value) {
-      return wire::ParameterState{
-          .name = name, .unit = "", .min = 0.0, .max = 1.0, .value = value, .configured = "0.2"};
+      return wire::ParameterState{.name = name, .min = 0.0, .max = 1.0, .value = value, .configured = "0.2"};
     };
     return {
         .done = true,

@@ -6,8 +6,7 @@ namespace yuragi::daemon::sensing {
 namespace {
 
 settings::SensorConfig sensor_of(const char* file) {
-  const std::vector<Parameter> table{
-      {.name = "file", .unit = "", .default_value = std::string{}, .help = "what it plays"}};
+  const std::vector<Parameter> table{{.name = "file", .default_value = std::string{}, .help = "what it plays"}};
   settings::SensorConfig sensor;
   sensor.values = ParameterValues::resolve(table, {{"file", std::string(file)}}).value();
   return sensor;

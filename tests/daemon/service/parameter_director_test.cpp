@@ -253,7 +253,6 @@ TEST_F(ParameterTest, AsManyClientsAsLikeCannotMakeItKeepThemAll) {
 
 TEST_F(ParameterTest, AClientOfAnotherMachineSeesNoFolders) {
   const wire::ParameterState image{.name = "image",
-                                   .unit = "",
                                    .kind = wire::ParameterKind::kText,
                                    .value = "/home/anna/flag.png",
                                    .configured = "/srv/old.png"};

@@ -23,11 +23,11 @@ constexpr std::array<std::string_view, 2> kModels{"fixed", "turbulent"};
 const std::array<Parameter, 6>& table() {
   static const std::array<Parameter, 6> parameters{{
       {.name = "speed", .unit = "m/s", .default_value = 4.0, .min = 0.0, .max = 40.0, .help = "Mean speed"},
-      {.name = "count", .unit = "", .default_value = std::int64_t{10}, .min = 1.0, .max = 1000.0, .help = "How many"},
-      {.name = "gusts", .unit = "", .default_value = true, .help = "Are there gusts?"},
-      {.name = "model", .unit = "", .default_value = "turbulent"s, .help = "Which model", .choices = kModels},
-      {.name = "label", .unit = "", .default_value = ""s, .help = "Any text"},
-      {.name = "gain", .unit = "", .default_value = 1.0, .help = "Any number"},
+      {.name = "count", .default_value = std::int64_t{10}, .min = 1.0, .max = 1000.0, .help = "How many"},
+      {.name = "gusts", .default_value = true, .help = "Are there gusts?"},
+      {.name = "model", .default_value = "turbulent"s, .help = "Which model", .choices = kModels},
+      {.name = "label", .default_value = ""s, .help = "Any text"},
+      {.name = "gain", .default_value = 1.0, .help = "Any number"},
   }};
   return parameters;
 }
@@ -165,9 +165,9 @@ concept IsPrintable = requires(std::ostream& out, const T& value) {
 };
 
 const std::array kAccount{
-    Parameter{.name = "user", .unit = "", .default_value = ""s, .help = "Who"},
-    Parameter{.name = "password", .unit = "", .default_value = Secret(), .help = "Said by whom"},
-    Parameter{.name = "host", .unit = "", .default_value = ""s, .help = "Where"},
+    Parameter{.name = "user", .default_value = ""s, .help = "Who"},
+    Parameter{.name = "password", .default_value = Secret(), .help = "Said by whom"},
+    Parameter{.name = "host", .default_value = ""s, .help = "Where"},
 };
 
 Result<ParameterValues, ParameterError> account(const ParameterValues::Map& given) {
@@ -234,7 +234,7 @@ TEST(DescribeAllowed, SaysTypeRangeUnitAndDefaultInOneSentence) {
 
 TEST(Parameter, ATypedValueIsReadAsItsTypeAndWrittenBackAsItWas) {
   const auto read = [](const ParameterValue& kind, std::string_view text) {
-    return typed_value({.name = "key", .unit = "", .default_value = kind, .help = ""}, text);
+    return typed_value({.name = "key", .default_value = kind, .help = ""}, text);
   };
   for (const char* text : {"0.1", "4", "-2.5", "1e-07"}) EXPECT_EQ(value_text(read(0.0, text)), text);
   EXPECT_EQ(read(0.0, "0.1"), ParameterValue(0.1));

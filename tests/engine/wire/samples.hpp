@@ -314,7 +314,6 @@ inline wire::ControlReply parameter_reply() {
                                   .value = "0.4",
                                   .configured = "0.2"};
   const wire::ParameterState species{.name = "species",
-                                     .unit = "",
                                      .kind = wire::ParameterKind::kText,
                                      .choices = {"cherry", "zelkova"},
                                      .help = "of the tree",

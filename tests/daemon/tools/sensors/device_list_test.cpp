@@ -134,7 +134,7 @@ TEST(DriverReference, SaysOfEachDeviceThatADriverKnowsWhoConfirmsItAndWhatNobody
 TEST(DriverReference, SaysWhatTheSpeedIsAndOfWhichChoices) {
   static constexpr std::array<std::string_view, 2> kModes = {"fast", "slow"};
   static const std::array kParameters = {
-      Parameter{.name = "mode", .unit = "", .default_value = std::string("fast"), .help = "how", .choices = kModes}};
+      Parameter{.name = "mode", .default_value = std::string("fast"), .help = "how", .choices = kModes}};
   const drivers::sensor::DriverDescription driver{
       .name = "moody",
       .summary = "",
@@ -169,8 +169,7 @@ TEST(DriverReference, SaysWhichDevicesCanBeSearchedForInTheNetwork) {
 }
 
 TEST(DriverReference, KeepsItsTablesWhole) {
-  const Parameter parameter{
-      .name = "key", .unit = "", .default_value = std::string("a|b"), .help = "either | or <this>"};
+  const Parameter parameter{.name = "key", .default_value = std::string("a|b"), .help = "either | or <this>"};
   const drivers::sensor::DriverDescription driver{
       .name = "piped", .summary = "a_b", .parameters = std::span(&parameter, 1), .open = nullptr};
   const std::vector<const drivers::sensor::DriverDescription*> drivers = {&driver};
