@@ -234,7 +234,7 @@ gain = 1.0          # from the institute
             (("span", *base, "--yes"), 64, "the known wind is missing"),
             (("span", *base, "--yes", "--reference", "roof"), 64, "its own reference"),
             (("microphone", *base, "--yes", "--reference", "mast", "--connect", NOBODY), 64, "is not a microphone"),
-            (("zero", "--config", self.path("none.toml"), "--yes"), 78, "cannot be read"),
+            (("zero", "--config", self.path("none.toml"), "--yes"), 78, "does not exist"),
         ):
             self.assertIn(text, self.yuragi("calibrate", *arguments, code=code))
 
