@@ -17,15 +17,16 @@ OTHER_VERSION_LINES = ["#version 140", "#version 300 es"]
 
 def parts_of(room):
     """The names of the parts that shaders may include, in their order."""
-    return re.search(r"^set\(parts ([\w ]+)\)", (room / "CMakeLists.txt").read_text(), re.MULTILINE)[1].split()
+    return re.search(r"^set\(parts ([\w/ ]+)\)", (room / "CMakeLists.txt").read_text(), re.MULTILINE)[1].split()
 
 
 def expanded(file):
     """A shader's text with its parts, as viewer/gl/CMakeLists.txt puts it together."""
     text = file.read_text()
-    for line, part in enumerate(parts_of(file.parents[1]), start=2):
-        included = (file.parent / f"{part}.part.glsl").read_text()
-        text = text.replace(f'#include "{part}.part.glsl"\n', f"#line {line}0001\n{included}#line {line}\n")
+    shaders = file.parents[1]
+    for line, part in enumerate(parts_of(shaders.parent), start=2):
+        included = (shaders / f"{part}.part.glsl").read_text()
+        text = text.replace(f'#include "{pathlib.Path(part).name}.part.glsl"\n', f"#line {line}0001\n{included}#line {line}\n")
     return text
 
 
@@ -75,10 +76,10 @@ def check_other_versions(wholes):
 
 def check(folder):
     shader_folder = folder / "viewer/gl/shaders"
-    common = (shader_folder / "common.glsl").read_text()
+    common = (shader_folder / "picture/common.glsl").read_text()
     complaints, parts = [], {}
     with tempfile.TemporaryDirectory() as made:
-        for file in sorted(shader_folder.glob("*.*.glsl")):
+        for file in sorted(shader_folder.rglob("*.*.glsl")):
             if file.name.endswith(".part.glsl"):
                 continue
             whole = pathlib.Path(made) / file.name.removesuffix(".glsl")
