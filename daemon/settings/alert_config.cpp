@@ -20,7 +20,7 @@ struct AlertTable {
 };
 
 template <class Member>
-auto of(Member AlertConfig::*member) {
+auto of_alert(Member AlertConfig::*member) {
   return [member](AlertTable& table) -> Member& { return table.alert.*member; };
 }
 
@@ -37,25 +37,25 @@ const Fields<AlertTable>& alert_fields() {
                 "of the recording has less than free, the animation has made no frame, or readings cannot be "
                 "recorded",
         .choices = kAlertConditionNames},
-       of(&AlertConfig::when)},
+       of_alert(&AlertConfig::when)},
       {{.name = "sensor",
         .default_value = std::string(),
         .help = "for sensor_silent: the name of the sensor; empty: each one, told by itself"},
-       of(&AlertConfig::sensor)},
+       of_alert(&AlertConfig::sensor)},
       {{.name = "speed",
         .unit = "m/s",
         .default_value = 15.0,
         .min = 0.1,
         .max = 100.0,
         .help = "for wind_above: of the wind as it is measured, gusts and all"},
-       of(&AlertConfig::speed_m_s)},
+       of_alert(&AlertConfig::speed_m_s)},
       {{.name = "free",
         .unit = "MB",
         .default_value = 1000.0,
         .min = 1.0,
         .max = 1e9,
         .help = "for disk_below: free space"},
-       of(&AlertConfig::free_bytes),
+       of_alert(&AlertConfig::free_bytes),
        bytes_of},
       {{.name = "after",
         .unit = "s",
@@ -71,7 +71,7 @@ const Fields<AlertTable>& alert_fields() {
         .min = 0.0,
         .max = kDay_s,
         .help = "it ends when it has no longer been so for this long"},
-       of(&AlertConfig::end_after_s)},
+       of_alert(&AlertConfig::end_after_s)},
       {{.name = "command",
         .default_value = Secret(),  // it may hold a password
         .help = "run by /bin/sh at its beginning and at its end, for at most a minute, with YURAGI_ALERT (its "
@@ -83,7 +83,7 @@ const Fields<AlertTable>& alert_fields() {
         .default_value = Secret(),
         .help = "an URL, http:// or https://, to which the same is posted as JSON: alert, state, message, host, "
                 "time, and text for chat services; tried again for a day where it does not answer; empty: none"},
-       of(&AlertConfig::webhook)},
+       of_alert(&AlertConfig::webhook)},
   };
   return kFields;
 }

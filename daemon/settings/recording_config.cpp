@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kRotationNames = {"never", "day"};
 
-std::uint64_t bytes_of(double megabytes) {
+std::uint64_t whole_bytes_of(double megabytes) {
   constexpr double kMegabyte = 1e6;
   return static_cast<std::uint64_t>(std::llround(megabytes * kMegabyte));
 }
@@ -44,7 +44,7 @@ const Fields<RecordingConfig>& recording_fields() {
         .max = 1e6,
         .help = "begin a new file when this one is larger; 0: never"},
        &RecordingConfig::most_file_bytes,
-       bytes_of},
+       whole_bytes_of},
       {{.name = "keep_days",
         .unit = "days",
         .default_value = std::int64_t{0},
@@ -59,7 +59,7 @@ const Fields<RecordingConfig>& recording_fields() {
         .max = 1e9,
         .help = "delete the oldest completed files while all files together are larger; 0: keep them"},
        &RecordingConfig::most_bytes,
-       bytes_of},
+       whole_bytes_of},
       {{.name = "min_free",
         .unit = "MB",
         .default_value = 200.0,
@@ -68,7 +68,7 @@ const Fields<RecordingConfig>& recording_fields() {
         .help = "space to leave free on the disk: below it the oldest completed files are deleted, and where that is "
                 "not enough nothing is recorded"},
        &RecordingConfig::least_free_bytes,
-       bytes_of},
+       whole_bytes_of},
   };
   return kFields;
 }

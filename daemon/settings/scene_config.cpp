@@ -12,7 +12,7 @@
 namespace yuragi::daemon::settings {
 namespace {
 
-auto of(double scenes::ScenePlacement::*member) {
+auto of_placement(double scenes::ScenePlacement::*member) {
   return [member](SceneConfig& scene) -> double& { return scene.placement.*member; };
 }
 
@@ -24,28 +24,28 @@ const Fields<SceneConfig>& common_scene_fields() {
         .min = -1000.0,
         .max = 1000.0,
         .help = "position of the scene to the east"},
-       of(&scenes::ScenePlacement::x_m)},
+       of_placement(&scenes::ScenePlacement::x_m)},
       {{.name = "y",
         .unit = "m",
         .default_value = 0.0,
         .min = -1000.0,
         .max = 1000.0,
         .help = "position of the scene upward"},
-       of(&scenes::ScenePlacement::y_m)},
+       of_placement(&scenes::ScenePlacement::y_m)},
       {{.name = "z",
         .unit = "m",
         .default_value = 0.0,
         .min = -1000.0,
         .max = 1000.0,
         .help = "position of the scene to the south"},
-       of(&scenes::ScenePlacement::z_m)},
+       of_placement(&scenes::ScenePlacement::z_m)},
       {{.name = "heading",
         .unit = "deg",
         .default_value = 0.0,
         .min = -360.0,
         .max = 360.0,
         .help = "rotation of the scene, clockwise from north; the wind is not rotated with it"},
-       of(&scenes::ScenePlacement::heading_deg)},
+       of_placement(&scenes::ScenePlacement::heading_deg)},
       {{.name = "gain",
         .default_value = 1.0,
         .min = 0.0,

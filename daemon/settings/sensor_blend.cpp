@@ -34,7 +34,7 @@ struct BlendTable {
 };
 
 template <class Member>
-auto of(Member BlendSourceSettings::*member) {
+auto of_blend(Member BlendSourceSettings::*member) {
   return [member](BlendTable& table) -> Member& { return table.settings.*member; };
 }
 
@@ -52,13 +52,13 @@ const Fields<BlendTable>& blend_fields() {
         .max = 1000,
         .help = "of the live sensors those with the lowest number make the wind, equal ones together; 0: its "
                 "position in the file, from 1"},
-       of(&BlendSourceSettings::priority)},
+       of_blend(&BlendSourceSettings::priority)},
       {{.name = "weight",
         .default_value = 1.0,
         .min = 0.01,
         .max = 100.0,
         .help = "weight among sensors of the same priority"},
-       of(&BlendSourceSettings::weight)},
+       of_blend(&BlendSourceSettings::weight)},
       {{.name = "x",
         .unit = "m",
         .default_value = 0.0,
@@ -83,7 +83,7 @@ const Fields<BlendTable>& blend_fields() {
         .max = 1000.0,
         .help = "with x or z: its gusts enter the scenes this far upwind of its position. More of the scenes has "
                 "measured gusts, but later, by lead over wind speed"},
-       of(&BlendSourceSettings::lead_m)},
+       of_blend(&BlendSourceSettings::lead_m)},
       {{.name = "value",
         .default_value = std::string(kAuto),
         .help =
@@ -108,7 +108,7 @@ const Fields<BlendTable>& blend_fields() {
         .min = 0.0,
         .max = 90.0,
         .help = "step of a vane with few directions (16: 22.5, 8: 45); 0: determined from its readings"},
-       of(&BlendSourceSettings::direction_step_deg)},
+       of_blend(&BlendSourceSettings::direction_step_deg)},
   };
   return kFields;
 }

@@ -20,7 +20,7 @@ struct WindTable {
 };
 
 template <class Member>
-auto of(Member WindConfig::*member) {
+auto of_wind(Member WindConfig::*member) {
   return [member](WindTable& table) -> Member& { return table.wind.*member; };
 }
 
@@ -37,20 +37,20 @@ const Fields<WindTable>& wind_fields() {
         .min = 0.0,
         .max = 40.0,
         .help = "mean speed of the wind that is used while no sensor is live"},
-       of(&WindConfig::default_speed_m_s)},
+       of_wind(&WindConfig::default_speed_m_s)},
       {{.name = "default_direction",
         .unit = "deg",
         .default_value = 240.0,
         .min = 0.0,
         .max = 360.0,
         .help = "where that wind comes from, clockwise from north; also used for sensors without a vane"},
-       of(&WindConfig::default_direction_deg)},
+       of_wind(&WindConfig::default_direction_deg)},
       {{.name = "default_turbulence",
         .default_value = 0.3,
         .min = 0.0,
         .max = 1.0,
         .help = "its turbulence intensity: standard deviation over mean speed"},
-       of(&WindConfig::default_turbulence_intensity)},
+       of_wind(&WindConfig::default_turbulence_intensity)},
       {{.name = "default_length",
         .unit = "m",
         .default_value = 0.0,
@@ -59,7 +59,7 @@ const Fields<WindTable>& wind_fields() {
         .help = "integral length scale of the gusts, of the default wind and between a sensor's readings; 0: "
                 "from the height in each sensor's calibration, 5.7 m per metre up to 60 m (25 m at 4.4 m, 85 m "
                 "at 15 m); without a height 57 m, as over open land at 10 m"},
-       of(&WindConfig::default_length_m),
+       of_wind(&WindConfig::default_length_m),
        length_unless_0},
       {{.name = "gustiness",
         .default_value = 0.3,
@@ -67,7 +67,7 @@ const Fields<WindTable>& wind_fields() {
         .max = 0.6,
         .help = "variation of the strength of generated gusts over some hundred metres of wind; about 0.3 in "
                 "real wind, 0: none. Measured gusts are not changed"},
-       of(&WindConfig::gustiness)},
+       of_wind(&WindConfig::gustiness)},
       {{.name = "site_octaves",
         .unit = "dB",
         .default_value = std::string(""),
@@ -75,38 +75,38 @@ const Fields<WindTable>& wind_fields() {
                 "to 0.15 Hz and so on, up to 7 numbers; `yuragi report` prints them for a recording of a fast "
                 "sensor. The daemon also fits them while a sensor with an interval of at most 1 s is live, and "
                 "keeps them in site_file of [shaping]"},
-       of(&WindConfig::site_octaves_db),
+       of_wind(&WindConfig::site_octaves_db),
        parse_site_octaves},
       {{.name = "evolving",
         .default_value = true,
         .help = "gusts change while they travel; false: they travel unchanged (frozen turbulence)"},
-       of(&WindConfig::is_evolving)},
+       of_wind(&WindConfig::is_evolving)},
       {{.name = "handover",
         .unit = "s",
         .default_value = 3.0,
         .min = 0.2,
         .max = 60.0,
         .help = "duration of the transition from one source of wind to another"},
-       of(&WindConfig::handover_s)},
+       of_wind(&WindConfig::handover_s)},
       {{.name = "stale_intervals",
         .default_value = 5.0,
         .min = 2.0,
         .max = 100.0,
         .help = "a sensor that is silent for this many of its own intervals is stale"},
-       of(&WindConfig::stale_intervals)},
+       of_wind(&WindConfig::stale_intervals)},
       {{.name = "return_after",
         .unit = "s",
         .default_value = 10.0,
         .min = 0.0,
         .max = 3600.0,
         .help = "a stale sensor is used again after it has sent readings for this long; twice as long each time"},
-       of(&WindConfig::return_after_s)},
+       of_wind(&WindConfig::return_after_s)},
       {{.name = "relative_gains",
         .default_value = true,
         .help = "several sensors that differ by a constant factor, up to 1.5, are levelled to their common mean: "
                 "a sheltered and an exposed one, too, and what each reads times the group is shown. Learnt in "
                 "hours of wind, kept in site_file of [shaping]; false: no sensor is levelled"},
-       of(&WindConfig::has_relative_gains)},
+       of_wind(&WindConfig::has_relative_gains)},
       {{.name = "fallback_recording",
         .default_value = std::string{},
         .help = "a recording (.windlog) that is played while every sensor is silent; empty: none, the default "

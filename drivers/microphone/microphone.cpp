@@ -58,18 +58,18 @@ struct MicrophoneKeys {
 };
 
 template <class Member>
-auto of(Member MicEstimatorOptions::*member) {
+auto of_estimator(Member MicEstimatorOptions::*member) {
   return [member](MicrophoneKeys& keys) -> Member& { return keys.settings.estimator.*member; };
 }
 
 const Fields<MicrophoneKeys> kMicrophoneFields = {
     {{"noise_memory", "s", 86400.0, 60.0, 604800.0,
       "memory of levels for this; no noise is subtracted in the first hour"},
-     of(&MicEstimatorOptions::noise_memory_s)},
+     of_estimator(&MicEstimatorOptions::noise_memory_s)},
     {{.name = "ignore_sound",
       .default_value = true,
       .help = "with two or more channels: sound that reaches all alike, such as voices and music, does not count"},
-     of(&MicEstimatorOptions::ignores_sound)},
+     of_estimator(&MicEstimatorOptions::ignores_sound)},
     {{.name = "faces",
       .unit = "deg",
       .default_value = std::string(""),
@@ -77,11 +77,11 @@ const Fields<MicrophoneKeys> kMicrophoneFields = {
           "where each of three or four microphones faces, clockwise from north, \"0 120 240\"; empty: no direction"},
      &MicrophoneKeys::faces},
     {{"direction_smoothing", "s", 5.0, 0.5, 600.0, "time constant of the direction, smoothed as a vector"},
-     of(&MicEstimatorOptions::direction_smoothing_s)},
+     of_estimator(&MicEstimatorOptions::direction_smoothing_s)},
     {{"least_confidence", "", 0.3, 0.0, 1.0, "least confidence of a direction; below it the reading has none"},
-     of(&MicEstimatorOptions::least_confidence)},
+     of_estimator(&MicEstimatorOptions::least_confidence)},
     {{"window", "s", 1.0, 0.25, 60.0, "averaging time of each reading; there are four readings per second"},
-     of(&MicEstimatorOptions::window_s)},
+     of_estimator(&MicEstimatorOptions::window_s)},
     {{"timeout", "s", 3.0, 1.0, 60.0, "silence from the worker after which it is killed and started again"},
      [](MicrophoneKeys& keys) -> Nanoseconds& { return keys.settings.sound_timeout; },
      from_seconds},

@@ -18,15 +18,15 @@ struct LevelKeys {
 };
 
 template <class Member>
-auto of(Member MicLevelSettings::*member) {
+auto of_level(Member MicLevelSettings::*member) {
   return [member](LevelKeys& keys) -> Member& { return keys.settings.*member; };
 }
 
 const Fields<LevelKeys>& level_fields() {
   static const Fields<LevelKeys> kLevelFields = {
       {{"band_low", "Hz", 20.0, 2.0, 1000.0, "lower limit of the band of the wind: what the microphone still passes"},
-       of(&MicLevelSettings::band_low_hz)},
-      {{"band_high", "Hz", 200.0, 10.0, 2000.0, "upper limit of the band"}, of(&MicLevelSettings::band_high_hz)},
+       of_level(&MicLevelSettings::band_low_hz)},
+      {{"band_high", "Hz", 200.0, 10.0, 2000.0, "upper limit of the band"}, of_level(&MicLevelSettings::band_high_hz)},
       {{"gain", "m/s", 0.0, 0.0, 1e6,
         "calibration: speed = gain (P - P_noise)^(1 / (2 exponent)), P the mean square in the band; 0: not calibrated; "
         "20 is used, and every reading is uncertain"},
@@ -40,7 +40,7 @@ const Fields<LevelKeys>& level_fields() {
        &LevelKeys::curve},
       {{"noise_floor", "dB", 0.0, -200.0, 0.0,
         "level in a calm, relative to full scale; 0: determined while running, from the quietest 2 % of the time"},
-       of(&MicLevelSettings::noise_floor_db),
+       of_level(&MicLevelSettings::noise_floor_db),
        [](double floor_db) { return floor_db < 0.0 ? std::optional(floor_db) : std::nullopt; }},
   };
   return kLevelFields;

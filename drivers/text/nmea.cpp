@@ -39,7 +39,7 @@ struct NmeaKeys {
 };
 
 template <class Member>
-auto of(Member NmeaSensorSettings::*member) {
+auto of_nmea(Member NmeaSensorSettings::*member) {
   return [member](NmeaKeys& keys) -> Member& { return keys.settings.*member; };
 }
 
@@ -52,7 +52,7 @@ const Fields<NmeaKeys> kNmeaFields = {
       .default_value = std::string("auto"),
       .help = "auto: detected for each line; ft, umb and wxt also send the requests of these devices",
       .choices = kNmeaFormats},
-     of(&NmeaSensorSettings::format)},
+     of_nmea(&NmeaSensorSettings::format)},
     {{.name = "sentences",
       .default_value = std::string(""),
       .help = "nmea: accept only these, separated by commas: MWV, MWD, VWR, VWT, MDA, XDR; empty: all"},
@@ -61,7 +61,7 @@ const Fields<NmeaKeys> kNmeaFields = {
       .default_value = std::string(""),
       .help = "accept only this talker: two characters before the sentence (WI), Gill's node letter (Q), a WXT's "
               "address (0); empty: any"},
-     of(&NmeaSensorSettings::talker)},
+     of_nmea(&NmeaSensorSettings::talker)},
     {{.name = "missing_checksum",
       .default_value = std::string("auto"),
       .help = "lines without a checksum; auto: NMEA sentences and those of a WXT are accepted over a network and from "
@@ -73,16 +73,16 @@ const Fields<NmeaKeys> kNmeaFields = {
       .default_value = std::string("accept"),
       .help = "lines without their status field; accepted ones are marked uncertain",
       .choices = kMissingStatus},
-     of(&NmeaSensorSettings::status),
+     of_nmea(&NmeaSensorSettings::status),
      when_missing},
     {{.name = "address",
       .default_value = std::string(""),
       .help = "ft, umb: address of the device, two characters (01 by default); wxt: one (0 by default)"},
      &NmeaKeys::address},
     {{"xdr_id", "", std::int64_t{0}, 0, 99, "nmea: number of the device in XDR sentences (Vaisala's address)"},
-     of(&NmeaSensorSettings::xdr_first_id)},
+     of_nmea(&NmeaSensorSettings::xdr_first_id)},
     {{"speed_range", "m/s", 75.0, 1.0, 120.0, "umb: full scale in Lufft's ASCII mode; a VENTUS has 90"},
-     of(&NmeaSensorSettings::speed_range_m_s)},
+     of_nmea(&NmeaSensorSettings::speed_range_m_s)},
 };
 
 std::vector<Parameter> nmea_parameters() {

@@ -36,7 +36,7 @@ std::optional<AngleUnit> angle_unit_of(const std::string& word) {
 }
 
 template <class Member>
-auto of(Member BusLineOptions::*member) {
+auto of_bus_lines(Member BusLineOptions::*member) {
   return [member](Nmea2000SensorSettings& settings) -> Member& { return settings.lines.*member; };
 }
 
@@ -46,7 +46,7 @@ const Fields<Nmea2000SensorSettings> kNmea2000Fields = {
       .help = "yacht-devices: RAW mode of YDWG-02, YDEN-02, YDNU-02; canboat: JSON of canboat's analyzer (n2kd) or "
               "canboatjs; candump: can-utils' lines; auto: detected for each line",
       .choices = kNmea2000Formats},
-     of(&BusLineOptions::format)},
+     of_bus_lines(&BusLineOptions::format)},
     {{"address", "", std::int64_t{-1}, -1, 255,
       "accept only the wind of the device with this address on the bus; -1: any"},
      &Nmea2000SensorSettings::address,
@@ -56,7 +56,7 @@ const Fields<Nmea2000SensorSettings> kNmea2000Fields = {
       .help = "canboat: rad with analyzer -si and canboatjs, deg otherwise; auto: as the analyzer's first line says, "
               "or degrees once an angle comes that cannot be in radians; until then there is no direction",
       .choices = kAngleUnits},
-     of(&BusLineOptions::angle_unit),
+     of_bus_lines(&BusLineOptions::angle_unit),
      angle_unit_of},
 };
 
