@@ -97,7 +97,8 @@ std::vector<float> make_values(const NoiseOptions& options) {
 }
 
 void run_noise(NoiseOptions options) {
-  options.spec.meaning = options.meaning == noise::kBetaMeaningNames[1] ? noise::BetaMeaning::kRadial : noise::BetaMeaning::kTransect;
+  options.spec.meaning =
+      options.meaning == noise::kBetaMeaningNames[1] ? noise::BetaMeaning::kRadial : noise::BetaMeaning::kTransect;
   const std::vector<float> values = make_values(options);
 
   std::array<std::size_t, 3> shape{};
