@@ -92,7 +92,8 @@ TEST_F(NoiseCommand, WritesALineAsTheLibraryMakesIt) {
 TEST_F(NoiseCommand, WritesASquareOfEitherMeaning) {
   for (const noise::BetaMeaning meaning : {noise::BetaMeaning::kRadial, noise::BetaMeaning::kTransect}) {
     const auto file = path("square.npy");
-    run({"--dims", "2", "--size", "16", "--meaning", std::string(noise::kBetaMeaningNames.at(static_cast<std::size_t>(meaning))), "--seed", "3", "--out", file});
+    run({"--dims", "2", "--size", "16", "--meaning",
+         std::string(noise::kBetaMeaningNames.at(static_cast<std::size_t>(meaning))), "--seed", "3", "--out", file});
     EXPECT_EQ(values_of(bytes_of(file), "16,16,"),
               noise::make_noise_2d({.size = 16, .meaning = meaning, .seed = 3}).value().values);
   }
