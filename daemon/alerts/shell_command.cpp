@@ -18,26 +18,12 @@
 #include <unistd.h>
 
 #include "engine/platform/child_process.hpp"
+#include "engine/platform/descriptor.hpp"
 
 namespace yuragi::daemon::alerts {
 namespace {
 
-class Descriptor {
- public:
-  explicit Descriptor(int value) : value_(value) {}
-  ~Descriptor() { reset(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  int get() const { return value_; }
-  void reset() {
-    if (value_ >= 0) ::close(value_);
-    value_ = -1;
-  }
-
- private:
-  int value_;
-};
+using platform::Descriptor;
 
 /// This program's environment and what the command is told. A name may hold anything but a zero byte.
 std::vector<std::string> environment_for(const AlertNews& news) {

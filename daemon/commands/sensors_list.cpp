@@ -11,8 +11,8 @@
 #include "daemon/tools/sensors/device_list.hpp"
 #include "drivers/mqtt/broker_search.hpp"
 #include "drivers/mqtt/home_assistant.hpp"
-#include "drivers/sensor/secret_source.hpp"
 #include "engine/base/address.hpp"
+#include "engine/platform/secret_file.hpp"
 
 namespace yuragi::daemon::commands {
 namespace {
@@ -42,8 +42,7 @@ drivers::mqtt::BrokerSearch broker_search_of(const ListOptions& options) {
   search.broker.uses_tls = options.uses_tls;
   search.broker.ca_file = options.ca_file;
   search.broker.user = options.user;
-  if (!options.password_file.empty())
-    search.broker.password = drivers::sensor::secret_in_file(options.password_file).value();
+  if (!options.password_file.empty()) search.broker.password = platform::secret_in_file(options.password_file).value();
 
   const auto add = [&](std::string_view key, const std::string& text) {
     if (!text.empty()) search.settings += fmt::format("{} = {}\n", key, drivers::mqtt::quoted_for_toml(text));

@@ -19,9 +19,9 @@
 #include "daemon/settings/config.hpp"
 #include "daemon/web/access.hpp"
 #include "daemon/web/routes.hpp"
-#include "drivers/sensor/secret_source.hpp"
 #include "engine/base/json_text.hpp"
 #include "engine/base/time.hpp"
+#include "engine/platform/secret_file.hpp"
 #include "engine/platform/whole_file.hpp"
 
 namespace yuragi::daemon::commands {
@@ -123,7 +123,7 @@ void show_token(const TokenOptions& options) {
                                      "token_file = \"/etc/yuragi/token\"");
   }
   if (options.makes_new) write_token(file, options.config_file);
-  const auto token = drivers::sensor::secret_in_file(file);
+  const auto token = platform::secret_in_file(file);
   if (!token)
     throw ExitError(kExitUnavailable, "token_file: " + token.error().message + "; `yuragi token --new` makes one");
 

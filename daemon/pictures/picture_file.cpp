@@ -13,6 +13,7 @@
 #include "daemon/pictures/jpeg_picture.hpp"
 #include "daemon/pictures/png_picture.hpp"
 #include "daemon/pictures/scaled_picture.hpp"
+#include "engine/platform/descriptor.hpp"
 
 namespace yuragi::daemon::pictures {
 namespace {
@@ -21,23 +22,16 @@ Failure refusal(std::string message) {
   return {.message = std::move(message), .kind = FailureKind::kBadData};
 }
 
-struct Descriptor {
-  int number;
-  ~Descriptor() {
-    if (number >= 0) close(number);
-  }
-};
-
 Result<std::vector<std::uint8_t>, Failure> bytes_of(const std::filesystem::path& file) {
   // Without waiting for somebody who writes into a pipe.
-  const Descriptor opened{open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)};
-  if (opened.number < 0) {
+  const platform::Descriptor opened(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
+  if (opened.get() < 0) {
     return Failure{.message = "cannot be read: " + std::generic_category().message(errno) +
                               "; give the path of a PNG or JPEG file, from the configuration's folder on",
                    .kind = FailureKind::kNoInput};
   }
   struct stat status {};
-  if (fstat(opened.number, &status) != 0 || !S_ISREG(status.st_mode)) {
+  if (fstat(opened.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
     return refusal("is no regular file, but a folder, a pipe or a device");
   }
   if (static_cast<std::uintmax_t>(status.st_size) > kLargestFile_bytes) {
@@ -47,7 +41,7 @@ Result<std::vector<std::uint8_t>, Failure> bytes_of(const std::filesystem::path&
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(status.st_size));
   std::size_t length = 0;
   while (length < bytes.size()) {
-    const ssize_t count = read(opened.number, bytes.data() + length, bytes.size() - length);
+    const ssize_t count = read(opened.get(), bytes.data() + length, bytes.size() - length);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return refusal("cannot be read: " + std::generic_category().message(errno));
     if (count == 0) break;

@@ -150,7 +150,7 @@ void SensorHub::change(const settings::Config& config) {
 void SensorHub::change(std::size_t index, const settings::SensorConfig& config) {
   Channel& channel = channels_[index];
   const settings::SensorConfig before = std::exchange(channel.config, config);
-  if (before.by_name.at("calibration").all() != config.by_name.at("calibration").all()) {
+  if (before.by_name.at(settings::kCalibrationTable).all() != config.by_name.at(settings::kCalibrationTable).all()) {
     std::optional<std::pair<wind::WindReading, wind::WindReading>> last;
     if (const auto& raw = channel.last_raw) {
       last.emplace(before.calibration.applied_to(*raw), config.calibration.applied_to(*raw));

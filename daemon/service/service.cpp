@@ -42,11 +42,11 @@
 #include "daemon/stream/tcp_stream.hpp"
 #include "daemon/web/access.hpp"
 #include "daemon/web/web_server.hpp"
-#include "drivers/sensor/secret_source.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/base/count_text.hpp"
 #include "engine/base/latest.hpp"
 #include "engine/base/version.hpp"
+#include "engine/platform/secret_file.hpp"
 
 namespace yuragi::daemon::service {
 namespace {
@@ -263,7 +263,7 @@ class Service::Io {
   bool read_token() {
     token_trouble_.clear();
     if (!takes_token_ || !token_.is_empty()) return false;
-    auto token = drivers::sensor::secret_in_file(http_.token_file);
+    auto token = platform::secret_in_file(http_.token_file);
     std::string why = token ? "" : token.error().message;
     if (token && token->reveal().size() < web::Access::kShortestToken)
       why = "\"" + http_.token_file + "\" is too short";

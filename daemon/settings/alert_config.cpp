@@ -19,9 +19,8 @@ struct AlertTable {
   Secret command;
 };
 
-template <class Member>
-auto of_alert(Member AlertConfig::*member) {
-  return [member](AlertTable& table) -> Member& { return table.alert.*member; };
+auto of_alert(auto member) {
+  return member_of(&AlertTable::alert, member);
 }
 
 double bytes_of(double megabytes) {

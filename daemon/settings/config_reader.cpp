@@ -276,10 +276,7 @@ class ConfigReader {
   look::ClothLook read_cloth(const toml::table& entry, const ParameterValues& values) {
     auto cloth = cloth_look_of(values, folder_);
     if (cloth) return std::move(*cloth);
-    for (const ParameterError& error : cloth.error()) {
-      const toml::node* node = entry.get(error.name);
-      mistake(node != nullptr ? node->source() : entry.source(), "scene." + error.name, error.message);
-    }
+    for (const ParameterError& error : cloth.error()) mistake_in(entry, "scene.", error);
     return {};
   }
 

@@ -9,8 +9,8 @@
 #include <unistd.h>
 
 #include "daemon/settings/config.hpp"
-#include "drivers/sensor/secret_source.hpp"
 #include "engine/base/address.hpp"
+#include "engine/platform/secret_file.hpp"
 
 namespace yuragi::daemon::settings {
 namespace {
@@ -35,7 +35,7 @@ std::string token_file_of(const std::filesystem::path& config) {
 std::string group_hint(const std::string& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0) return {};
-  const group* const members = getgrgid(status.st_gid);
+  const group* const members = getgrgid(status.st_gid);  // NOLINT(concurrency-mt-unsafe): a command has one thread
   if (members == nullptr || (status.st_mode & S_IRGRP) == 0) return {};
   return fmt::format("you may not read {}: its group \"{}\" may (`sudo adduser YOUR-NAME {}`, then log in again)", file,
                      members->gr_name, members->gr_name);
@@ -44,16 +44,17 @@ std::string group_hint(const std::string& file) {
 }  // namespace
 
 OwnToken own_token(const std::string& address, const std::filesystem::path& config) {
-  if (const char* const file = std::getenv(kVariable); file != nullptr && *file != '\0') {
-    auto token = drivers::sensor::secret_in_file(file);
+  const char* const file = std::getenv(kVariable);  // NOLINT(concurrency-mt-unsafe): nobody changes it
+  if (file != nullptr && *file != '\0') {
+    auto token = platform::secret_in_file(file);
     if (!token) throw FailureError({std::string(kVariable) + ": " + token.error().message, FailureKind::kNoInput});
     return {.token = std::move(*token), .hint = {}};
   }
   if (!is_of_this_machine(address)) return {};
-  const std::string file = token_file_of(config);
-  if (file.empty()) return {};
-  if (access(file.c_str(), R_OK) != 0) return {.token = {}, .hint = group_hint(file)};
-  auto token = drivers::sensor::secret_in_file(file);
+  const std::string configured = token_file_of(config);
+  if (configured.empty()) return {};
+  if (access(configured.c_str(), R_OK) != 0) return {.token = {}, .hint = group_hint(configured)};
+  auto token = platform::secret_in_file(configured);
   return token ? OwnToken{.token = std::move(*token), .hint = {}} : OwnToken{};
 }
 

@@ -12,8 +12,8 @@
 namespace yuragi::daemon::settings {
 namespace {
 
-auto of_placement(double scenes::ScenePlacement::*member) {
-  return [member](SceneConfig& scene) -> double& { return scene.placement.*member; };
+auto of_placement(auto member) {
+  return member_of(&SceneConfig::placement, member);
 }
 
 const Fields<SceneConfig>& common_scene_fields() {

@@ -33,9 +33,8 @@ struct BlendTable {
   double averaging_s = 0.0;
 };
 
-template <class Member>
-auto of_blend(Member BlendSourceSettings::*member) {
-  return [member](BlendTable& table) -> Member& { return table.settings.*member; };
+auto of_blend(auto member) {
+  return member_of(&BlendTable::settings, member);
 }
 
 const Fields<BlendTable>& blend_fields() {

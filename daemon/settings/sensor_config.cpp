@@ -25,9 +25,8 @@ struct CalibrationTable {
   double roughness_m = 0.0;
 };
 
-template <class Member>
-auto of_sensor(Member Calibration::*member) {
-  return [member](CalibrationTable& table) -> Member& { return table.calibration.*member; };
+auto of_calibration(auto member) {
+  return member_of(&CalibrationTable::calibration, member);
 }
 
 const Fields<CalibrationTable>& calibration_fields() {
@@ -36,26 +35,26 @@ const Fields<CalibrationTable>& calibration_fields() {
         .default_value = std::string("m/s"),
         .help = "unit of the sensor's speeds, where its driver assumes m/s",
         .choices = drivers::sensor::kSpeedUnitNames},
-       of_sensor(&Calibration::unit_m_s),
+       of_calibration(&Calibration::unit_m_s),
        drivers::sensor::metres_per_second_in},
       {{.name = "gain",
         .default_value = 1.0,
         .min = 0.01,
         .max = 100.0,
         .help = "the speed in m/s is multiplied by this"},
-       of_sensor(&Calibration::gain)},
+       of_calibration(&Calibration::gain)},
       {{.name = "offset",
         .unit = "m/s",
         .default_value = 0.0,
         .min = -20.0,
         .max = 20.0,
         .help = "added to the speed after the gain, except in a calm"},
-       of_sensor(&Calibration::offset_m_s)},
+       of_calibration(&Calibration::offset_m_s)},
       {{.name = "curve",
         .unit = "m/s",
         .default_value = std::string(""),
         .help = "applied after gain and offset: points measured:true, \"0:0 5:5.2 12:12.9\"; empty: none"},
-       of_sensor(&Calibration::curve),
+       of_calibration(&Calibration::curve),
        wind::judging::parse_calibration_curve},
       {{.name = "north_offset",
         .unit = "deg",
@@ -63,7 +62,7 @@ const Fields<CalibrationTable>& calibration_fields() {
         .min = -360.0,
         .max = 360.0,
         .help = "bearing of the sensor's north mark, clockwise from north"},
-       of_sensor(&Calibration::north_offset_deg)},
+       of_calibration(&Calibration::north_offset_deg)},
       {{.name = "height",
         .unit = "m",
         .default_value = 0.0,
@@ -100,8 +99,8 @@ struct JudgeTable {
   JudgeSettings settings;
 };
 
-auto of_sensor(double JudgeSettings::*member) {
-  return [member](JudgeTable& table) -> double& { return table.settings.*member; };
+auto of_judge(auto member) {
+  return member_of(&JudgeTable::settings, member);
 }
 
 const Fields<JudgeTable>& judge_fields() {
@@ -117,21 +116,21 @@ const Fields<JudgeTable>& judge_fields() {
         .min = 1.0,
         .max = wind::kMaxPlausibleSpeed_m_s,
         .help = "a speed above this is out of the sensor's range"},
-       of_sensor(&JudgeSettings::max_speed_m_s)},
+       of_judge(&JudgeSettings::max_speed_m_s)},
       {{.name = "spike",
         .unit = "m/s",
         .default_value = 4.0,
         .min = 0.1,
         .max = 100.0,
         .help = "a difference from the last readings below this plus half of the speed is not a spike"},
-       of_sensor(&JudgeSettings::least_spike_m_s)},
+       of_judge(&JudgeSettings::least_spike_m_s)},
       {{.name = "slew",
         .unit = "m/s^2",
         .default_value = 5.0,
         .min = 0.01,
         .max = 1000.0,
         .help = "a larger step is accepted once it has lasted for step / rate"},
-       of_sensor(&JudgeSettings::slew_m_s2)},
+       of_judge(&JudgeSettings::slew_m_s2)},
       {{.name = "frozen",
         .unit = "s",
         .default_value = 30.0,
@@ -139,7 +138,7 @@ const Fields<JudgeTable>& judge_fields() {
         .max = 86400.0,
         .help = "a sensor is frozen after 20 exactly equal readings over this time; the time is longer for a "
                 "sensor that often repeats values, or has never sent another"},
-       of_sensor(&JudgeSettings::frozen_s)},
+       of_judge(&JudgeSettings::frozen_s)},
       {{.name = "seized",
         .unit = "s",
         .default_value = 7200.0,
@@ -147,7 +146,7 @@ const Fields<JudgeTable>& judge_fields() {
         .max = 864000.0,
         .help = "a cup is seized when it stands still for this time while the other sensors measure more than 3 "
                 "m/s; without other sensors after six times as long, following a windy day"},
-       of_sensor(&JudgeSettings::seized_s)},
+       of_judge(&JudgeSettings::seized_s)},
       {{.name = "compare",
         .default_value = true,
         .help = "compare its mean of 5 min with that of the other sensors (never for a microphone); with three "
@@ -197,7 +196,7 @@ std::vector<ParameterError> fill_blend(SensorConfig& sensor, const ParameterValu
 
 std::span<const SensorTable> sensor_tables() {
   static const std::array kTables = {
-      SensorTable{.name = "calibration",
+      SensorTable{.name = kCalibrationTable,
                   .summary = "from its readings to the wind; recordings hold uncalibrated readings",
                   .parameters = calibration_fields().parameters(),
                   .change = KeyChange::kAtOnce,

@@ -68,8 +68,9 @@ void set_gust_length(SensorConfig& sensor) noexcept;
 using SensorTable = TableOf<SensorConfig>;
 std::span<const SensorTable> sensor_tables();
 
-/// How a sensor shares in the wind: [sensor.blend].
+/// The names of those that are also read by themselves.
 inline constexpr std::string_view kBlendTable = "blend";
+inline constexpr std::string_view kCalibrationTable = "calibration";
 
 /// From values of [sensor.calibration] that are in no file. Throws std::runtime_error where they contradict each other.
 wind::judging::Calibration calibration_of(const ParameterValues& values);

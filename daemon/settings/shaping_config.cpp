@@ -21,14 +21,14 @@ struct ShapingTable {
   std::string zone;
 };
 
-auto of_settings(double WindShapingSettings::*member) {
-  return [member](ShapingTable& table) -> double& { return table.shaping.settings.*member; };
+auto of_settings(auto member) {
+  return member_of(&ShapingTable::shaping, &ShapingConfig::settings, member);
 }
-auto of_site(double SiteRange::*member) {
-  return [member](ShapingTable& table) -> double& { return table.shaping.settings.site.*member; };
+auto of_site(auto member) {
+  return member_of(&ShapingTable::shaping, &ShapingConfig::settings, &WindShapingSettings::site, member);
 }
-auto of_ceiling(double SoftCeiling::*member) {
-  return [member](ShapingTable& table) -> double& { return table.shaping.settings.ceiling.*member; };
+auto of_ceiling(auto member) {
+  return member_of(&ShapingTable::shaping, &ShapingConfig::settings, &WindShapingSettings::ceiling, member);
 }
 
 double seconds_of_days(double days) {

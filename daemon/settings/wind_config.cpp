@@ -19,9 +19,8 @@ struct WindTable {
   double fallback_after_s = 0.0;
 };
 
-template <class Member>
-auto of_wind(Member WindConfig::*member) {
-  return [member](WindTable& table) -> Member& { return table.wind.*member; };
+auto of_wind(auto member) {
+  return member_of(&WindTable::wind, member);
 }
 
 std::optional<double> length_unless_0(double length_m) {

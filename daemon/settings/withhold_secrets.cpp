@@ -20,30 +20,22 @@ namespace {
 
 using Keys = std::vector<std::string_view>;
 
-void add_secret_keys(std::span<const Parameter> parameters, Keys& keys) {
+Keys secret_keys(std::span<const Parameter> parameters) {
+  Keys keys;
   for (const Parameter& parameter : parameters) {
     if (std::holds_alternative<Secret>(parameter.default_value)) keys.push_back(parameter.name);
   }
+  return keys;
 }
 
 /// Returns the names of a driver's secrets; of all drivers' if there is no such driver.
 Keys secret_keys_of(std::string_view driver) {
-  Keys keys;
-  Keys keys_of_all;
-  bool is_known = false;
+  if (const auto* const found = drivers::sensor::find_driver(driver)) return secret_keys(found->parameters);
+  Keys of_all;
   for (const drivers::sensor::DriverDescription* description : drivers::sensor::driver_table()) {
-    add_secret_keys(description->parameters, keys_of_all);
-    if (description->name != driver) continue;
-    is_known = true;
-    add_secret_keys(description->parameters, keys);
+    for (const std::string_view key : secret_keys(description->parameters)) of_all.push_back(key);
   }
-  return is_known ? keys : keys_of_all;
-}
-
-Keys secret_keys(std::span<const Parameter> parameters) {
-  Keys keys;
-  add_secret_keys(parameters, keys);
-  return keys;
+  return of_all;
 }
 
 /// Withholds values of one text.

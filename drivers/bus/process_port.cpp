@@ -6,7 +6,6 @@
 #include <csignal>
 #include <optional>
 #include <system_error>
-#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -16,16 +15,14 @@
 #include <unistd.h>
 
 #include "engine/platform/child_process.hpp"
+#include "engine/platform/descriptor.hpp"
 
 namespace yuragi::drivers::bus {
 namespace {
 
-constexpr int kReapTurns = 200;
-constexpr auto kReapTurn = std::chrono::milliseconds(2);
+using platform::close_if_open;
 
-void close_if_open(int& descriptor) noexcept {
-  if (descriptor >= 0) ::close(std::exchange(descriptor, -1));
-}
+constexpr int kKillTakes_ms = 400;
 
 class ProcessPort final : public BytePort {
  public:
@@ -63,17 +60,12 @@ class ProcessPort final : public BytePort {
 
   void close() noexcept override {
     close_if_open(output_);
-    if (process_) {
-      process_->signal(SIGKILL);
-      killed_.push_back(std::move(*process_));
-      process_.reset();
-    }
-    // A killed process is gone within a moment, unless a driver of the system holds it: that one is checked again
-    // later.
-    for (int turn = 0; turn < kReapTurns && !killed_.empty(); ++turn) {
-      std::erase_if(killed_, [](platform::ChildProcess& process) { return process.end().has_value(); });
-      if (!killed_.empty()) std::this_thread::sleep_for(kReapTurn);
-    }
+    std::erase_if(killed_, [](platform::ChildProcess& process) { return process.end().has_value(); });
+    if (!process_) return;
+    process_->signal(SIGKILL);
+    // It is gone within a moment, unless a driver of the system holds it: then it is checked again later.
+    if (!process_->end(kKillTakes_ms)) killed_.push_back(std::move(*process_));
+    process_.reset();
   }
 
   ByteArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) override {

@@ -27,9 +27,8 @@ constexpr std::array kDavisBauds = {1200, 2400, 4800, 9600, 19200};
 constexpr std::array<std::string_view, 2> kDavisTransports = {"serial", "tcp"};
 constexpr std::array<std::string_view, 3> kDavisPackets = {"auto", "loop", "loop2"};
 
-template <class Member>
-auto of(Member BytePortAddress::*member) {
-  return [member](VantageSettings& settings) -> Member& { return settings.address.*member; };
+auto of(auto member) {
+  return member_of(&VantageSettings::address, member);
 }
 
 const Fields<VantageSettings> kDavisFields = {
@@ -75,7 +74,7 @@ std::unique_ptr<sensor::Sensor> open_davis(const ParameterValues& values) {
 
 Result<sensor::SimulatedDevice, Failure> davis_simulated(const ParameterValues& values) {
   sensor::SimulatedDevice simulated = sensor::simulated_by_tcp("davis", values);
-  simulated.speed_step_m_s = kMetresPerSecondPerMph;  // it says whole miles per hour
+  simulated.speed_step_m_s = kMetresPerSecondPerMph;  // it reports whole miles per hour
   return simulated;
 }
 

@@ -26,13 +26,11 @@ struct UmbKeys {
   std::uint8_t id = 0;
 };
 
-template <class Member>
-auto of(Member UmbSettings::*member) {
-  return [member](UmbKeys& keys) -> Member& { return keys.settings.*member; };
+auto of_settings(auto member) {
+  return member_of(&UmbKeys::settings, member);
 }
-template <class Member>
-auto of(Member BytePortAddress::*member) {
-  return [member](UmbKeys& keys) -> Member& { return keys.settings.address.*member; };
+auto of_address(auto member) {
+  return member_of(&UmbKeys::settings, &UmbSettings::address, member);
 }
 
 const Fields<UmbKeys> kUmbFields = {
@@ -40,27 +38,27 @@ const Fields<UmbKeys> kUmbFields = {
       .default_value = std::string("serial"),
       .help = "serial: an RS-485 adapter; tcp: a serial device server in the network",
       .choices = kUmbTransports},
-     of(&BytePortAddress::kind)},
+     of_address(&BytePortAddress::kind)},
     {{.name = "device",
       .default_value = std::string(""),
       .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
-     of(&BytePortAddress::path)},
+     of_address(&BytePortAddress::path)},
     {{"baud", "bit/s", std::int64_t{19200}, bus::kBytePortBauds.front(), bus::kBytePortBauds.back(),
       "serial: as set in the device, which leaves the factory with 19200; 8 data bits, no parity, 1 stop bit"},
-     of(&BytePortAddress::baud)},
+     of_address(&BytePortAddress::baud)},
     {{.name = "host", .default_value = std::string(""), .help = "tcp: name or address of the server"},
-     of(&BytePortAddress::host)},
-    {{"port", "", std::int64_t{9750}, 1, 65535, "tcp: as set in the server"}, of(&BytePortAddress::port)},
+     of_address(&BytePortAddress::host)},
+    {{"port", "", std::int64_t{9750}, 1, 65535, "tcp: as set in the server"}, of_address(&BytePortAddress::port)},
     {{"class", "", std::int64_t{7}, 1, 14,
       "what it is: 7: a weather station WS200-UMB to WS800-UMB; 8: a VENTUS or V200A"},
      &UmbKeys::device_class},
     {{"id", "", std::int64_t{1}, 1, 255, "its id on the line, as set in the device"}, &UmbKeys::id},
     {{"poll_interval", "s", 1.0, 0.2, 3600.0,
       "interval between requests; weather stations have a new wind each second, a VENTUS up to four"},
-     of(&UmbSettings::poll_interval),
+     of_settings(&UmbSettings::poll_interval),
      from_seconds},
     {{"response_timeout", "s", 0.5, 0.05, 60.0, "longest wait for a reply"},
-     of(&UmbSettings::response_timeout),
+     of_settings(&UmbSettings::response_timeout),
      from_seconds},
 };
 

@@ -57,9 +57,8 @@ struct MicrophoneKeys {
   std::string worker;
 };
 
-template <class Member>
-auto of_estimator(Member MicEstimatorOptions::*member) {
-  return [member](MicrophoneKeys& keys) -> Member& { return keys.settings.estimator.*member; };
+auto of_estimator(auto member) {
+  return member_of(&MicrophoneKeys::settings, &MicrophoneSettings::estimator, member);
 }
 
 const Fields<MicrophoneKeys> kMicrophoneFields = {

@@ -17,9 +17,8 @@ struct LevelKeys {
   std::string curve;
 };
 
-template <class Member>
-auto of_level(Member MicLevelSettings::*member) {
-  return [member](LevelKeys& keys) -> Member& { return keys.settings.*member; };
+auto of_level(auto member) {
+  return member_of(&LevelKeys::settings, member);
 }
 
 const Fields<LevelKeys>& level_fields() {

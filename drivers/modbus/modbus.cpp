@@ -26,7 +26,7 @@ using decode::modbus::ModbusFraming;
 constexpr std::array<std::string_view, 2> kTransports = {"tcp", "rtu"};
 constexpr std::array<std::string_view, 4> kParityChoices = {"profile", "none", "even", "odd"};
 
-/// kModbusFields says what each means; 0 and empty times are the profile's.
+/// kModbusFields defines each; 0 and empty times are the profile's.
 struct ModbusKeys {
   std::string profile;
   std::string profile_dir;

@@ -76,13 +76,8 @@ struct MqttKeys {
   bool has_own_unit() const { return speed_unit != kMqttUnits[0]; }
 };
 
-template <class Member>
-auto of(Member MqttSettings::*member) {
-  return [member](MqttKeys& keys) -> Member& { return keys.settings.*member; };
-}
-template <class Part, class Member>
-auto of(Part MqttSettings::*part, Member Part::*member) {
-  return [part, member](MqttKeys& keys) -> Member& { return keys.settings.*part.*member; };
+auto of(auto... members) {
+  return member_of(&MqttKeys::settings, members...);
 }
 
 const Fields<MqttKeys> kMqttFields = {

@@ -39,9 +39,8 @@ struct TempestSettings {
   Nanoseconds silence = std::chrono::seconds(60);
 };
 
-template <class Member>
-auto of(Member bus::BytePortAddress::*member) {
-  return [member](TempestSettings& settings) -> Member& { return settings.port.*member; };
+auto of(auto member) {
+  return member_of(&TempestSettings::port, member);
 }
 
 const Fields<TempestSettings> kTempestFields = {

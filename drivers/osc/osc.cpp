@@ -44,9 +44,8 @@ struct OscSettings {
   bool speaks_on_change = false;  ///< a silence says that the wind is unchanged
 };
 
-template <class Member>
-auto of(Member bus::BytePortAddress::*member) {
-  return [member](OscSettings& settings) -> Member& { return settings.port.*member; };
+auto of(auto member) {
+  return member_of(&OscSettings::port, member);
 }
 
 const Fields<OscSettings> kOscFields = {

@@ -32,13 +32,11 @@ struct ReplayKeys {
   std::string utc_offset;
 };
 
-template <class Member>
-auto of(Member PlayerOptions::*member) {
-  return [member](ReplayKeys& keys) -> Member& { return keys.options.*member; };
+auto of_options(auto member) {
+  return member_of(&ReplayKeys::options, member);
 }
-template <class Member>
-auto of(Member PlaybackOptions::*member) {
-  return [member](ReplayKeys& keys) -> Member& { return keys.options.playback.*member; };
+auto of_playback(auto member) {
+  return member_of(&ReplayKeys::options, &PlayerOptions::playback, member);
 }
 
 const Fields<ReplayKeys> kWindlogFields = {
@@ -52,30 +50,30 @@ const Fields<ReplayKeys> kWindlogFields = {
       .max = 1000.0,
       .help = "seconds of the recording that are played per second",
       .change = KeyChange::kAtOnce},
-     of(&PlayerOptions::rate)},
-    {{.name = "loop", .default_value = false, .help = "start again at the end"}, of(&PlaybackOptions::loop)},
+     of_options(&PlayerOptions::rate)},
+    {{.name = "loop", .default_value = false, .help = "start again at the end"}, of_playback(&PlaybackOptions::loop)},
     {{"seam", "s", 5.0, 0.0, 600.0, "duration of the cross-fade at the end of a loop and at a seek; 0: none"},
-     of(&PlayerOptions::seam_s)},
+     of_options(&PlayerOptions::seam_s)},
     {{.name = "start",
       .default_value = std::string{},
       .help = "where to begin: seconds from the first reading, or a time such as 2018-07-20T14:05:00Z"},
-     of(&PlaybackOptions::start)},
+     of_playback(&PlaybackOptions::start)},
     {{.name = "same_time_of_day",
       .default_value = false,
       .help = "start, and start again, at the present local time of day: on the first day from `start` on that "
               "contains it, else at the next later reading"},
-     of(&PlayerOptions::at_time_of_day)},
+     of_options(&PlayerOptions::at_time_of_day)},
     {{.name = "utc_offset",
       .default_value = std::string{},
       .help = "for same_time_of_day, of the place of the recording: hours ahead of UTC (1, -3.5); empty: this "
               "machine's time zone"},
      &ReplayKeys::utc_offset},
     {{.name = "paused", .default_value = false, .help = "start paused, at the first reading"},
-     of(&PlayerOptions::is_paused)},
+     of_options(&PlayerOptions::is_paused)},
     {{.name = "sensor",
       .default_value = std::string{},
       .help = "name of the recorded sensor; empty: the one with the first reading; *: all, as one"},
-     of(&PlaybackOptions::sensor)},
+     of_playback(&PlaybackOptions::sensor)},
 };
 
 class WindlogReplay final : public sensor::Sensor, public RecordingPlayer {

@@ -24,10 +24,10 @@ enum class EndpointKind : std::uint8_t {
 /// Something outside of this program that a sensor needs.
 struct Endpoint {
   EndpointKind kind = EndpointKind::kSerialPort;
-  std::string
-      name{};  ///< as the configuration calls it: "/dev/ttyUSB0", "192.168.1.20:502", ":50222"; empty: what is found
-  std::string
-      claim{};  ///< its identity, if only one sensor can have it: "serial port /dev/ttyUSB0"; empty: several can
+  /// As the configuration calls it: "/dev/ttyUSB0", "192.168.1.20:502", ":50222"; empty: what is found.
+  std::string name{};
+  /// Its identity, if only one sensor can have it: "serial port /dev/ttyUSB0"; empty: several can.
+  std::string claim{};
   bool is_shared = false;  ///< sensors of one driver share the claim; of a UDP port other programs, too
 };
 

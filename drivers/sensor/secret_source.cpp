@@ -6,18 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "engine/base/secret_line.hpp"
-#include "engine/platform/whole_file.hpp"
+#include "engine/platform/secret_file.hpp"
 
 namespace yuragi::drivers::sensor {
-
-Result<Secret, Failure> secret_in_file(const std::filesystem::path& file) {
-  const auto fail = [&file](const std::string& why) { return Failure{"\"" + file.string() + "\" " + why}; };
-  auto text = platform::read_whole(file, kLongestSecretFile);
-  if (!text) return fail(text.error().message);
-  auto secret = secret_line(std::move(*text));
-  return secret ? std::move(secret) : fail(secret.error().message);
-}
 
 Result<Secret, Failure> secret_in_environment(const std::string& variable) {
   const char* const value = std::getenv(variable.c_str());  // NOLINT(concurrency-mt-unsafe): nobody changes it
@@ -36,7 +27,7 @@ Secret secret_of(const ParameterValues& values, const std::string& name) {
     if (!result) throw std::runtime_error(fmt::format("{}_{}: {}", name, place, result.error().message));
     return *result;
   };
-  if (!file.empty()) return found("file", secret_in_file(file));
+  if (!file.empty()) return found("file", platform::secret_in_file(file));
   if (!variable.empty()) return found("env", secret_in_environment(variable));
   return secret;
 }

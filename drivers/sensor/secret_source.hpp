@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
 #include <string>
 
 #include "engine/base/parameter.hpp"
@@ -9,13 +7,6 @@
 #include "engine/base/secret.hpp"
 
 namespace yuragi::drivers::sensor {
-
-inline constexpr std::size_t kLongestSecretFile = 4096;  ///< bytes
-
-/// The one line of a file, without its line end. It is what systemd's LoadCredential= leaves in
-/// $CREDENTIALS_DIRECTORY, for example. Fails where the file cannot be read, is no regular file, is longer than
-/// kLongestSecretFile, or holds nothing, several lines or a zero byte. The failure shows nothing of its content.
-Result<Secret, Failure> secret_in_file(const std::filesystem::path& file);
 
 /// The value of an environment variable. Fails where it is not set, or empty. Thread-safe: as long as nobody changes
 /// the environment.

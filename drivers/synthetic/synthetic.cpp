@@ -13,9 +13,8 @@ struct SyntheticKeys {
   Nanoseconds interval{};
 };
 
-template <class Member>
-auto of(Member SyntheticWindSettings::*member) {
-  return [member](SyntheticKeys& keys) -> Member& { return keys.wind.*member; };
+auto of(auto member) {
+  return member_of(&SyntheticKeys::wind, member);
 }
 
 const Fields<SyntheticKeys> kSyntheticFields = {

@@ -25,13 +25,11 @@ struct BytePortKeys {
   std::string file;
 };
 
-template <class Member>
-auto of_port(Member TextSensorSettings::*member) {
-  return [member](BytePortKeys& keys) -> Member& { return keys.text.*member; };
+auto of_text(auto member) {
+  return member_of(&BytePortKeys::text, member);
 }
-template <class Member>
-auto of_port(Member BytePortAddress::*member) {
-  return [member](BytePortKeys& keys) -> Member& { return keys.text.address.*member; };
+auto of_address(auto member) {
+  return member_of(&BytePortKeys::text, &TextSensorSettings::address, member);
 }
 
 /// The transports of all drivers, in the order of BytePortKind.
@@ -52,62 +50,62 @@ const Fields<BytePortKeys>& byte_port_fields() {
         .help = "serial: a serial port; tcp: a server to connect to; udp: datagrams sent to this machine; file: a file "
                 "or named pipe",
         .choices = kByteTransports},
-       of_port(&BytePortAddress::kind),
+       of_address(&BytePortAddress::kind),
        kind_of},
       {{.name = "device",
         .default_value = std::string(""),
         .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
-       of_port(&BytePortAddress::path)},
+       of_address(&BytePortAddress::path)},
       {{"baud", "bit/s", std::int64_t{9600}, bus::kBytePortBauds.front(), bus::kBytePortBauds.back(),
         "serial: as set in the device; NMEA 0183 has 4800, most anemometers 9600 or 19200"},
-       of_port(&BytePortAddress::baud)},
+       of_address(&BytePortAddress::baud)},
       {{"data_bits", "", std::int64_t{8}, 7, 8, "serial: data bits of each character"},
-       of_port(&BytePortAddress::data_bits)},
+       of_address(&BytePortAddress::data_bits)},
       {{.name = "parity",
         .default_value = std::string("none"),
         .help = "serial: parity bit of each character",
         .choices = kByteParities},
-       of_port(&BytePortAddress::parity),
+       of_address(&BytePortAddress::parity),
        parity_letter},
       {{"stop_bits", "", std::int64_t{1}, 1, 2, "serial: stop bits of each character"},
-       of_port(&BytePortAddress::stop_bits)},
+       of_address(&BytePortAddress::stop_bits)},
       {{.name = "host",
         .default_value = std::string(""),
         .help = "tcp: name or address of the server; udp: the local address to listen at, or a multicast address; "
                 "empty: all addresses of this machine"},
-       of_port(&BytePortAddress::host)},
+       of_address(&BytePortAddress::host)},
       {{"port", "", std::int64_t{10110}, 1, 65535, "tcp, udp: 10110 is registered for NMEA 0183"},
-       of_port(&BytePortAddress::port)},
+       of_address(&BytePortAddress::port)},
       {{.name = "sender",
         .default_value = std::string(""),
         .help = "udp: accept datagrams from these only: addresses and nets (192.168.1.0/24) separated by commas; "
                 "empty: from any; at most 100 readings a second are taken"},
-       of_port(&BytePortAddress::senders)},
+       of_address(&BytePortAddress::senders)},
       {{.name = "file", .default_value = std::string(""), .help = "file: path of a file or named pipe"},
        &BytePortKeys::file},
       {{"play_rate", "Hz", 0.0, 0.0, 1e6,
         "file: 0 follows what is appended to it; otherwise it is played once from its beginning, with this many "
         "readings per second"},
-       of_port(&TextSensorSettings::play_rate_hz)},
+       of_text(&TextSensorSettings::play_rate_hz)},
       {{.name = "request",
         .default_value = std::string(""),
         .help = "request for one reading, with its line end (\"?\\r\\n\"); empty: the format's own",
         .takes_control_characters = true},
-       of_port(&TextSensorSettings::request)},
+       of_text(&TextSensorSettings::request)},
       {{"poll_interval", "s", 0.0, 0.0, 3600.0, "interval between requests; 0: the device sends without requests"},
-       of_port(&TextSensorSettings::poll_interval),
+       of_text(&TextSensorSettings::poll_interval),
        from_seconds},
       {{"response_timeout", "s", 0.5, 0.05, 60.0, "longest wait for the reply to a request"},
-       of_port(&TextSensorSettings::response_timeout),
+       of_text(&TextSensorSettings::response_timeout),
        from_seconds},
       {{"silence_timeout", "s", 0.0, 0.0, 86400.0,
         "a device that is silent for this long is opened again; 0: ten times its usual pause between readings, at "
         "least 6 s, doubled after each attempt without a reading"},
-       of_port(&TextSensorSettings::silence_timeout),
+       of_text(&TextSensorSettings::silence_timeout),
        from_seconds},
       {{"delay_after_open", "s", 0.0, 0.0, 60.0,
         "messages are discarded for this long after opening; an Arduino restarts whenever its port is opened"},
-       of_port(&TextSensorSettings::delay_after_open),
+       of_text(&TextSensorSettings::delay_after_open),
        from_seconds},
   };
   return kPortFields;

@@ -44,11 +44,6 @@ Result<std::optional<double>, Failure> invalid_number_of(const std::string& text
   return {boost::system::in_place_value, *number};
 }
 
-template <class Member>
-auto of_line(LineQuantity LineOptions::*quantity, Member LineQuantity::*member) {
-  return [quantity, member](LineOptions& line) -> Member& { return line.*quantity.*member; };
-}
-
 /// How a line is read. The gust has the speed's scale and unit.
 const Fields<LineOptions> kLineReading = {
     {{.name = "format",
@@ -65,38 +60,38 @@ const Fields<LineOptions> kLineReading = {
      separator_named},
     {{"speed_column", "", std::int64_t{1}, 0, static_cast<double>(decode::kMaxTextFields),
       "number of the column, from 1; 0: none"},
-     of_line(&LineOptions::speed, &LineQuantity::column),
+     member_of(&LineOptions::speed, &LineQuantity::column),
      column_of},
     {{"direction_column", "", std::int64_t{2}, 0, static_cast<double>(decode::kMaxTextFields), "0: none"},
-     of_line(&LineOptions::direction, &LineQuantity::column),
+     member_of(&LineOptions::direction, &LineQuantity::column),
      column_of},
     {{"gust_column", "", std::int64_t{0}, 0, static_cast<double>(decode::kMaxTextFields), "0: none"},
-     of_line(&LineOptions::gust, &LineQuantity::column),
+     member_of(&LineOptions::gust, &LineQuantity::column),
      column_of},
     {{.name = "speed_key",
       .default_value = std::string("speed"),
       .help = "exact; json: or a pointer such as /wind/speed; empty: none"},
-     of_line(&LineOptions::speed, &LineQuantity::key)},
+     member_of(&LineOptions::speed, &LineQuantity::key)},
     {{.name = "direction_key", .default_value = std::string("direction"), .help = "exact; empty: none"},
-     of_line(&LineOptions::direction, &LineQuantity::key)},
+     member_of(&LineOptions::direction, &LineQuantity::key)},
     {{.name = "gust_key", .default_value = std::string("gust"), .help = "exact; empty: none"},
-     of_line(&LineOptions::gust, &LineQuantity::key)},
+     member_of(&LineOptions::gust, &LineQuantity::key)},
     {{.name = "speed_unit",
       .default_value = std::string("m/s"),
       .help = "of speed and gust, after scale and offset, where the line itself says none (speed: 15 km/h)",
       .choices = sensor::kSpeedUnitNames},
-     of_line(&LineOptions::speed, &LineQuantity::unit),
+     member_of(&LineOptions::speed, &LineQuantity::unit),
      sensor::metres_per_second_in},
     {{.name = "speed_scale",
       .default_value = 1.0,
       .help = "factor on speed and gust (0.1 for tenths), before speed_offset is added"},
-     of_line(&LineOptions::speed, &LineQuantity::scale)},
+     member_of(&LineOptions::speed, &LineQuantity::scale)},
     {{.name = "speed_offset", .default_value = 0.0, .help = "added to speed and gust, in speed_unit"},
-     of_line(&LineOptions::speed, &LineQuantity::offset)},
+     member_of(&LineOptions::speed, &LineQuantity::offset)},
     {{.name = "direction_scale",
       .default_value = 1.0,
       .help = "factor that gives the direction in degrees (22.5 for points 0 to 15)"},
-     of_line(&LineOptions::direction, &LineQuantity::scale)},
+     member_of(&LineOptions::direction, &LineQuantity::scale)},
     {{.name = "invalid",
       .default_value = std::string(""),
       .help = "number that means \"no value\", such as \"-999\"; empty: none. nan and null always mean it"},

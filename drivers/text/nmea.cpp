@@ -38,9 +38,8 @@ struct NmeaKeys {
   std::string address;
 };
 
-template <class Member>
-auto of_nmea(Member NmeaSensorSettings::*member) {
-  return [member](NmeaKeys& keys) -> Member& { return keys.settings.*member; };
+auto of_nmea(auto member) {
+  return member_of(&NmeaKeys::settings, member);
 }
 
 decode::WhenMissing when_missing(const std::string& word) {

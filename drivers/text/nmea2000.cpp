@@ -35,9 +35,8 @@ std::optional<AngleUnit> angle_unit_of(const std::string& word) {
   return word == "rad" ? std::optional(AngleUnit::kRadians) : std::nullopt;
 }
 
-template <class Member>
-auto of_bus_lines(Member BusLineOptions::*member) {
-  return [member](Nmea2000SensorSettings& settings) -> Member& { return settings.lines.*member; };
+auto of_bus_lines(auto member) {
+  return member_of(&Nmea2000SensorSettings::lines, member);
 }
 
 const Fields<Nmea2000SensorSettings> kNmea2000Fields = {

@@ -38,17 +38,14 @@ std::optional<std::uint8_t> channel_of(std::int64_t channel) {
   return channel < 0 ? std::nullopt : std::optional(static_cast<std::uint8_t>(channel));
 }
 
-template <class Member>
-auto of(Member DaqWiring::*member) {
-  return [member](UsbSettings& settings) -> Member& { return settings.wiring.*member; };
+auto of_wiring(auto member) {
+  return member_of(&UsbSettings::wiring, member);
 }
-template <class Member>
-auto of(Member CupCalibration::*member) {
-  return [member](UsbSettings& settings) -> Member& { return settings.cup.*member; };
+auto of_cup(auto member) {
+  return member_of(&UsbSettings::cup, member);
 }
-template <class Member>
-auto of(Member VaneCalibration::*member) {
-  return [member](UsbSettings& settings) -> Member& { return settings.vane.*member; };
+auto of_vane(auto member) {
+  return member_of(&UsbSettings::vane, member);
 }
 
 const Fields<UsbSettings> kUsbFields = {
@@ -66,36 +63,37 @@ const Fields<UsbSettings> kUsbFields = {
       .default_value = std::string(""),
       .help = "the USB port that it is plugged into, such as 1-2.3, where serial numbers do not help"},
      &UsbSettings::port},
-    {{"counter", "", std::int64_t{0}, 0, 1, "the counter that the cup is connected to"}, of(&DaqWiring::counter)},
+    {{"counter", "", std::int64_t{0}, 0, 1, "the counter that the cup is connected to"},
+     of_wiring(&DaqWiring::counter)},
     {{"metres_per_pulse", "m", 0.1, 0.001, 20.0, "the cup's slope: m/s for each pulse per second"},
-     of(&CupCalibration::metres_per_pulse)},
-    {{"offset", "m/s", 0.0, -5.0, 5.0, "the cup's offset: added while it turns"}, of(&CupCalibration::offset_m_s)},
+     of_cup(&CupCalibration::metres_per_pulse)},
+    {{"offset", "m/s", 0.0, -5.0, 5.0, "the cup's offset: added while it turns"}, of_cup(&CupCalibration::offset_m_s)},
     {{"window_pulses", "", std::int64_t{4}, 1, 100000, "pulses per reading; more give smoother, but later speeds"},
-     of(&CupCalibration::enough_pulses)},
+     of_cup(&CupCalibration::enough_pulses)},
     {{"window", "s", 1.0, 0.05, 60.0, "longest wait for these pulses, and so the longest interval between readings"},
-     of(&CupCalibration::longest_window_s)},
+     of_cup(&CupCalibration::longest_window_s)},
     {{"sample_rate", "Hz", 10.0, 0.2, 100.0, "how often the counter and the vane are read"},
      &UsbSettings::period,
      [](double rate_hz) { return from_seconds(1.0 / rate_hz); }},
     {{"vane_channel", "", std::int64_t{0}, -1, 7,
       "the analogue input that the vane's wiper is connected to; -1: there is no vane"},
-     of(&DaqWiring::vane_channel),
+     of_wiring(&DaqWiring::vane_channel),
      channel_of},
     {{"vane_start", "deg", 0.0, -360.0, 360.0,
       "the direction at the beginning of the vane's track, where the voltage is lowest"},
-     of(&VaneCalibration::start_deg)},
+     of_vane(&VaneCalibration::start_deg)},
     {{"vane_span", "deg", 356.0, 1.0, 360.0,
       "the angle of the track, clockwise; the rest of the circle is its dead band, without direction"},
-     of(&VaneCalibration::electrical_deg)},
+     of_vane(&VaneCalibration::electrical_deg)},
     {{"vane_lowest", "", 0.0, 0.0, 1.0, "share of the reference voltage at the beginning of the track"},
-     of(&VaneCalibration::lowest_ratio)},
+     of_vane(&VaneCalibration::lowest_ratio)},
     {{"vane_highest", "", 1.0, 0.0, 1.0, "share of the reference voltage at its end"},
-     of(&VaneCalibration::highest_ratio)},
+     of_vane(&VaneCalibration::highest_ratio)},
     {{"reference_voltage", "V", 5.0, 0.1, 20.0, "voltage across the track, where it is not measured"},
      &UsbSettings::reference_v},
     {{"reference_channel", "", std::int64_t{-1}, -1, 7,
       "analogue input that measures this voltage, since the 5 V of a USB port are not exact; -1: none"},
-     of(&DaqWiring::reference_channel),
+     of_wiring(&DaqWiring::reference_channel),
      channel_of},
     {{"response_timeout", "s", 0.5, 0.01, 10.0, "longest wait for a reply"}, &UsbSettings::timeout, from_seconds},
 };

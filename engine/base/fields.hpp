@@ -57,12 +57,30 @@ void limit(Member& member, const Parameter& parameter, const Member& otherwise) 
   }
 }
 
+/// The member that is reached from `settings` by one pointer after the other.
+template <class Settings>
+Settings& follow(Settings& settings) noexcept {
+  return settings;
+}
+template <class Settings, class First, class... Rest>
+auto& follow(Settings& settings, First first, Rest... rest) noexcept {
+  return follow(std::invoke(first, settings), rest...);
+}
+
 /// What a function takes, as a ParameterValue holds it.
 template <class Returned, class Argument>
 std::conditional_t<std::is_same_v<Argument, std::string_view>, std::string, std::remove_cvref_t<Argument>> argument_of(
     const std::function<Returned(Argument)>&);
 
 }  // namespace fields
+
+/// A member of a member, and so on, for a Field: member_of(&WindTable::wind, &WindConfig::gustiness).
+template <class... Members>
+constexpr auto member_of(Members... members) {
+  return [members...](auto& settings) -> auto& {
+    return fields::follow(settings, members...);
+  };
+}
 
 /// A key of a table of settings, spelled once: what it is, and the member of S that its value fills. Of S only what the
 /// keys fill changes.

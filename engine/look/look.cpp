@@ -30,8 +30,7 @@ const Fields<Look>& look_fields() {
       {{.name = "sun",
         .default_value = std::string("evening"),
         .help = "\"evening\": always low in the south-west; \"time\": where sun and moon are at a place and time; "
-                "\"fixed\": "
-                "where sun_height and sun_azimuth say",
+                "\"fixed\": where sun_height and sun_azimuth say",
         .choices = kSuns,
         .left_out = "\"time\" where a place or a time is given, \"fixed\" where a height or an azimuth is, otherwise "
                     "\"evening\""},

@@ -184,8 +184,8 @@ const Fields<OutputKeys>& output_fields() {
   return kFields;
 }
 
-auto of(double Sides::*member) {
-  return [member](Window& window) -> double& { return window.blend.*member; };
+auto of(auto member) {
+  return member_of(&Window::blend, member);
 }
 
 const Fields<Window>& window_fields() {

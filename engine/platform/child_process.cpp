@@ -15,15 +15,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "engine/platform/descriptor.hpp"
+
 namespace yuragi::platform {
 namespace {
 
 constexpr int kNotStarted = 127;
 constexpr int kKillTakes_ms = 400;
-
-void close_if_open(int& descriptor) noexcept {
-  if (descriptor >= 0) ::close(std::exchange(descriptor, -1));
-}
 
 /// The words as exec takes them, which refer to them.
 std::vector<char*> pointers_to(const std::vector<std::string>& words) {
@@ -132,17 +130,19 @@ ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
 }
 
 void ChildProcess::let_go() noexcept {
-  if (patience_ms_ > 0 && process_ > 0 && !reap(WNOHANG)) {
+  if (patience_ms_ > 0 && !end()) {
     signal(SIGTERM);
-    pollfd waiting{descriptor_, POLLIN, 0};
-    ::poll(&waiting, 1, patience_ms_);
+    end(patience_ms_);
   }
-  if (process_ > 0 && !reap(WNOHANG)) {
+  if (!end()) {
     signal(SIGKILL);
-    // A killed process is gone within a moment, unless a driver of the system holds it.
-    pollfd waiting{descriptor_, POLLIN, 0};
-    if (descriptor_ >= 0) ::poll(&waiting, 1, kKillTakes_ms);
-    reap(descriptor_ >= 0 ? WNOHANG : 0);
+    // A killed process is gone within a moment, unless a driver of the system holds it. One that did not begin has
+    // ended.
+    if (descriptor_ >= 0) {
+      end(kKillTakes_ms);
+    } else {
+      wait();
+    }
   }
   close_if_open(descriptor_);
 }
@@ -160,7 +160,11 @@ bool ChildProcess::reap(int options) {
   return true;
 }
 
-std::optional<ChildEnd> ChildProcess::end() {
+std::optional<ChildEnd> ChildProcess::end(int most_ms) {
+  if (most_ms > 0 && process_ > 0) {
+    pollfd waiting{descriptor_, POLLIN, 0};
+    ::poll(&waiting, 1, most_ms);
+  }
   return reap(WNOHANG) ? std::optional(end_) : std::nullopt;
 }
 

@@ -52,8 +52,8 @@ class ChildProcess {
   /// Readable when it has ended.
   int descriptor() const noexcept { return descriptor_; }
 
-  /// How it has ended; nothing: it still runs.
-  std::optional<ChildEnd> end();
+  /// How it has ended, waiting for at most so long; nothing: it still runs.
+  std::optional<ChildEnd> end(int most_ms = 0);
 
   /// Waits until it has ended.
   ChildEnd wait();

@@ -9,20 +9,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "engine/platform/descriptor.hpp"
+
 namespace yuragi::platform {
 
 namespace {
-
-/// Closes it.
-struct Descriptor {
-  explicit Descriptor(int opened) : value(opened) {}
-  ~Descriptor() {
-    if (value >= 0) close(value);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  const int value;
-};
 
 FailureError cannot_create(const std::string& message) {
   return FailureError({message, FailureKind::kCannotCreate});
@@ -49,7 +40,7 @@ OutputFile::OutputFile(std::filesystem::path file, bool force, std::span<const s
   working_path_ = file_.string() + ".part-" + std::to_string(getpid());
   // SQLite would take them for the new file's.
   for (const std::string_view suffix : side_suffixes_) {
-    const std::string beside = file_.string() + std::string(suffix);
+    const std::string beside = std::string(file_.string()).append(suffix);
     if (!std::filesystem::exists(beside, error)) continue;
     throw cannot_create(name + ": is being recorded, or the recorder was killed (" + beside +
                         " exists); name another file");
@@ -70,8 +61,8 @@ OutputFile::~OutputFile() {
 
 Result<void, Failure> OutputFile::commit() {
   // The content must reach the disk before the name does.
-  if (const Descriptor written(open(working_path_.c_str(), O_RDONLY | O_CLOEXEC)); written.value >= 0)
-    fsync(written.value);
+  if (const Descriptor written(open(working_path_.c_str(), O_RDONLY | O_CLOEXEC)); written.get() >= 0)
+    fsync(written.get());
   std::error_code error;
   std::filesystem::rename(working_path_, file_, error);
   if (error) return Failure{file_.string() + ": " + error.message(), FailureKind::kCannotCreate};
@@ -86,15 +77,15 @@ Result<std::string, Failure> read_whole(const std::filesystem::path& file, std::
     return Failure{"cannot be read: " + std::generic_category().message(error), FailureKind::kNoInput};
   };
   const Descriptor in(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY));
-  if (in.value < 0) return failure_of(errno);
+  if (in.get() < 0) return failure_of(errno);
   struct stat status {};
-  if (fstat(in.value, &status) != 0) return failure_of(errno);
+  if (fstat(in.get(), &status) != 0) return failure_of(errno);
   if (!S_ISREG(status.st_mode))
     return Failure{"is no regular file, but a folder, a pipe or a device", FailureKind::kNoInput};
   std::string text(most_bytes + 1, '\0');
   std::size_t length = 0;
   while (length < text.size()) {
-    const ssize_t count = read(in.value, text.data() + length, text.size() - length);
+    const ssize_t count = read(in.get(), text.data() + length, text.size() - length);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return failure_of(errno);
     if (count == 0) break;
@@ -113,11 +104,11 @@ Result<void, Failure> write_whole(const std::filesystem::path& file, std::string
     return Failure{file.string() + ": " + what, FailureKind::kCannotCreate};
   };
   const Descriptor out(open(output.working_path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-  if (out.value < 0) return fail("cannot be written: " + std::generic_category().message(errno));
-  if (permissions && fchmod(out.value, static_cast<mode_t>(*permissions)) != 0)
+  if (out.get() < 0) return fail("cannot be written: " + std::generic_category().message(errno));
+  if (permissions && fchmod(out.get(), static_cast<mode_t>(*permissions)) != 0)
     return fail("its permissions cannot be set: " + std::generic_category().message(errno));
   while (!text.empty()) {
-    const ssize_t count = write(out.value, text.data(), text.size());
+    const ssize_t count = write(out.get(), text.data(), text.size());
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return fail("cannot be written: " + std::generic_category().message(errno));
     text.remove_prefix(static_cast<std::size_t>(count));

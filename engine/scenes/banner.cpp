@@ -41,7 +41,7 @@
 namespace yuragi::scenes {
 namespace {
 
-/// kBannerFields says what each means.
+/// kBannerFields defines each.
 struct BannerSettings {
   std::size_t columns;
   std::size_t rows;

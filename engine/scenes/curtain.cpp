@@ -47,7 +47,7 @@
 namespace yuragi::scenes {
 namespace {
 
-/// kCurtainFields says what each means.
+/// kCurtainFields defines each.
 struct CurtainSettings {
   std::size_t columns;
   std::size_t rows;

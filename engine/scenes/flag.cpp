@@ -54,7 +54,7 @@
 namespace yuragi::scenes {
 namespace {
 
-/// kFlagFields says what each means.
+/// kFlagFields defines each.
 struct FlagSettings {
   std::size_t columns;
   std::size_t rows;

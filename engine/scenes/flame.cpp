@@ -89,7 +89,7 @@ constexpr std::array<std::string_view, 2> kFlameForms = {"texture", "shape"};
 
 using namespace std::string_literals;
 
-/// kFlameFields says what each means.
+/// kFlameFields defines each.
 struct FlameSettings {
   bool is_panel;
   std::size_t columns;

@@ -73,7 +73,7 @@ constexpr double kMostLong = 0.8;
 /// Gusts of the water's own, where the wind brings none: their standard deviation, as a part of the wind.
 constexpr double kOwnGusts = 0.2;
 
-/// kRippleFields says what each means.
+/// kRippleFields defines each.
 struct RippleSettings {
   std::size_t columns;
   std::size_t rows;

@@ -199,11 +199,7 @@ double StrandSway::largest_joint_step_m(double dt_s) const noexcept {
 }
 
 Fields<StrandSwaySpec> strand_sway_fields(const StrandSwaySpec& defaults) {
-  const auto of_noise = [](auto CarriedNoiseSpec::*member) {
-    return [member](StrandSwaySpec & spec) -> auto& {
-      return spec.noise.*member;
-    };
-  };
+  const auto of_noise = [](auto member) { return member_of(&StrandSwaySpec::noise, member); };
   const auto are_two = [](std::int64_t tiles) { return tiles == 2; };
   return {
       {{"max_bend", "deg", defaults.max_bend_rad / kRadPerDeg, 0, 170, "how far the strongest wind bends a tip"},

@@ -53,7 +53,7 @@ namespace {
 
 using namespace std::string_literals;
 
-/// kTreeFields says what each means.
+/// kTreeFields defines each.
 struct TreeSettings {
   const TreeSpecies* species;
   TreeSpec model;
@@ -70,13 +70,11 @@ struct TreeSettings {
   bool is_bare() const noexcept { return foliage == pose::FoliageColor::kBare; }
 };
 
-template <class Member>
-auto of_model(Member TreeSpec::*member) {
-  return [member](TreeSettings& tree) -> Member& { return tree.model.*member; };
+auto of_model(auto member) {
+  return member_of(&TreeSettings::model, member);
 }
-template <class Member>
-auto of_noise(Member CarriedNoiseSpec::*member) {
-  return [member](TreeSettings& tree) -> Member& { return tree.noise.*member; };
+auto of_noise(auto member) {
+  return member_of(&TreeSettings::noise, member);
 }
 
 const TreeSpecies* species_named(const std::string& name) {

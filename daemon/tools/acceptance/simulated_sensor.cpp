@@ -15,7 +15,7 @@ namespace {
 
 using settings::SensorConfig;
 
-constexpr double kDirectionStep_deg = 1.0;  ///< what a simulated device says is rounded
+constexpr double kDirectionStep_deg = 1.0;  ///< a simulated device rounds to it
 
 /// `north_offset_deg`: what the driver itself adds to directions.
 ExpectedWind expected_wind(const SensorConfig& sensor, double north_offset_deg, double step_m_s) {

@@ -160,12 +160,14 @@ std::string CalibrationSession::progress_line(double elapsed_s, const CollectedR
 }
 
 ParameterValue CalibrationSession::value_now(const settings::ConfigChange& change) const {
-  return (change.table.empty() ? sensor().values : sensor().by_name.at("calibration")).all().at(change.key);
+  return (change.table.empty() ? sensor().values : sensor().by_name.at(settings::kCalibrationTable))
+      .all()
+      .at(change.key);
 }
 
 std::vector<std::string> CalibrationSession::speed_effect(std::span<const settings::ConfigChange> wanted,
                                                           std::span<const double> indicated_m_s) const {
-  ParameterValues changed = sensor().by_name.at("calibration");
+  ParameterValues changed = sensor().by_name.at(settings::kCalibrationTable);
   for (const settings::ConfigChange& change : wanted) {
     if (!change.table.empty()) changed.set(change.key, change.value);
   }

@@ -9,6 +9,7 @@
 #include "daemon/settings/each_value.hpp"
 #include "drivers/sensor/secret_source.hpp"
 #include "engine/base/json_text.hpp"
+#include "engine/platform/secret_file.hpp"
 
 namespace yuragi::daemon::tools::support {
 namespace {
@@ -121,7 +122,7 @@ std::vector<std::string> known_secrets(const settings::Config& config) {
     const auto* text = std::get_if<std::string>(&value);
     if (secret != nullptr && !secret->is_empty()) secrets.push_back(secret->reveal());
     if (text == nullptr || text->empty()) return;
-    if (parameter.is_secret_file) add(drivers::sensor::secret_in_file(*text));
+    if (parameter.is_secret_file) add(platform::secret_in_file(*text));
     if (parameter.name.ends_with("_env")) add(drivers::sensor::secret_in_environment(*text));
   });
   return secrets;

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <utility>
+
+#include <unistd.h>
+
+namespace yuragi::platform {
+
+/// Closes a descriptor, unless it is none (below 0), and makes it none.
+inline void close_if_open(int& descriptor) noexcept {
+  if (descriptor >= 0) ::close(std::exchange(descriptor, -1));
+}
+
+/// A descriptor that is closed with this object; below 0: none.
+class Descriptor {
+ public:
+  explicit Descriptor(int value) noexcept : value_(value) {}
+  ~Descriptor() { reset(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int get() const noexcept { return value_; }
+  void reset() noexcept { close_if_open(value_); }
+
+ private:
+  int value_;
+};
+
+}  // namespace yuragi::platform
