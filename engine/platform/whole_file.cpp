@@ -40,10 +40,12 @@ OutputFile::OutputFile(std::filesystem::path file, bool force, std::span<const s
   working_path_ = file_.string() + ".part-" + std::to_string(getpid());
   // SQLite would take them for the new file's.
   for (const std::string_view suffix : side_suffixes_) {
-    const std::string beside = std::string(file_.string()).append(suffix);
+    const std::string beside = file_.string().append(suffix);
     if (!std::filesystem::exists(beside, error)) continue;
-    throw cannot_create(name + ": is being recorded, or the recorder was killed (" + beside +
-                        " exists); name another file");
+    throw cannot_create(std::string(name)
+                            .append(": is being recorded, or the recorder was killed (")
+                            .append(beside)
+                            .append(" exists); name another file"));
   }
   const auto folder = file_.parent_path();
   if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {

@@ -136,10 +136,11 @@ CollectedReadings CalibrationSession::collect(const std::string& preparation) {
 
 void CalibrationSession::beware(const CollectedReadings& collected) const {
   for (std::size_t index = 0; index < collected.size(); ++index) {
-    const settings::SensorConfig& one = index == 0 ? sensor() : *reference();
-    if (const auto keys = settings_that_differ(one, collected[index]); !keys.empty()) {
+    const settings::SensorConfig* const one = index == 0 ? &sensor() : reference();
+    if (one == nullptr) continue;
+    if (const auto keys = settings_that_differ(*one, collected[index]); !keys.empty()) {
       dialog_.print(fmt::format("Warning: when this was recorded, the driver of \"{}\" had different settings: {}.",
-                                one.name, fmt::join(keys, ", ")));
+                                one->name, fmt::join(keys, ", ")));
     }
   }
   const auto is_simulated = [](const TimedReading& one) {
