@@ -38,7 +38,7 @@ enum class ParameterKind : std::uint8_t { kNumber, kWholeNumber, kYesNo, kText }
 /// A parameter, described by itself, and its value.
 struct ParameterState {
   std::string name;
-  std::string unit;  ///< "m/s"; empty: none
+  std::string unit = {};  ///< "m/s"; empty: none
   ParameterKind kind = ParameterKind::kNumber;
   std::optional<double> min = std::nullopt;  ///< numbers only; nothing: without a limit
   std::optional<double> max = std::nullopt;
