@@ -127,12 +127,21 @@ function(yuragi_kernel target source)
   endforeach()
 endfunction()
 
-# yuragi_table(yuragi_drivers HEADER drivers/sensor/driver.hpp TYPE drivers::sensor::DriverDescription
-#              TABLE drivers::sensor::driver_table ENTRIES drivers::modbus::kModbusDriver ...)
+# yuragi_table(yuragi_daemon_commands HEADER daemon/commands/command.hpp TYPE daemon::commands::Command
+#              TABLE daemon::commands::command_table ENTRIES daemon::commands::kRunCommand ...)
 # Writes the function `std::span<const TYPE* const> TABLE()` over constants `extern const TYPE ENTRY`; all names as seen
-# from namespace yuragi. Static registration would be dropped by the linker; this cannot be.
+# from namespace yuragi. Static registration would be dropped by the linker; this cannot be. Where a table has entries of
+# several folders, each folder lists its own: yuragi_entries(DRIVERS drivers::text::kLineDriver ...), of which a table is
+# made by `ENTRIES_OF DRIVERS`, in the order of the folders.
+function(yuragi_entries list)
+  set_property(GLOBAL APPEND PROPERTY YURAGI_ENTRIES_OF_${list} ${ARGN})
+endfunction()
+
 function(yuragi_table target)
-  cmake_parse_arguments(ARG "" "HEADER;TYPE;TABLE" "ENTRIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "HEADER;TYPE;TABLE;ENTRIES_OF" "ENTRIES" ${ARGN})
+  if(ARG_ENTRIES_OF)
+    get_property(ARG_ENTRIES GLOBAL PROPERTY YURAGI_ENTRIES_OF_${ARG_ENTRIES_OF})
+  endif()
   set(declarations "")
   set(pointers "")
   foreach(entry IN LISTS ARG_ENTRIES)

@@ -48,7 +48,7 @@ enum class CalibrationMeans : std::uint8_t {
   kSoundLevel,  ///< by the level of its sound beside another anemometer
 };
 
-/// A family of sensors: one constant `kXDriver` in its own file, listed in drivers/CMakeLists.txt.
+/// A family of sensors: one constant `kXDriver` in its own file, listed in its folder's CMakeLists.txt.
 struct DriverDescription {
   std::string_view name;
   std::string_view summary;
