@@ -5,7 +5,14 @@
 
 #include "engine/base/version.hpp"
 #include "engine/base/word_suggestion.hpp"
-#include "simulators/commands.hpp"
+#include "simulators/core/commands.hpp"
+#include "simulators/davis/commands.hpp"
+#include "simulators/lufft/commands.hpp"
+#include "simulators/microphone/commands.hpp"
+#include "simulators/modbus/commands.hpp"
+#include "simulators/network/commands.hpp"
+#include "simulators/text/commands.hpp"
+#include "simulators/usb/commands.hpp"
 
 namespace {
 
@@ -32,8 +39,8 @@ int run(int argc, char** argv) {
   yuragi::simulators::network::add_tempest_command(app);
   yuragi::simulators::usb::add_hid_command(app);
   yuragi::simulators::usb::add_usb_command(app);
-  yuragi::simulators::add_recording_command(app);
-  yuragi::simulators::add_scenario_command(app);
+  yuragi::simulators::core::add_recording_command(app);
+  yuragi::simulators::core::add_scenario_command(app);
   try {
     app.parse(argc, argv);
     return 0;

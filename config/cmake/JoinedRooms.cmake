@@ -1,6 +1,6 @@
 # Which rooms all presets but dev compile as one file: those of one program that include the same libraries. Rooms of a group are all in
 # YURAGI_HOT_ROOMS (Yuragi.cmake), or none of them is. The engine's stay apart: they are small, and all programs share them.
-yuragi_join(simulators yuragi_simulators yuragi_simulators_davis yuragi_simulators_lufft yuragi_simulators_microphone
+yuragi_join(simulators yuragi_simulators_core yuragi_simulators_davis yuragi_simulators_lufft yuragi_simulators_microphone
   yuragi_simulators_modbus yuragi_simulators_network yuragi_simulators_text yuragi_simulators_usb yuragi-sim)
 yuragi_join(decode yuragi_drivers_decode yuragi_drivers_decode_davis yuragi_drivers_decode_hid yuragi_drivers_decode_lufft
   yuragi_drivers_decode_marine yuragi_drivers_decode_microphone yuragi_drivers_decode_modbus yuragi_drivers_decode_network

@@ -1,7 +1,7 @@
 #include <memory>
 
-#include "simulators/commands.hpp"
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
+#include "simulators/davis/commands.hpp"
 #include "simulators/davis/vantage_console.hpp"
 #include "simulators/text/text_options.hpp"
 
@@ -12,7 +12,7 @@ struct DavisOptions {
   text::SerialOrTcpOptions line;
   VantageConsoleOptions console;
   bool has_old_firmware = false;
-  CommonOptions common;
+  core::CommonOptions common;
 
   void run() const {
     VantageConsoleOptions made = console;

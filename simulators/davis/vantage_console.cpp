@@ -52,21 +52,21 @@ void put_word(std::string& packet, std::size_t at, long value) {
 }  // namespace
 
 VantageConsole::VantageConsole(std::unique_ptr<text::TextWire> wire, const VantageConsoleOptions& options,
-                               MeasuredWind wind)
+                               core::MeasuredWind wind)
     : wire_(std::move(wire)),
       options_(options),
       wind_(std::move(wind)),
       random_(options.garbage_seed),
-      known_faults_{FaultKind::kSilence,     FaultKind::kFreeze, FaultKind::kSpike,
-                    FaultKind::kGarbage,     FaultKind::kSplit,  FaultKind::kPartial,
-                    FaultKind::kBadChecksum, FaultKind::kLate,   FaultKind::kException} {
+      known_faults_{core::FaultKind::kSilence,     core::FaultKind::kFreeze, core::FaultKind::kSpike,
+                    core::FaultKind::kGarbage,     core::FaultKind::kSplit,  core::FaultKind::kPartial,
+                    core::FaultKind::kBadChecksum, core::FaultKind::kLate,   core::FaultKind::kException} {
   const auto more = wire_->known_faults();
   known_faults_.insert(known_faults_.end(), more.begin(), more.end());
 }
 
-void VantageConsole::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+void VantageConsole::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   fault_ = fault;
-  if (fault == FaultKind::kDisconnect || fault == FaultKind::kUnplug) {
+  if (fault == core::FaultKind::kDisconnect || fault == core::FaultKind::kUnplug) {
     wire_->take_away();
     waiting_.clear();
     command_.clear();
@@ -88,7 +88,7 @@ void VantageConsole::serve(std::span<const int> ready, double time_s, std::optio
 }
 
 /// What wakes it is lost; a command ends with LF or CR, and an empty one ends the packets.
-void VantageConsole::receive(std::string_view bytes, double time_s, std::optional<FaultKind> fault) {
+void VantageConsole::receive(std::string_view bytes, double time_s, std::optional<core::FaultKind> fault) {
   for (const char c : bytes) {
     last_command_s_ = time_s;
     if (!std::exchange(is_awake_, true)) continue;
@@ -100,10 +100,10 @@ void VantageConsole::receive(std::string_view bytes, double time_s, std::optiona
   }
 }
 
-void VantageConsole::obey(const std::string& command, double time_s, std::optional<FaultKind> fault) {
+void VantageConsole::obey(const std::string& command, double time_s, std::optional<core::FaultKind> fault) {
   packets_left_ = 0;
   if (command.empty()) return reply(kAwake, time_s, fault);
-  if (fault == FaultKind::kException) return reply({kNak}, time_s, fault);
+  if (fault == core::FaultKind::kException) return reply({kNak}, time_s, fault);
   if (command == "TEST") return reply(std::string(kAwake) + "TEST" + kAwake, time_s, fault);
   if (command == "EEBRD 2B 01") {
     return reply(kAck + with_crc({static_cast<char>(options_.setup_bits)}), time_s, fault);
@@ -128,20 +128,20 @@ bool VantageConsole::begin_packets(const std::string& command, double time_s) {
   return true;
 }
 
-void VantageConsole::send_packet(double time_s, std::optional<FaultKind> fault) {
+void VantageConsole::send_packet(double time_s, std::optional<core::FaultKind> fault) {
   --packets_left_;
   moment_ = wind_.at(time_s, fault);
-  if (fault == FaultKind::kSilence) return;
+  if (fault == core::FaultKind::kSilence) return;
   std::string bytes = packet(is_loop2_next_);
   if (packet_kinds_ == 3) is_loop2_next_ = !is_loop2_next_;
   ++sent_;
-  if (fault == FaultKind::kBadChecksum) bytes.back() = static_cast<char>(~bytes.back());
-  if (fault == FaultKind::kPartial) bytes.resize(bytes.size() * 2 / 3);
-  if (fault == FaultKind::kGarbage) {
+  if (fault == core::FaultKind::kBadChecksum) bytes.back() = static_cast<char>(~bytes.back());
+  if (fault == core::FaultKind::kPartial) bytes.resize(bytes.size() * 2 / 3);
+  if (fault == core::FaultKind::kGarbage) {
     bytes.resize(kConsoleGarbage);
     std::ranges::generate(bytes, [this] { return static_cast<char>(random_()); });
   }
-  if (fault != FaultKind::kSplit) return send_after(0.0, bytes, time_s);
+  if (fault != core::FaultKind::kSplit) return send_after(0.0, bytes, time_s);
   const std::size_t size = bytes.size() / kConsolePieces + 1;
   for (std::size_t piece = 0; piece * size < bytes.size(); ++piece) {
     send_after(static_cast<double>(piece) * kConsolePieceGap_s, bytes.substr(piece * size, size), time_s);
@@ -175,9 +175,9 @@ std::string VantageConsole::packet(bool is_loop2) const {
   return with_crc(bytes + kAwake);
 }
 
-void VantageConsole::reply(const std::string& bytes, double time_s, std::optional<FaultKind> fault) {
-  if (fault == FaultKind::kSilence) return;
-  send_after(fault == FaultKind::kLate ? kConsoleLate_s : 0.0, bytes, time_s);
+void VantageConsole::reply(const std::string& bytes, double time_s, std::optional<core::FaultKind> fault) {
+  if (fault == core::FaultKind::kSilence) return;
+  send_after(fault == core::FaultKind::kLate ? kConsoleLate_s : 0.0, bytes, time_s);
 }
 
 /// Bytes keep their order.

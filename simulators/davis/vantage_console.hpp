@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "simulators/played_wind.hpp"
-#include "simulators/simulator.hpp"
+#include "simulators/core/played_wind.hpp"
+#include "simulators/core/simulator.hpp"
 #include "simulators/text/text_wire.hpp"
 
 namespace yuragi::simulators::davis {
@@ -27,26 +27,26 @@ struct VantageConsoleOptions {
 /// The console of a Davis station with its data logger, as the maker's manual has it ("Vantage Pro, Vantage Pro2 and
 /// Vantage Vue Serial Communication Reference Manual", 2.6.1): asleep until it is woken, and again after two minutes
 /// without a command. It knows the commands LOOP, LPS, EEBRD of the setup bits, and TEST.
-class VantageConsole final : public Simulator {
+class VantageConsole final : public core::Simulator {
  public:
-  VantageConsole(std::unique_ptr<text::TextWire> wire, const VantageConsoleOptions& options, MeasuredWind wind);
+  VantageConsole(std::unique_ptr<text::TextWire> wire, const VantageConsoleOptions& options, core::MeasuredWind wind);
 
   const text::TextWire& wire() const noexcept { return *wire_; }
   /// Is it sending packets now? How many it was asked for and has not sent.
   int packets_left() const noexcept { return packets_left_; }
 
-  std::span<const FaultKind> known_faults() const override { return known_faults_; }
+  std::span<const core::FaultKind> known_faults() const override { return known_faults_; }
   std::vector<int> descriptors() const override { return wire_->descriptors(); }
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override;
 
  private:
-  void receive(std::string_view bytes, double time_s, std::optional<FaultKind> fault);
-  void obey(const std::string& command, double time_s, std::optional<FaultKind> fault);
+  void receive(std::string_view bytes, double time_s, std::optional<core::FaultKind> fault);
+  void obey(const std::string& command, double time_s, std::optional<core::FaultKind> fault);
   bool begin_packets(const std::string& command, double time_s);
-  void send_packet(double time_s, std::optional<FaultKind> fault);
+  void send_packet(double time_s, std::optional<core::FaultKind> fault);
   std::string packet(bool is_loop2) const;
-  void reply(const std::string& bytes, double time_s, std::optional<FaultKind> fault);
+  void reply(const std::string& bytes, double time_s, std::optional<core::FaultKind> fault);
   void send_after(double delay_s, const std::string& bytes, double time_s);
 
   /// Bytes that wait for their moment.
@@ -57,9 +57,9 @@ class VantageConsole final : public Simulator {
 
   std::unique_ptr<text::TextWire> wire_;
   VantageConsoleOptions options_;
-  MeasuredWind wind_;
+  core::MeasuredWind wind_;
   std::mt19937_64 random_;
-  std::vector<FaultKind> known_faults_;
+  std::vector<core::FaultKind> known_faults_;
   std::string command_;
   std::deque<Waiting> waiting_;
   bool is_awake_ = false;
@@ -68,9 +68,9 @@ class VantageConsole final : public Simulator {
   unsigned packet_kinds_ = 1;  // bit 0: LOOP, bit 1: LOOP2; both: in turn
   bool is_loop2_next_ = false;
   double next_packet_s_ = 0.0;
-  PlayedMoment moment_;
+  core::PlayedMoment moment_;
   std::uint64_t sent_ = 0;
-  std::optional<FaultKind> fault_;
+  std::optional<core::FaultKind> fault_;
 };
 
 }  // namespace yuragi::simulators::davis

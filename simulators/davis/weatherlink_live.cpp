@@ -21,21 +21,22 @@ constexpr double kLiveLate_s = 8.0;
 }  // namespace
 
 WeatherLinkLive::WeatherLinkLive(std::unique_ptr<text::TextWire> http, std::unique_ptr<text::TextWire> broadcasts,
-                                 const WeatherLinkLiveOptions& options, MeasuredWind wind)
+                                 const WeatherLinkLiveOptions& options, core::MeasuredWind wind)
     : http_(std::move(http)),
       broadcasts_(std::move(broadcasts)),
       options_(options),
       wind_(std::move(wind)),
       random_(options.garbage_seed),
-      known_faults_{FaultKind::kSilence, FaultKind::kFreeze,  FaultKind::kSpike, FaultKind::kGarbage,
-                    FaultKind::kPartial, FaultKind::kWrongId, FaultKind::kLate,  FaultKind::kException} {
+      known_faults_{core::FaultKind::kSilence, core::FaultKind::kFreeze,   core::FaultKind::kSpike,
+                    core::FaultKind::kGarbage, core::FaultKind::kPartial,  core::FaultKind::kWrongId,
+                    core::FaultKind::kLate,    core::FaultKind::kException} {
   const auto more = http_->known_faults();
   known_faults_.insert(known_faults_.end(), more.begin(), more.end());
 }
 
-void WeatherLinkLive::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+void WeatherLinkLive::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   fault_ = fault;
-  if (fault == FaultKind::kDisconnect || fault == FaultKind::kUnplug) {
+  if (fault == core::FaultKind::kDisconnect || fault == core::FaultKind::kUnplug) {
     http_->take_away();
     broadcasts_->take_away();
     waiting_.clear();
@@ -60,9 +61,9 @@ void WeatherLinkLive::serve(std::span<const int> ready, double time_s, std::opti
   for (; next_broadcast_s_ <= time_s; next_broadcast_s_ += options_.interval_s) broadcast(time_s, fault);
 }
 
-void WeatherLinkLive::obey(std::string_view request, double time_s, std::optional<FaultKind> fault) {
+void WeatherLinkLive::obey(std::string_view request, double time_s, std::optional<core::FaultKind> fault) {
   const std::string line(request.substr(0, request.find('\r')));
-  if (fault == FaultKind::kException) {
+  if (fault == core::FaultKind::kException) {
     return reply(500, R"({"data":null,"error":{"code":500,"message":"Internal Server Error"}})", time_s, fault);
   }
   if (line == "GET /v1/current_conditions HTTP/1.1") {
@@ -85,11 +86,11 @@ void WeatherLinkLive::obey(std::string_view request, double time_s, std::optiona
         time_s, fault);
 }
 
-void WeatherLinkLive::broadcast(double /*time_s*/, std::optional<FaultKind> fault) {
-  if (fault == FaultKind::kSilence) return;
+void WeatherLinkLive::broadcast(double /*time_s*/, std::optional<core::FaultKind> fault) {
+  if (fault == core::FaultKind::kSilence) return;
   std::string message = conditions(true);
-  if (fault == FaultKind::kPartial) message.resize(message.size() * 2 / 3);
-  broadcasts_->write(fault == FaultKind::kGarbage ? garbage() : message);
+  if (fault == core::FaultKind::kPartial) message.resize(message.size() * 2 / 3);
+  broadcasts_->write(fault == core::FaultKind::kGarbage ? garbage() : message);
   ++sent_;
 }
 
@@ -109,17 +110,17 @@ std::string WeatherLinkLive::conditions(bool is_broadcast) const {
                      R"(,{"lsid":288311,"data_structure_type":3,"bar_sea_level":29.921,"bar_absolute":29.315})";
   return fmt::format(
       R"({{"did":"{}","ts":1532031640,"conditions":[{{"lsid":48308,"data_structure_type":1,"txid":1,{}{}}}{}]}})",
-      is_broadcast && fault_ == FaultKind::kWrongId ? "001D0A7000FF" : "001D0A700002", station, wind, others);
+      is_broadcast && fault_ == core::FaultKind::kWrongId ? "001D0A7000FF" : "001D0A700002", station, wind, others);
 }
 
-void WeatherLinkLive::reply(int status, const std::string& body, double time_s, std::optional<FaultKind> fault) {
-  if (fault == FaultKind::kSilence) return;
+void WeatherLinkLive::reply(int status, const std::string& body, double time_s, std::optional<core::FaultKind> fault) {
+  if (fault == core::FaultKind::kSilence) return;
   std::string bytes = fmt::format(
       "HTTP/1.1 {} {}\r\nContent-Type: application/json\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{}", status,
       status == 200 ? "OK" : "Error", body.size(), body);
-  if (fault == FaultKind::kPartial) bytes.resize(bytes.size() * 2 / 3);
-  if (fault == FaultKind::kGarbage) bytes = garbage();
-  waiting_.push_back({fault == FaultKind::kLate ? time_s + kLiveLate_s : time_s, bytes});
+  if (fault == core::FaultKind::kPartial) bytes.resize(bytes.size() * 2 / 3);
+  if (fault == core::FaultKind::kGarbage) bytes = garbage();
+  waiting_.push_back({fault == core::FaultKind::kLate ? time_s + kLiveLate_s : time_s, bytes});
 }
 
 std::string WeatherLinkLive::garbage() {

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "simulators/played_wind.hpp"
-#include "simulators/simulator.hpp"
+#include "simulators/core/played_wind.hpp"
+#include "simulators/core/simulator.hpp"
 #include "simulators/text/text_wire.hpp"
 
 namespace yuragi::simulators::davis {
@@ -24,10 +24,10 @@ struct WeatherLinkLiveOptions {
 
 /// A WeatherLink Live with one station, transmitter 1, as the maker's "WeatherLink Live Local API" has it: a server of
 /// HTTP, which replies with current conditions, and is asked there for broadcasts, which end by themselves.
-class WeatherLinkLive final : public Simulator {
+class WeatherLinkLive final : public core::Simulator {
  public:
   WeatherLinkLive(std::unique_ptr<text::TextWire> http, std::unique_ptr<text::TextWire> broadcasts,
-                  const WeatherLinkLiveOptions& options, MeasuredWind wind);
+                  const WeatherLinkLiveOptions& options, core::MeasuredWind wind);
 
   const text::TextWire& http() const noexcept { return *http_; }
   /// How often it was asked for broadcasts.
@@ -35,16 +35,16 @@ class WeatherLinkLive final : public Simulator {
   /// How long after the start its broadcasts end.
   double broadcasts_until_s() const noexcept { return broadcasts_until_s_; }
 
-  std::span<const FaultKind> known_faults() const override { return known_faults_; }
+  std::span<const core::FaultKind> known_faults() const override { return known_faults_; }
   std::vector<int> descriptors() const override { return http_->descriptors(); }
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override;
 
  private:
-  void obey(std::string_view request, double time_s, std::optional<FaultKind> fault);
-  void broadcast(double time_s, std::optional<FaultKind> fault);
+  void obey(std::string_view request, double time_s, std::optional<core::FaultKind> fault);
+  void broadcast(double time_s, std::optional<core::FaultKind> fault);
   std::string conditions(bool is_broadcast) const;
-  void reply(int status, const std::string& body, double time_s, std::optional<FaultKind> fault);
+  void reply(int status, const std::string& body, double time_s, std::optional<core::FaultKind> fault);
   std::string garbage();
 
   /// Bytes that wait for their moment.
@@ -56,17 +56,17 @@ class WeatherLinkLive final : public Simulator {
   std::unique_ptr<text::TextWire> http_;
   std::unique_ptr<text::TextWire> broadcasts_;
   WeatherLinkLiveOptions options_;
-  MeasuredWind wind_;
+  core::MeasuredWind wind_;
   std::mt19937_64 random_;
-  std::vector<FaultKind> known_faults_;
+  std::vector<core::FaultKind> known_faults_;
   std::string received_;
   std::deque<Waiting> waiting_;
   double broadcasts_until_s_ = 0.0;
   double next_broadcast_s_ = 0.0;
   int broadcast_requests_ = 0;
-  PlayedMoment moment_;
+  core::PlayedMoment moment_;
   std::uint64_t sent_ = 0;
-  std::optional<FaultKind> fault_;
+  std::optional<core::FaultKind> fault_;
 };
 
 }  // namespace yuragi::simulators::davis

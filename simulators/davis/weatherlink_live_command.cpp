@@ -1,8 +1,8 @@
 #include <memory>
 #include <string>
 
-#include "simulators/commands.hpp"
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
+#include "simulators/davis/commands.hpp"
 #include "simulators/davis/weatherlink_live.hpp"
 #include "simulators/text/text_options.hpp"
 
@@ -13,11 +13,11 @@ struct LiveOptions {
   std::string tcp;
   std::string udp = "127.0.0.1:22222";
   WeatherLinkLiveOptions live;
-  CommonOptions common;
+  core::CommonOptions common;
 
   void run() const {
-    const Address http = address_option("--tcp", tcp);
-    const Address broadcasts = address_option("--udp", udp);
+    const Address http = core::address_option("--tcp", tcp);
+    const Address broadcasts = core::address_option("--udp", udp);
     WeatherLinkLiveOptions made = live;
     made.broadcast_port = broadcasts.port;
     made.garbage_seed = common.synthetic.seed;

@@ -1,7 +1,7 @@
 #include <memory>
 
-#include "simulators/commands.hpp"
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
+#include "simulators/lufft/commands.hpp"
 #include "simulators/lufft/umb_station.hpp"
 #include "simulators/text/text_options.hpp"
 
@@ -12,7 +12,7 @@ struct UmbOptions {
   text::SerialOrTcpOptions line;
   UmbStationOptions station;
   bool has_no_fast_channels = false;
-  CommonOptions common;
+  core::CommonOptions common;
 
   void run() const {
     UmbStationOptions made = station;

@@ -53,21 +53,22 @@ unsigned umb_crc(std::string_view bytes) {
 
 }  // namespace
 
-UmbStation::UmbStation(std::unique_ptr<text::TextWire> wire, const UmbStationOptions& options, MeasuredWind wind)
+UmbStation::UmbStation(std::unique_ptr<text::TextWire> wire, const UmbStationOptions& options, core::MeasuredWind wind)
     : wire_(std::move(wire)),
       options_(options),
       wind_(std::move(wind)),
       random_(options.garbage_seed),
-      known_faults_{FaultKind::kSilence, FaultKind::kFreeze,   FaultKind::kSpike,       FaultKind::kGarbage,
-                    FaultKind::kSplit,   FaultKind::kPartial,  FaultKind::kBadChecksum, FaultKind::kWrongId,
-                    FaultKind::kLate,    FaultKind::kException} {
+      known_faults_{core::FaultKind::kSilence,     core::FaultKind::kFreeze,  core::FaultKind::kSpike,
+                    core::FaultKind::kGarbage,     core::FaultKind::kSplit,   core::FaultKind::kPartial,
+                    core::FaultKind::kBadChecksum, core::FaultKind::kWrongId, core::FaultKind::kLate,
+                    core::FaultKind::kException} {
   const auto more = wire_->known_faults();
   known_faults_.insert(known_faults_.end(), more.begin(), more.end());
 }
 
-void UmbStation::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+void UmbStation::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   fault_ = fault;
-  if (fault == FaultKind::kDisconnect || fault == FaultKind::kUnplug) {
+  if (fault == core::FaultKind::kDisconnect || fault == core::FaultKind::kUnplug) {
     wire_->take_away();
     waiting_.clear();
     received_.clear();
@@ -86,7 +87,7 @@ void UmbStation::serve(std::span<const int> ready, double time_s, std::optional<
 }
 
 /// Whole frames to this device are answered; all else is passed over.
-void UmbStation::take_requests(double time_s, std::optional<FaultKind> fault) {
+void UmbStation::take_requests(double time_s, std::optional<core::FaultKind> fault) {
   while (true) {
     received_.erase(0, std::min(received_.find('\x01'), received_.size()));
     if (received_.size() < kHeader) return;
@@ -107,7 +108,7 @@ void UmbStation::take_requests(double time_s, std::optional<FaultKind> fault) {
 }
 
 /// What stands between STX and ETX, for what stood there in the request.
-std::string UmbStation::reply_to(std::string_view command, std::optional<FaultKind> fault) {
+std::string UmbStation::reply_to(std::string_view command, std::optional<core::FaultKind> fault) {
   const std::string head{command[0], kProtocolVersion};
   const std::string_view asked = command.substr(std::min<std::size_t>(command.size(), 2));
   const bool is_one = command[0] == kQueryOne && asked.size() == 2;
@@ -116,7 +117,7 @@ std::string UmbStation::reply_to(std::string_view command, std::optional<FaultKi
   if (!is_one && !is_several) return head + kStatusUnknownCommand;
   ++queries_;
   const bool is_too_long = options_.refuses_long_query && asked.size() > 5;
-  if (fault == FaultKind::kException || is_too_long) return head + kStatusInvalidParameter;
+  if (fault == core::FaultKind::kException || is_too_long) return head + kStatusInvalidParameter;
   if (is_one) return head + channel(word_at(asked, 0));
   std::string reply = head + '\0' + asked[0];
   for (std::size_t at = 1; at < asked.size(); at += 2) {
@@ -172,8 +173,9 @@ std::optional<double> UmbStation::measured(unsigned number) const {
   }
 }
 
-std::string UmbStation::frame(std::string_view text, std::string_view receiver, std::optional<FaultKind> fault) const {
-  const unsigned id = options_.id + (fault == FaultKind::kWrongId ? 1 : 0);
+std::string UmbStation::frame(std::string_view text, std::string_view receiver,
+                              std::optional<core::FaultKind> fault) const {
+  const unsigned id = options_.id + (fault == core::FaultKind::kWrongId ? 1 : 0);
   std::string bytes{'\x01', kProtocolVersion};
   bytes += receiver;
   bytes += word(options_.device_class * 4096 + id);
@@ -184,16 +186,16 @@ std::string UmbStation::frame(std::string_view text, std::string_view receiver, 
   return bytes + word(umb_crc(bytes)) + '\x04';
 }
 
-void UmbStation::send(std::string reply, double time_s, std::optional<FaultKind> fault) {
-  if (fault == FaultKind::kSilence) return;
-  if (fault == FaultKind::kBadChecksum) reply[reply.size() - 2] = static_cast<char>(~reply[reply.size() - 2]);
-  if (fault == FaultKind::kPartial) reply.resize(reply.size() * 2 / 3);
-  if (fault == FaultKind::kGarbage) {
+void UmbStation::send(std::string reply, double time_s, std::optional<core::FaultKind> fault) {
+  if (fault == core::FaultKind::kSilence) return;
+  if (fault == core::FaultKind::kBadChecksum) reply[reply.size() - 2] = static_cast<char>(~reply[reply.size() - 2]);
+  if (fault == core::FaultKind::kPartial) reply.resize(reply.size() * 2 / 3);
+  if (fault == core::FaultKind::kGarbage) {
     reply.resize(kUmbGarbage);
     std::ranges::generate(reply, [this] { return static_cast<char>(random_()); });
   }
-  if (fault == FaultKind::kLate) return send_after(kUmbLate_s, reply, time_s);
-  if (fault != FaultKind::kSplit) return send_after(0.0, reply, time_s);
+  if (fault == core::FaultKind::kLate) return send_after(kUmbLate_s, reply, time_s);
+  if (fault != core::FaultKind::kSplit) return send_after(0.0, reply, time_s);
   const std::size_t size = reply.size() / kUmbPieces + 1;
   for (std::size_t piece = 0; piece * size < reply.size(); ++piece) {
     send_after(static_cast<double>(piece) * kUmbPieceGap_s, reply.substr(piece * size, size), time_s);

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "simulators/played_wind.hpp"
-#include "simulators/simulator.hpp"
+#include "simulators/core/played_wind.hpp"
+#include "simulators/core/simulator.hpp"
 #include "simulators/text/text_wire.hpp"
 
 namespace yuragi::simulators::lufft {
@@ -29,24 +29,24 @@ struct UmbStationOptions {
 
 /// A device of Lufft's in its binary UMB protocol, as the maker's manuals have it (V200A-UMB manual V25, 20.3; WS
 /// manual, 6.1 to 6.14): it speaks when it is asked, by the commands 23h and 2Fh.
-class UmbStation final : public Simulator {
+class UmbStation final : public core::Simulator {
  public:
-  UmbStation(std::unique_ptr<text::TextWire> wire, const UmbStationOptions& options, MeasuredWind wind);
+  UmbStation(std::unique_ptr<text::TextWire> wire, const UmbStationOptions& options, core::MeasuredWind wind);
 
   const text::TextWire& wire() const noexcept { return *wire_; }
 
-  std::span<const FaultKind> known_faults() const override { return known_faults_; }
+  std::span<const core::FaultKind> known_faults() const override { return known_faults_; }
   std::vector<int> descriptors() const override { return wire_->descriptors(); }
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override;
 
  private:
-  void take_requests(double time_s, std::optional<FaultKind> fault);
-  std::string reply_to(std::string_view command, std::optional<FaultKind> fault);
+  void take_requests(double time_s, std::optional<core::FaultKind> fault);
+  std::string reply_to(std::string_view command, std::optional<core::FaultKind> fault);
   std::string channel(unsigned number) const;
   std::optional<double> measured(unsigned number) const;
-  std::string frame(std::string_view text, std::string_view receiver, std::optional<FaultKind> fault) const;
-  void send(std::string reply, double time_s, std::optional<FaultKind> fault);
+  std::string frame(std::string_view text, std::string_view receiver, std::optional<core::FaultKind> fault) const;
+  void send(std::string reply, double time_s, std::optional<core::FaultKind> fault);
   void send_after(double delay_s, const std::string& bytes, double time_s);
 
   /// Bytes that wait for their moment.
@@ -57,14 +57,14 @@ class UmbStation final : public Simulator {
 
   std::unique_ptr<text::TextWire> wire_;
   UmbStationOptions options_;
-  MeasuredWind wind_;
+  core::MeasuredWind wind_;
   std::mt19937_64 random_;
-  std::vector<FaultKind> known_faults_;
+  std::vector<core::FaultKind> known_faults_;
   std::string received_;
   std::deque<Waiting> waiting_;
-  PlayedMoment moment_;
+  core::PlayedMoment moment_;
   std::uint64_t queries_ = 0;
-  std::optional<FaultKind> fault_;
+  std::optional<core::FaultKind> fault_;
 };
 
 }  // namespace yuragi::simulators::lufft

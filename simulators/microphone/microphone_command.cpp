@@ -2,8 +2,8 @@
 #include <memory>
 #include <string>
 
-#include "simulators/commands.hpp"
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
+#include "simulators/microphone/commands.hpp"
 #include "simulators/microphone/microphone_file.hpp"
 #include "simulators/microphone/microphone_simulator.hpp"
 
@@ -23,7 +23,7 @@ struct MicrophoneCommandOptions {
   MicrophoneOutputs outputs;
   std::string file;
   std::string format = "float32";
-  CommonOptions common;
+  core::CommonOptions common;
 };
 
 void simulate_microphone(MicrophoneCommandOptions options) {

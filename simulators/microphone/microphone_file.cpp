@@ -74,7 +74,7 @@ void put_wav_header(SampleWriter& out, SampleFormat format, const MicrophoneOpti
 }  // namespace
 
 void write_microphone_file(const std::string& path, SampleFormat format, const MicrophoneOptions& options,
-                           MeasuredWind wind, const Faults& faults, double duration_s) {
+                           core::MeasuredWind wind, const core::Faults& faults, double duration_s) {
   const bool is_stdout = path == "-";
   std::signal(SIGPIPE, SIG_IGN);
   const File opened(is_stdout ? nullptr : std::fopen(path.c_str(), "wb"));
@@ -100,7 +100,7 @@ void write_microphone_file(const std::string& path, SampleFormat format, const M
     const auto fault = faults.at(time_s);
     done += count;
     samples.clear();
-    if (fault == FaultKind::kSilence) {
+    if (fault == core::FaultKind::kSilence) {
       samples.resize(count * options.channels);  // a file cannot pause: it is digitally silent
     } else {
       sound.render(wind.at(time_s, fault), count, fault, samples);

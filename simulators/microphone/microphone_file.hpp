@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "simulators/core/simulator.hpp"
 #include "simulators/microphone/microphone_sound.hpp"
-#include "simulators/simulator.hpp"
 
 namespace yuragi::simulators::microphone {
 
@@ -14,6 +14,6 @@ enum class SampleFormat : std::uint8_t { kFloat32, kSigned16 };
 /// samples, little-endian; "-" is standard output. The reader of a pipe sets the pace, and may end the writing by
 /// closing it. Throws std::runtime_error where the file cannot be written.
 void write_microphone_file(const std::string& path, SampleFormat format, const MicrophoneOptions& options,
-                           MeasuredWind wind, const Faults& faults, double duration_s);
+                           core::MeasuredWind wind, const core::Faults& faults, double duration_s);
 
 }  // namespace yuragi::simulators::microphone

@@ -63,16 +63,16 @@ struct MicrophoneSimulator::State {
   MicrophoneOptions options;
   MicrophoneOutputs outputs;
   MicrophoneSound sound;
-  MeasuredWind wind;
-  PlayedMoment moment;
-  std::optional<FaultKind> fault;
+  core::MeasuredWind wind;
+  core::PlayedMoment moment;
+  std::optional<core::FaultKind> fault;
   int listener = -1;
   std::vector<Client> clients;
   Client pipe;
   double rendered_s = 0.0;
   std::vector<float> samples;
 
-  State(const MicrophoneOptions& chosen, MicrophoneOutputs where, MeasuredWind measured)
+  State(const MicrophoneOptions& chosen, MicrophoneOutputs where, core::MeasuredWind measured)
       : options(chosen), outputs(std::move(where)), sound(chosen), wind(std::move(measured)) {}
   ~State() { drop(true); }
 
@@ -103,8 +103,8 @@ struct MicrophoneSimulator::State {
     }
     std::size_t taken = 0;
     while (taken < client.waiting.size()) {
-      const std::size_t piece =
-          std::min(client.waiting.size() - taken, fault == FaultKind::kSplit ? kSplitBytes : client.waiting.size());
+      const std::size_t piece = std::min(client.waiting.size() - taken,
+                                         fault == core::FaultKind::kSplit ? kSplitBytes : client.waiting.size());
       const ssize_t size = write(client.descriptor, client.waiting.data() + taken, piece);
       if (size < 0 && errno != EAGAIN && errno != EINTR) return false;
       if (size <= 0) break;
@@ -115,7 +115,8 @@ struct MicrophoneSimulator::State {
   }
 };
 
-MicrophoneSimulator::MicrophoneSimulator(const MicrophoneOptions& options, MicrophoneOutputs outputs, MeasuredWind wind)
+MicrophoneSimulator::MicrophoneSimulator(const MicrophoneOptions& options, MicrophoneOutputs outputs,
+                                         core::MeasuredWind wind)
     : state_(std::make_unique<State>(options, std::move(outputs), std::move(wind))) {
   std::signal(SIGPIPE, SIG_IGN);  // a client that closes its socket must not end the program
   state_->plug_in();
@@ -127,14 +128,14 @@ MicrophoneSimulator::MicrophoneSimulator(const MicrophoneOptions& options, Micro
 
 MicrophoneSimulator::~MicrophoneSimulator() = default;
 
-std::span<const FaultKind> microphone_faults() {
-  static constexpr std::array kKnown = {FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike,
-                                        FaultKind::kGarbage, FaultKind::kSplit,  FaultKind::kDisconnect,
-                                        FaultKind::kUnplug};
+std::span<const core::FaultKind> microphone_faults() {
+  static constexpr std::array kKnown = {
+      core::FaultKind::kSilence, core::FaultKind::kFreeze,     core::FaultKind::kSpike, core::FaultKind::kGarbage,
+      core::FaultKind::kSplit,   core::FaultKind::kDisconnect, core::FaultKind::kUnplug};
   return kKnown;
 }
 
-std::span<const FaultKind> MicrophoneSimulator::known_faults() const {
+std::span<const core::FaultKind> MicrophoneSimulator::known_faults() const {
   return microphone_faults();
 }
 
@@ -142,14 +143,14 @@ std::vector<int> MicrophoneSimulator::descriptors() const {
   return state_->listener >= 0 ? std::vector{state_->listener} : std::vector<int>();
 }
 
-void MicrophoneSimulator::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+void MicrophoneSimulator::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   State& state = *state_;
   state.fault = fault;
   state.moment = state.wind.at(time_s, fault);
 
   // A disconnected device refuses new clients; an unplugged one has no name.
-  if (fault == FaultKind::kDisconnect || fault == FaultKind::kUnplug) {
-    state.drop(fault == FaultKind::kUnplug);
+  if (fault == core::FaultKind::kDisconnect || fault == core::FaultKind::kUnplug) {
+    state.drop(fault == core::FaultKind::kUnplug);
     state.rendered_s = time_s;
     return;
   }
@@ -165,7 +166,7 @@ void MicrophoneSimulator::serve(std::span<const int> ready, double time_s, std::
   const auto frames = static_cast<std::size_t>(std::max(0.0, (time_s - state.rendered_s) * state.options.rate_hz));
   state.rendered_s += static_cast<double>(frames) / state.options.rate_hz;
   state.samples.clear();
-  if (fault != FaultKind::kSilence) state.sound.render(state.moment, frames, fault, state.samples);
+  if (fault != core::FaultKind::kSilence) state.sound.render(state.moment, frames, fault, state.samples);
 
   std::erase_if(state.clients, [&](Client& client) {
     if (state.give(client)) return false;

@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
+#include "simulators/core/simulator.hpp"
 #include "simulators/microphone/microphone_sound.hpp"
-#include "simulators/simulator.hpp"
 
 namespace yuragi::simulators::microphone {
 
@@ -16,15 +16,15 @@ struct MicrophoneOutputs {
 
 /// Simulated microphones. A client too slow for the sound loses some of it, in whole frames. While unplugged, the
 /// socket and its name do not exist and the named pipe is closed; both return.
-class MicrophoneSimulator final : public Simulator {
+class MicrophoneSimulator final : public core::Simulator {
  public:
   /// Listens at once. Throws std::runtime_error where that fails.
-  MicrophoneSimulator(const MicrophoneOptions& options, MicrophoneOutputs outputs, MeasuredWind wind);
+  MicrophoneSimulator(const MicrophoneOptions& options, MicrophoneOutputs outputs, core::MeasuredWind wind);
   ~MicrophoneSimulator() override;
 
-  std::span<const FaultKind> known_faults() const override;
+  std::span<const core::FaultKind> known_faults() const override;
   std::vector<int> descriptors() const override;
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override;
 
  private:
@@ -33,6 +33,6 @@ class MicrophoneSimulator final : public Simulator {
 };
 
 /// The faults that microphones can play.
-std::span<const FaultKind> microphone_faults();
+std::span<const core::FaultKind> microphone_faults();
 
 }  // namespace yuragi::simulators::microphone

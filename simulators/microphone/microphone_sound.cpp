@@ -46,7 +46,7 @@ MicrophoneSound::MicrophoneSound(const MicrophoneOptions& options) : options_(op
   }
 }
 
-MicrophoneSound::Amplitudes MicrophoneSound::amplitudes_of(const PlayedMoment& moment) const {
+MicrophoneSound::Amplitudes MicrophoneSound::amplitudes_of(const core::PlayedMoment& moment) const {
   Amplitudes amplitudes{};
   for (std::size_t channel = 0; channel < options_.channels; ++channel) {
     double speed_m_s = moment.speed_m_s;
@@ -84,11 +84,11 @@ double MicrophoneSound::music_at(double time_s) const {
   return sum / std::sqrt(0.5 * kParts.size());
 }
 
-void MicrophoneSound::render(const PlayedMoment& moment, std::size_t frames, std::optional<FaultKind> fault,
+void MicrophoneSound::render(const core::PlayedMoment& moment, std::size_t frames, std::optional<core::FaultKind> fault,
                              std::vector<float>& out) {
   const std::size_t channels = options_.channels;
   const auto second = static_cast<std::size_t>(options_.rate_hz);
-  if (fault == FaultKind::kFreeze && !last_second_.empty()) {
+  if (fault == core::FaultKind::kFreeze && !last_second_.empty()) {
     const std::size_t kept = last_second_.size() / channels;
     for (std::size_t i = 0; i < frames; ++i, ++replayed_) {
       const auto from = last_second_.begin() + static_cast<std::ptrdiff_t>(replayed_ % kept * channels);
@@ -97,7 +97,7 @@ void MicrophoneSound::render(const PlayedMoment& moment, std::size_t frames, std
     return;
   }
   std::uniform_real_distribution<float> full_scale(-1.0F, 1.0F);
-  if (fault == FaultKind::kGarbage) {
+  if (fault == core::FaultKind::kGarbage) {
     for (std::size_t i = 0; i < frames * channels; ++i) out.push_back(full_scale(random_));
     return;
   }

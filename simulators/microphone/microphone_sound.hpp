@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/noise/noise_tile.hpp"
-#include "simulators/faults.hpp"
-#include "simulators/played_wind.hpp"
+#include "simulators/core/faults.hpp"
+#include "simulators/core/played_wind.hpp"
 
 namespace yuragi::simulators::microphone {
 
@@ -40,12 +40,13 @@ class MicrophoneSound {
 
   /// Adds `frames` frames to `out`, a sample a channel, while the wind changes evenly to `moment`. kFreeze repeats the
   /// last second, kGarbage is noise at full scale; faults of the wind itself are the caller's.
-  void render(const PlayedMoment& moment, std::size_t frames, std::optional<FaultKind> fault, std::vector<float>& out);
+  void render(const core::PlayedMoment& moment, std::size_t frames, std::optional<core::FaultKind> fault,
+              std::vector<float>& out);
 
  private:
   using Amplitudes = std::array<double, kMicrophoneMaxChannels>;
 
-  Amplitudes amplitudes_of(const PlayedMoment& moment) const;
+  Amplitudes amplitudes_of(const core::PlayedMoment& moment) const;
   double voice_at(double time_s);
   double music_at(double time_s) const;
 

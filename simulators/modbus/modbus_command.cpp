@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "simulators/commands.hpp"
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
+#include "simulators/modbus/commands.hpp"
 #include "simulators/modbus/modbus_simulator.hpp"
 
 namespace yuragi::simulators::modbus {
@@ -20,7 +20,7 @@ struct ModbusOptions {
   std::vector<std::string> devices;
   std::optional<int> fault_id;
   double late_s = ModbusFaultOptions{}.late_s;
-  CommonOptions common;
+  core::CommonOptions common;
 };
 
 /// The slaves of all devices. Throws CLI::ValidationError for an unknown device.
@@ -44,7 +44,7 @@ void simulate_modbus(const ModbusOptions& options) {
   if (options.is_rtu) {
     port = make_modbus_rtu_port(options.link);
   } else {
-    const Address address = address_option("--tcp", options.tcp);
+    const Address address = core::address_option("--tcp", options.tcp);
     port = make_modbus_tcp_port(address.host, address.port);
   }
   ModbusFaultOptions faults{.id = std::nullopt, .late_s = options.late_s, .seed = options.common.synthetic.seed};

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "simulators/played_wind.hpp"
+#include "simulators/core/played_wind.hpp"
 
 namespace yuragi::simulators::modbus {
 

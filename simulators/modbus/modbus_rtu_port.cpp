@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "simulators/core/pty.hpp"
 #include "simulators/modbus/modbus_port.hpp"
-#include "simulators/pty.hpp"
 
 namespace yuragi::simulators::modbus {
 namespace {
@@ -35,7 +35,7 @@ class RtuPort final : public ModbusPort {
   void come_back() override { pty_.plug_in(); }
 
  private:
-  Pty pty_;
+  core::Pty pty_;
   ModbusBytes incoming_;
 };
 

@@ -64,7 +64,7 @@ struct DueMessage {
 
 class ModbusSimulator::State {
  public:
-  State(std::unique_ptr<ModbusPort> port, MeasuredWind wind, const ModbusFaultOptions& options)
+  State(std::unique_ptr<ModbusPort> port, core::MeasuredWind wind, const ModbusFaultOptions& options)
       : port_(std::move(port)), wind_(std::move(wind)), options_(options), random_(options.seed) {}
 
   void add(const ModbusSlave& slave) {
@@ -77,7 +77,7 @@ class ModbusSimulator::State {
 
   const ModbusPort& port() const { return *port_; }
 
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
     // The devices go on measuring between requests.
     now_s_ = time_s;
     fault_ = fault;
@@ -88,7 +88,7 @@ class ModbusSimulator::State {
     }
 
     // Unplugged or disconnected: no request is served until the port is open again.
-    if (fault == FaultKind::kDisconnect || fault == FaultKind::kUnplug) {
+    if (fault == core::FaultKind::kDisconnect || fault == core::FaultKind::kUnplug) {
       outgoing_.clear();
       return port_->leave();
     }
@@ -142,33 +142,33 @@ class ModbusSimulator::State {
 
   void reply_wrongly(ModbusPort::ClientRequest received, const ModbusBytes& right) {
     switch (*fault_) {
-      case FaultKind::kSilence:
+      case core::FaultKind::kSilence:
         return;
-      case FaultKind::kLate:
+      case core::FaultKind::kLate:
         return send(received, right, options_.late_s);
-      case FaultKind::kException:
+      case core::FaultKind::kException:
         return send(received, exception_reply(received.request.function, kDeviceFailure), 0.0);
-      case FaultKind::kWrongTransaction:
+      case core::FaultKind::kWrongTransaction:
         --received.request.transaction;
         return send(received, right, 0.0);
-      case FaultKind::kWrongId:
+      case core::FaultKind::kWrongId:
         ++received.request.unit;
         return send(received, right, 0.0);
-      case FaultKind::kGarbage:
-      case FaultKind::kSplit:
-      case FaultKind::kPartial:
-      case FaultKind::kBadChecksum:
+      case core::FaultKind::kGarbage:
+      case core::FaultKind::kSplit:
+      case core::FaultKind::kPartial:
+      case core::FaultKind::kBadChecksum:
         return send_damaged(received.client, message(received.request, right));
-      case FaultKind::kFreeze:
-      case FaultKind::kSpike:
-      case FaultKind::kDisconnect:
-      case FaultKind::kUnplug:
+      case core::FaultKind::kFreeze:
+      case core::FaultKind::kSpike:
+      case core::FaultKind::kDisconnect:
+      case core::FaultKind::kUnplug:
         return send(received, right, 0.0);
     }
   }
 
   void send_damaged(int client, ModbusBytes bytes) {
-    if (fault_ == FaultKind::kSplit) {
+    if (fault_ == core::FaultKind::kSplit) {
       // A byte, then some, then the rest.
       const auto first = bytes.begin() + 1;
       const auto second = bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2 + 1);
@@ -177,10 +177,10 @@ class ModbusSimulator::State {
       queue(client, {second, bytes.end()}, 2 * kPauseOfSplit_s);
       return;
     }
-    if (fault_ == FaultKind::kGarbage) {
+    if (fault_ == core::FaultKind::kGarbage) {
       bytes.resize(kGarbageBytes);
       std::ranges::generate(bytes, [this] { return static_cast<std::uint8_t>(random_()); });
-    } else if (fault_ == FaultKind::kPartial) {
+    } else if (fault_ == core::FaultKind::kPartial) {
       bytes.pop_back();
     } else {
       bytes.back() ^= 0xFFU;
@@ -208,20 +208,20 @@ class ModbusSimulator::State {
   }
 
   std::unique_ptr<ModbusPort> port_;
-  MeasuredWind wind_;
+  core::MeasuredWind wind_;
   ModbusFaultOptions options_;
   std::mt19937_64 random_;
   std::vector<SimulatedSlave> slaves_;
   std::vector<DueMessage> outgoing_;
 
   double now_s_ = 0.0;
-  PlayedMoment moment_;
-  std::optional<FaultKind> fault_;
+  core::PlayedMoment moment_;
+  std::optional<core::FaultKind> fault_;
   std::uint64_t replied_ = 0;
 };
 
 ModbusSimulator::ModbusSimulator(const std::vector<ModbusSlave>& slaves, std::unique_ptr<ModbusPort> port,
-                                 MeasuredWind wind, const ModbusFaultOptions& options)
+                                 core::MeasuredWind wind, const ModbusFaultOptions& options)
     : state_(std::make_unique<State>(std::move(port), std::move(wind), options)) {
   for (const ModbusSlave& slave : slaves) state_->add(slave);
 }
@@ -232,8 +232,8 @@ std::string ModbusSimulator::name() const {
   return state_->port().name();
 }
 
-std::span<const FaultKind> ModbusSimulator::known_faults() const {
-  using enum FaultKind;
+std::span<const core::FaultKind> ModbusSimulator::known_faults() const {
+  using enum core::FaultKind;
   static constexpr std::array kOverTcp = {kSilence, kFreeze,           kSpike, kGarbage,   kSplit,     kPartial,
                                           kWrongId, kWrongTransaction, kLate,  kException, kDisconnect};
   static constexpr std::array kOverRtu = {kSilence,     kFreeze,  kSpike, kGarbage,   kSplit, kPartial,
@@ -246,7 +246,7 @@ std::vector<int> ModbusSimulator::descriptors() const {
   return state_->port().descriptors();
 }
 
-void ModbusSimulator::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+void ModbusSimulator::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   state_->serve(ready, time_s, fault);
 }
 

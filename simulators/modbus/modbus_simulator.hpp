@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "simulators/core/played_wind.hpp"
+#include "simulators/core/simulator.hpp"
 #include "simulators/modbus/modbus_devices.hpp"
 #include "simulators/modbus/modbus_port.hpp"
-#include "simulators/played_wind.hpp"
-#include "simulators/simulator.hpp"
 
 namespace yuragi::simulators::modbus {
 
@@ -21,19 +21,19 @@ struct ModbusFaultOptions {
 
 /// A bus of Modbus devices with the registers of real ones, over TCP (as a gateway with those devices behind it) or a
 /// serial line.
-class ModbusSimulator final : public Simulator {
+class ModbusSimulator final : public core::Simulator {
  public:
   /// Throws std::runtime_error for two slaves of one id.
-  ModbusSimulator(const std::vector<ModbusSlave>& slaves, std::unique_ptr<ModbusPort> port, MeasuredWind wind,
+  ModbusSimulator(const std::vector<ModbusSlave>& slaves, std::unique_ptr<ModbusPort> port, core::MeasuredWind wind,
                   const ModbusFaultOptions& options = {});
   ~ModbusSimulator() override;
 
   /// The address or path at which it is reached.
   std::string name() const;
 
-  std::span<const FaultKind> known_faults() const override;
+  std::span<const core::FaultKind> known_faults() const override;
   std::vector<int> descriptors() const override;
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override;
 
  private:

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "simulators/commands.hpp"
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
+#include "simulators/network/commands.hpp"
 #include "simulators/network/ecowitt_simulator.hpp"
 
 namespace yuragi::simulators::network {
@@ -14,16 +14,16 @@ struct EcowittCommand {
   std::string tcp = "127.0.0.1:45000";
   std::string search;
   EcowittOptions ecowitt;
-  CommonOptions common;
+  core::CommonOptions common;
 };
 
 void simulate_ecowitt(EcowittCommand& command) {
-  const Address address = address_option("--tcp", command.tcp);
+  const Address address = core::address_option("--tcp", command.tcp);
   command.ecowitt.host = address.host;
   command.ecowitt.port = address.port;
   command.ecowitt.seed = command.common.synthetic.seed;
   if (!command.search.empty()) {
-    const Address search = address_option("--search", command.search);
+    const Address search = core::address_option("--search", command.search);
     command.ecowitt.search_host = search.host;
     command.ecowitt.search_port = search.port;
   }

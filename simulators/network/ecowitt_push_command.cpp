@@ -3,8 +3,8 @@
 #include <map>
 #include <memory>
 
-#include "simulators/commands.hpp"
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
+#include "simulators/network/commands.hpp"
 #include "simulators/network/ecowitt_push_simulator.hpp"
 
 namespace yuragi::simulators::network {
@@ -14,7 +14,7 @@ struct EcowittPushCommand {
   std::string to = "127.0.0.1:8090";
   std::string protocol = "ecowitt";
   EcowittPushOptions push;
-  CommonOptions common;
+  core::CommonOptions common;
 };
 
 const std::map<std::string, PushProtocol, std::less<>> kPushProtocols = {
@@ -24,7 +24,7 @@ const std::map<std::string, PushProtocol, std::less<>> kPushProtocols = {
 };
 
 void simulate_ecowitt_push(EcowittPushCommand& command) {
-  const Address address = address_option("--to", command.to);
+  const Address address = core::address_option("--to", command.to);
   if (address.port == 0) throw CLI::ValidationError("--to", "port 0 cannot be connected to");
   command.push.host = address.host;
   command.push.port = address.port;

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/count_text.hpp"
-#include "simulators/socket_address.hpp"
+#include "simulators/core/socket_address.hpp"
 
 namespace yuragi::simulators::network {
 namespace {
@@ -83,11 +83,11 @@ std::string wunderground_form(const std::string& station, const PushedWind* wind
 
 class EcowittPushSimulator::State {
  public:
-  State(const EcowittPushOptions& options, MeasuredWind wind)
+  State(const EcowittPushOptions& options, core::MeasuredWind wind)
       : options_(options),
         wind_(std::move(wind)),
         random_(options.seed),
-        to_(socket_address(options.host), options.port) {
+        to_(core::socket_address(options.host), options.port) {
     if (options_.path.empty()) options_.path = usual_path(options_.protocol);
   }
 
@@ -96,14 +96,14 @@ class EcowittPushSimulator::State {
     return {socket_.native_handle()};
   }
 
-  void serve(double time_s, std::optional<FaultKind> fault) {
+  void serve(double time_s, std::optional<core::FaultKind> fault) {
     fault_ = fault;
     moment_ = wind_.at(time_s, fault);
     gust_m_s_ = std::max(gust_m_s_, moment_.speed_m_s);
     // On a busy machine the pieces of a request can take longer than the time between two: it is finished first.
     if (time_s >= next_push_s_ && waiting_.empty()) {
       while (next_push_s_ <= time_s) next_push_s_ += options_.interval_s;
-      if (fault != FaultKind::kSilence) begin_push(time_s);
+      if (fault != core::FaultKind::kSilence) begin_push(time_s);
       gust_m_s_ = 0.0;
     }
     // Connects, sends what is due, and reads the answer; nothing waits.
@@ -135,15 +135,16 @@ class EcowittPushSimulator::State {
     last_answer_.clear();
     give_up_s_ = time_s + kAnswerPatience_s;
     std::string request = this->request();
-    if (fault_ == FaultKind::kGarbage) {
+    if (fault_ == core::FaultKind::kGarbage) {
       request.resize(kPushGarbageBytes);
       std::ranges::generate(request, [this] { return static_cast<char>(random_()); });
       request.back() = '\n';
     }
-    if (fault_ == FaultKind::kPartial || fault_ == FaultKind::kDisconnect) request.resize(request.size() * 3 / 4);
-    is_reset_ = fault_ == FaultKind::kDisconnect;
-    ends_early_ = fault_ == FaultKind::kPartial;
-    const std::size_t piece = fault_ == FaultKind::kSplit ? request.size() / 4 + 1 : request.size();
+    if (fault_ == core::FaultKind::kPartial || fault_ == core::FaultKind::kDisconnect)
+      request.resize(request.size() * 3 / 4);
+    is_reset_ = fault_ == core::FaultKind::kDisconnect;
+    ends_early_ = fault_ == core::FaultKind::kPartial;
+    const std::size_t piece = fault_ == core::FaultKind::kSplit ? request.size() / 4 + 1 : request.size();
     for (std::size_t from = 0; from < request.size(); from += piece) {
       const double delay_s = kPushPieceGap_s * static_cast<double>(waiting_.size());
       waiting_.push_back({time_s + delay_s, request.substr(from, piece)});
@@ -162,8 +163,8 @@ class EcowittPushSimulator::State {
     const PushedWind wind = {.speed_mph = moment_.speed_m_s * kMphPerMetrePerSecond,
                              .gust_mph = std::max(gust_m_s_, moment_.speed_m_s) * kMphPerMetrePerSecond,
                              .direction_deg = moment_.direction_deg};
-    const PushedWind* const heard = fault_ == FaultKind::kUnplug ? nullptr : &wind;
-    const std::string station = fault_ == FaultKind::kWrongId ? std::string(kPushWrongStation) : options_.station;
+    const PushedWind* const heard = fault_ == core::FaultKind::kUnplug ? nullptr : &wind;
+    const std::string station = fault_ == core::FaultKind::kWrongId ? std::string(kPushWrongStation) : options_.station;
     const std::string host = fmt::format("{}:{}", options_.host, options_.port);
     if (options_.protocol == PushProtocol::kEcowitt) {
       const std::string form = ecowitt_form(station, heard);
@@ -211,7 +212,7 @@ class EcowittPushSimulator::State {
   }
 
   EcowittPushOptions options_;
-  MeasuredWind wind_;
+  core::MeasuredWind wind_;
   std::mt19937_64 random_;
   tcp::endpoint to_;
   boost::asio::io_context context_;
@@ -226,18 +227,18 @@ class EcowittPushSimulator::State {
   double next_push_s_ = 0.0;
   double give_up_s_ = 0.0;
   double gust_m_s_ = 0.0;
-  PlayedMoment moment_;
-  std::optional<FaultKind> fault_;
+  core::PlayedMoment moment_;
+  std::optional<core::FaultKind> fault_;
   std::uint64_t pushed_ = 0;
 };
 
-EcowittPushSimulator::EcowittPushSimulator(const EcowittPushOptions& options, MeasuredWind wind)
+EcowittPushSimulator::EcowittPushSimulator(const EcowittPushOptions& options, core::MeasuredWind wind)
     : state_(std::make_unique<State>(options, std::move(wind))) {}
 
 EcowittPushSimulator::~EcowittPushSimulator() = default;
 
-std::span<const FaultKind> EcowittPushSimulator::known_faults() const {
-  using enum FaultKind;
+std::span<const core::FaultKind> EcowittPushSimulator::known_faults() const {
+  using enum core::FaultKind;
   static constexpr std::array kKnown = {kSilence, kFreeze,  kSpike,      kGarbage, kSplit,
                                         kPartial, kWrongId, kDisconnect, kUnplug};
   return kKnown;
@@ -247,7 +248,7 @@ std::vector<int> EcowittPushSimulator::descriptors() const {
   return state_->descriptors();
 }
 
-void EcowittPushSimulator::serve(std::span<const int> /*ready*/, double time_s, std::optional<FaultKind> fault) {
+void EcowittPushSimulator::serve(std::span<const int> /*ready*/, double time_s, std::optional<core::FaultKind> fault) {
   state_->serve(time_s, fault);
 }
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "simulators/played_wind.hpp"
-#include "simulators/simulator.hpp"
+#include "simulators/core/played_wind.hpp"
+#include "simulators/core/simulator.hpp"
 
 namespace yuragi::simulators::network {
 
@@ -32,15 +32,15 @@ struct EcowittPushOptions {
 /// Faults: silence, freeze, spike, garbage (bytes that are no HTTP), split, partial (the connection ends within the
 /// request), wrong-id (another station's), disconnect (the connection is reset within the request), unplug (the
 /// anemometer is not heard: -9999 by Wunderground, else no such values).
-class EcowittPushSimulator final : public Simulator {
+class EcowittPushSimulator final : public core::Simulator {
  public:
   /// Throws std::runtime_error for a host that is no numeric address.
-  EcowittPushSimulator(const EcowittPushOptions& options, MeasuredWind wind);
+  EcowittPushSimulator(const EcowittPushOptions& options, core::MeasuredWind wind);
   ~EcowittPushSimulator() override;
 
-  std::span<const FaultKind> known_faults() const override;
+  std::span<const core::FaultKind> known_faults() const override;
   std::vector<int> descriptors() const override;
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override;
 
   std::uint64_t pushed() const noexcept;            ///< how many pushes have been begun

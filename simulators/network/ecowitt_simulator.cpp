@@ -15,8 +15,8 @@
 #include <fmt/format.h>
 
 #include "engine/base/count_text.hpp"
-#include "simulators/socket_address.hpp"
-#include "simulators/tcp_listener.hpp"
+#include "simulators/core/socket_address.hpp"
+#include "simulators/core/tcp_listener.hpp"
 
 namespace yuragi::simulators::network {
 namespace {
@@ -82,12 +82,12 @@ GatewayBytes live_items(const RadioWind* wind) {
 
 class EcowittSimulator::State {
  public:
-  State(const EcowittOptions& options, MeasuredWind wind)
+  State(const EcowittOptions& options, core::MeasuredWind wind)
       : options_(options), wind_(std::move(wind)), random_(options.seed), listener_(options.host, options.port) {
     if (options.search_host.empty()) return;
     using boost::asio::ip::udp;
     search_.open(udp::v4());
-    search_.bind(udp::endpoint(socket_address(options.search_host), options.search_port));
+    search_.bind(udp::endpoint(core::socket_address(options.search_host), options.search_port));
     search_.non_blocking(true);
   }
 
@@ -103,10 +103,10 @@ class EcowittSimulator::State {
     return all;
   }
 
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
     fault_ = fault;
     measure(time_s);
-    if (fault == FaultKind::kDisconnect) {
+    if (fault == core::FaultKind::kDisconnect) {
       clients_.clear();
       listener_.close();
       return;
@@ -190,17 +190,17 @@ class EcowittSimulator::State {
 
   void reply(Client& client, double time_s) {
     ++replied_;
-    GatewayBytes bytes = framed(0x27, live_items(fault_ == FaultKind::kUnplug ? nullptr : &radio_));
-    if (fault_ == FaultKind::kSilence) return;
-    if (fault_ == FaultKind::kGarbage) {
+    GatewayBytes bytes = framed(0x27, live_items(fault_ == core::FaultKind::kUnplug ? nullptr : &radio_));
+    if (fault_ == core::FaultKind::kSilence) return;
+    if (fault_ == core::FaultKind::kGarbage) {
       bytes.resize(kGatewayGarbageBytes);
       std::ranges::generate(bytes, [this] { return static_cast<std::uint8_t>(random_()); });
     }
-    if (fault_ == FaultKind::kPartial) bytes.resize(bytes.size() / 2);
-    if (fault_ == FaultKind::kBadChecksum) bytes.back() ^= 0xFFU;
-    if (fault_ == FaultKind::kWrongTransaction) bytes = framed(0x34, {0x0E, 0x00, 0x0C});
-    if (fault_ != FaultKind::kSplit) {
-      client.waiting.push_back({time_s + (fault_ == FaultKind::kLate ? options_.late_s : 0.0), std::move(bytes)});
+    if (fault_ == core::FaultKind::kPartial) bytes.resize(bytes.size() / 2);
+    if (fault_ == core::FaultKind::kBadChecksum) bytes.back() ^= 0xFFU;
+    if (fault_ == core::FaultKind::kWrongTransaction) bytes = framed(0x34, {0x0E, 0x00, 0x0C});
+    if (fault_ != core::FaultKind::kSplit) {
+      client.waiting.push_back({time_s + (fault_ == core::FaultKind::kLate ? options_.late_s : 0.0), std::move(bytes)});
       return;
     }
     // The head in two, and then the rest.
@@ -223,9 +223,9 @@ class EcowittSimulator::State {
   }
 
   EcowittOptions options_;
-  MeasuredWind wind_;
+  core::MeasuredWind wind_;
   std::mt19937_64 random_;
-  TcpListener listener_;
+  core::TcpListener listener_;
   std::list<Client> clients_;
   boost::asio::io_context context_;
   boost::asio::ip::udp::socket search_{context_};
@@ -233,12 +233,12 @@ class EcowittSimulator::State {
   double next_radio_s_ = 0.0;
   double gust_m_s_ = 0.0;
   RadioWind radio_;
-  PlayedMoment moment_;
-  std::optional<FaultKind> fault_;
+  core::PlayedMoment moment_;
+  std::optional<core::FaultKind> fault_;
   std::uint64_t replied_ = 0;
 };
 
-EcowittSimulator::EcowittSimulator(const EcowittOptions& options, MeasuredWind wind)
+EcowittSimulator::EcowittSimulator(const EcowittOptions& options, core::MeasuredWind wind)
     : state_(std::make_unique<State>(options, std::move(wind))) {}
 
 EcowittSimulator::~EcowittSimulator() = default;
@@ -251,8 +251,8 @@ std::uint16_t EcowittSimulator::search_port() const {
   return state_->search_port();
 }
 
-std::span<const FaultKind> EcowittSimulator::known_faults() const {
-  using enum FaultKind;
+std::span<const core::FaultKind> EcowittSimulator::known_faults() const {
+  using enum core::FaultKind;
   static constexpr std::array kKnown = {kSilence,     kFreeze,           kSpike, kGarbage,    kSplit, kPartial,
                                         kBadChecksum, kWrongTransaction, kLate,  kDisconnect, kUnplug};
   return kKnown;
@@ -262,7 +262,7 @@ std::vector<int> EcowittSimulator::descriptors() const {
   return state_->descriptors();
 }
 
-void EcowittSimulator::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+void EcowittSimulator::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   state_->serve(ready, time_s, fault);
 }
 

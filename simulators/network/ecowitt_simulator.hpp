@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "simulators/played_wind.hpp"
-#include "simulators/simulator.hpp"
+#include "simulators/core/played_wind.hpp"
+#include "simulators/core/simulator.hpp"
 
 namespace yuragi::simulators::network {
 
@@ -24,18 +24,18 @@ struct EcowittOptions {
 ///
 /// Faults: silence, freeze, spike, garbage, split, partial, bad-checksum, wrong-transaction (the reply to another
 /// command), late, disconnect, unplug (the anemometer is not heard).
-class EcowittSimulator final : public Simulator {
+class EcowittSimulator final : public core::Simulator {
  public:
   /// Throws std::runtime_error where the address cannot be listened on.
-  EcowittSimulator(const EcowittOptions& options, MeasuredWind wind);
+  EcowittSimulator(const EcowittOptions& options, core::MeasuredWind wind);
   ~EcowittSimulator() override;
 
   std::uint16_t port() const;
   std::uint16_t search_port() const;
 
-  std::span<const FaultKind> known_faults() const override;
+  std::span<const core::FaultKind> known_faults() const override;
   std::vector<int> descriptors() const override;
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override;
 
  private:

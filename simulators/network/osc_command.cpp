@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "simulators/commands.hpp"
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
+#include "simulators/network/commands.hpp"
 #include "simulators/network/osc_simulator.hpp"
 
 namespace yuragi::simulators::network {
@@ -13,11 +13,11 @@ constexpr std::size_t kLastArgument = 63;  // as the daemon reads
 struct OscCommand {
   std::string to = "127.0.0.1:9000";
   OscOptions osc;
-  CommonOptions common;
+  core::CommonOptions common;
 };
 
 void simulate_osc(OscCommand& command) {
-  const Address address = address_option("--to", command.to);
+  const Address address = core::address_option("--to", command.to);
   if (address.port == 0) throw CLI::ValidationError("--to", "port 0 cannot be sent to");
   if (!command.osc.address.starts_with('/')) throw CLI::ValidationError("--address", "begins with /, as in /wind");
   if (command.osc.speed_argument == command.osc.direction_argument)

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/count_text.hpp"
-#include "simulators/socket_address.hpp"
+#include "simulators/core/socket_address.hpp"
 
 namespace yuragi::simulators::network {
 namespace {
@@ -35,21 +35,22 @@ void add_number(std::string& message, double number) {
 
 class OscSimulator::State {
  public:
-  State(const OscOptions& options, MeasuredWind wind)
+  State(const OscOptions& options, core::MeasuredWind wind)
       : options_(options),
         wind_(std::move(wind)),
         random_(options.seed),
-        to_(socket_address(options.host), options.port),
+        to_(core::socket_address(options.host), options.port),
         socket_(context_, to_.protocol()) {}
 
-  void serve(double time_s, std::optional<FaultKind> fault) {
+  void serve(double time_s, std::optional<core::FaultKind> fault) {
     fault_ = fault;
     moment_ = wind_.at(time_s, fault);
-    if (time_s < next_s_ || fault == FaultKind::kSilence) return;
+    if (time_s < next_s_ || fault == core::FaultKind::kSilence) return;
     while (next_s_ <= time_s) next_s_ += options_.interval_s;  // what was due while nobody served is not made up for
     std::string message = this->message();
-    if (fault == FaultKind::kPartial) message.resize(message.size() / 2);
-    if (fault == FaultKind::kGarbage) std::ranges::generate(message, [this] { return static_cast<char>(random_()); });
+    if (fault == core::FaultKind::kPartial) message.resize(message.size() / 2);
+    if (fault == core::FaultKind::kGarbage)
+      std::ranges::generate(message, [this] { return static_cast<char>(random_()); });
     // Without a listener the next one fails, which is ignored.
     boost::system::error_code ignored;
     socket_.send_to(boost::asio::buffer(message), to_, 0, ignored);
@@ -67,36 +68,36 @@ class OscSimulator::State {
     arguments[options_.speed_argument] = moment_.speed_m_s;
     arguments[options_.direction_argument] = moment_.direction_deg;
     std::string message;
-    add_text(message, fault_ == FaultKind::kWrongId ? "/elsewhere" : options_.address);
+    add_text(message, fault_ == core::FaultKind::kWrongId ? "/elsewhere" : options_.address);
     add_text(message, "," + std::string(arguments.size(), 'f'));
     for (const double argument : arguments) add_number(message, argument);
     return message;
   }
 
   OscOptions options_;
-  MeasuredWind wind_;
+  core::MeasuredWind wind_;
   std::mt19937_64 random_;
   boost::asio::io_context context_;
   udp::endpoint to_;
   udp::socket socket_;
   double next_s_ = 0.0;
-  PlayedMoment moment_;
-  std::optional<FaultKind> fault_;
+  core::PlayedMoment moment_;
+  std::optional<core::FaultKind> fault_;
   std::uint64_t sent_ = 0;
 };
 
-OscSimulator::OscSimulator(const OscOptions& options, MeasuredWind wind)
+OscSimulator::OscSimulator(const OscOptions& options, core::MeasuredWind wind)
     : state_(std::make_unique<State>(options, std::move(wind))) {}
 
 OscSimulator::~OscSimulator() = default;
 
-std::span<const FaultKind> OscSimulator::known_faults() const {
-  using enum FaultKind;
+std::span<const core::FaultKind> OscSimulator::known_faults() const {
+  using enum core::FaultKind;
   static constexpr std::array kKnown = {kSilence, kFreeze, kSpike, kGarbage, kPartial, kWrongId};
   return kKnown;
 }
 
-void OscSimulator::serve(std::span<const int> /*ready*/, double time_s, std::optional<FaultKind> fault) {
+void OscSimulator::serve(std::span<const int> /*ready*/, double time_s, std::optional<core::FaultKind> fault) {
   state_->serve(time_s, fault);
 }
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "simulators/played_wind.hpp"
-#include "simulators/simulator.hpp"
+#include "simulators/core/played_wind.hpp"
+#include "simulators/core/simulator.hpp"
 
 namespace yuragi::simulators::network {
 
@@ -24,15 +24,15 @@ struct OscOptions {
 /// the speed in m/s and the direction in degrees, as 32-bit floats.
 ///
 /// Faults: silence, freeze, spike, garbage, partial (the ends of messages are missing), wrong-id (of another address).
-class OscSimulator final : public Simulator {
+class OscSimulator final : public core::Simulator {
  public:
   /// Throws std::runtime_error for a host that is no address.
-  OscSimulator(const OscOptions& options, MeasuredWind wind);
+  OscSimulator(const OscOptions& options, core::MeasuredWind wind);
   ~OscSimulator() override;
 
-  std::span<const FaultKind> known_faults() const override;
+  std::span<const core::FaultKind> known_faults() const override;
   std::vector<int> descriptors() const override { return {}; }
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override;
 
  private:

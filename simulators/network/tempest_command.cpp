@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "simulators/commands.hpp"
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
+#include "simulators/network/commands.hpp"
 #include "simulators/network/tempest_simulator.hpp"
 
 namespace yuragi::simulators::network {
@@ -11,11 +11,11 @@ namespace {
 struct TempestCommand {
   std::string to = "127.0.0.1:50222";
   TempestOptions tempest;
-  CommonOptions common;
+  core::CommonOptions common;
 };
 
 void simulate_tempest(TempestCommand& command) {
-  const Address address = address_option("--udp", command.to);
+  const Address address = core::address_option("--udp", command.to);
   if (address.port == 0) throw CLI::ValidationError("--udp", "port 0 cannot be sent to");
   command.tempest.host = address.host;
   command.tempest.port = address.port;

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/count_text.hpp"
-#include "simulators/socket_address.hpp"
+#include "simulators/core/socket_address.hpp"
 
 namespace yuragi::simulators::network {
 namespace {
@@ -40,21 +40,21 @@ struct Report {
 
 class TempestSimulator::State {
  public:
-  State(const TempestOptions& options, MeasuredWind wind)
+  State(const TempestOptions& options, core::MeasuredWind wind)
       : options_(options),
         wind_(std::move(wind)),
         random_(options.seed),
-        to_(socket_address(options.host), options.port),
+        to_(core::socket_address(options.host), options.port),
         socket_(context_, to_.protocol()) {
     socket_.set_option(boost::asio::socket_base::broadcast(true));
     next_report_s_ = options.report_interval_s;
   }
 
-  void serve(double time_s, std::optional<FaultKind> fault) {
+  void serve(double time_s, std::optional<core::FaultKind> fault) {
     fault_ = fault;
     moment_ = wind_.at(time_s, fault);
     report_.add(moment_.speed_m_s);
-    const bool has_stations = fault != FaultKind::kUnplug;
+    const bool has_stations = fault != core::FaultKind::kUnplug;
     if (options_.rapid_wind_interval_s > 0.0 && is_due(next_rapid_wind_s_, options_.rapid_wind_interval_s, time_s)) {
       for (const std::string& station : options_.stations) {
         if (has_stations) send(rapid_wind(station, time_s));
@@ -87,7 +87,7 @@ class TempestSimulator::State {
 
   /// The serial number that a station says: another one, where that is the fault.
   std::string name_of_station(const std::string& station) const {
-    return fault_ == FaultKind::kWrongId ? station.substr(0, 3) + "99999999" : station;
+    return fault_ == core::FaultKind::kWrongId ? station.substr(0, 3) + "99999999" : station;
   }
 
   std::string rapid_wind(const std::string& station, double time_s) const {
@@ -113,9 +113,9 @@ class TempestSimulator::State {
   double direction_deg() const { return moment_.speed_m_s < 0.005 ? 0.0 : moment_.direction_deg; }
 
   void send(std::string message) {
-    if (fault_ == FaultKind::kSilence) return;
-    if (fault_ == FaultKind::kPartial) message.resize(message.size() * 2 / 3);
-    if (fault_ == FaultKind::kGarbage) {
+    if (fault_ == core::FaultKind::kSilence) return;
+    if (fault_ == core::FaultKind::kPartial) message.resize(message.size() * 2 / 3);
+    if (fault_ == core::FaultKind::kGarbage) {
       message.resize(kHubGarbageBytes);
       std::ranges::generate(message, [this] { return static_cast<char>(random_()); });
     }
@@ -126,7 +126,7 @@ class TempestSimulator::State {
   }
 
   TempestOptions options_;
-  MeasuredWind wind_;
+  core::MeasuredWind wind_;
   std::mt19937_64 random_;
   boost::asio::io_context context_;
   udp::endpoint to_;
@@ -135,24 +135,24 @@ class TempestSimulator::State {
   double next_rapid_wind_s_ = 0.0;
   double next_report_s_ = 0.0;
   double next_hub_status_s_ = 0.0;
-  PlayedMoment moment_;
+  core::PlayedMoment moment_;
   Report report_;
-  std::optional<FaultKind> fault_;
+  std::optional<core::FaultKind> fault_;
   std::uint64_t sent_ = 0;
 };
 
-TempestSimulator::TempestSimulator(const TempestOptions& options, MeasuredWind wind)
+TempestSimulator::TempestSimulator(const TempestOptions& options, core::MeasuredWind wind)
     : state_(std::make_unique<State>(options, std::move(wind))) {}
 
 TempestSimulator::~TempestSimulator() = default;
 
-std::span<const FaultKind> TempestSimulator::known_faults() const {
-  using enum FaultKind;
+std::span<const core::FaultKind> TempestSimulator::known_faults() const {
+  using enum core::FaultKind;
   static constexpr std::array kKnown = {kSilence, kFreeze, kSpike, kGarbage, kPartial, kWrongId, kUnplug};
   return kKnown;
 }
 
-void TempestSimulator::serve(std::span<const int> /*ready*/, double time_s, std::optional<FaultKind> fault) {
+void TempestSimulator::serve(std::span<const int> /*ready*/, double time_s, std::optional<core::FaultKind> fault) {
   state_->serve(time_s, fault);
 }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "simulators/played_wind.hpp"
-#include "simulators/simulator.hpp"
+#include "simulators/core/played_wind.hpp"
+#include "simulators/core/simulator.hpp"
 
 namespace yuragi::simulators::network {
 
@@ -25,15 +25,15 @@ struct TempestOptions {
 ///
 /// Faults: silence (the hub is off), freeze, spike, garbage, partial (the ends of messages are missing), wrong-id (the
 /// messages of other stations), unplug (the stations are off: the hub alone speaks).
-class TempestSimulator final : public Simulator {
+class TempestSimulator final : public core::Simulator {
  public:
   /// Throws std::runtime_error for a host that is no address.
-  TempestSimulator(const TempestOptions& options, MeasuredWind wind);
+  TempestSimulator(const TempestOptions& options, core::MeasuredWind wind);
   ~TempestSimulator() override;
 
-  std::span<const FaultKind> known_faults() const override;
+  std::span<const core::FaultKind> known_faults() const override;
   std::vector<int> descriptors() const override { return {}; }
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override;
   /// Datagrams so far.
   std::uint64_t sent() const noexcept;

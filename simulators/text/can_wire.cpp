@@ -29,8 +29,8 @@ class CanWire final : public TextWire {
   CanWire(const CanWire&) = delete;
   CanWire& operator=(const CanWire&) = delete;
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kUnplug};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kUnplug};
     return kKnown;
   }
   std::vector<int> descriptors() const override { return {}; }

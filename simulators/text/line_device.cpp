@@ -11,20 +11,21 @@ namespace {
 
 struct LineFormat {
   std::string_view name;
-  std::string (*line_of)(const PlayedMoment& moment);
+  std::string (*line_of)(const core::PlayedMoment& moment);
 };
 
 constexpr std::array<LineFormat, 4> kLineFormats = {
-    {{"csv", [](const PlayedMoment& now) { return fmt::format("{:.2f},{:.1f}", now.speed_m_s, now.direction_deg); }},
+    {{"csv",
+      [](const core::PlayedMoment& now) { return fmt::format("{:.2f},{:.1f}", now.speed_m_s, now.direction_deg); }},
      {"key-value",
-      [](const PlayedMoment& now) {
+      [](const core::PlayedMoment& now) {
         return fmt::format("speed={:.2f} direction={:.1f}", now.speed_m_s, now.direction_deg);
       }},
      {"units",
-      [](const PlayedMoment& now) {
+      [](const core::PlayedMoment& now) {
         return fmt::format("speed: {:.2f} km/h, direction: {:.1f} deg", 3.6 * now.speed_m_s, now.direction_deg);
       }},
-     {"json", [](const PlayedMoment& now) {
+     {"json", [](const core::PlayedMoment& now) {
         return fmt::format("{{\"speed\":{:.2f},\"direction\":{:.1f}}}", now.speed_m_s, now.direction_deg);
       }}}};
 
@@ -32,10 +33,11 @@ class LineDevice final : public TextDevice {
  public:
   explicit LineDevice(const LineFormat& format) : format_(format) {}
 
-  std::span<const FaultKind> known_faults() const override { return {}; }
+  std::span<const core::FaultKind> known_faults() const override { return {}; }
 
   /// As Serial.println() of an Arduino ends a line.
-  std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> /*fault*/) override {
+  std::vector<std::string> send_messages(const core::PlayedMoment& moment,
+                                         std::optional<core::FaultKind> /*fault*/) override {
     return {format_.line_of(moment) + "\r\n"};
   }
 

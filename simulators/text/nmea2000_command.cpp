@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "simulators/commands.hpp"
+#include "simulators/text/commands.hpp"
 #include "simulators/text/nmea2000_device.hpp"
 #include "simulators/text/text_options.hpp"
 

@@ -121,14 +121,15 @@ class Nmea2000Device final : public TextDevice {
  public:
   Nmea2000Device(const BusFormat& format, unsigned reference) : format_(format), reference_(reference) {}
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kWrongId};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kWrongId};
     return kKnown;
   }
   std::string greeting() const override { return std::string(format_.greeting); }
-  std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> fault) override {
+  std::vector<std::string> send_messages(const core::PlayedMoment& moment,
+                                         std::optional<core::FaultKind> fault) override {
     return {format_.line({.number = number_++,
-                          .address = fault == FaultKind::kWrongId ? kOtherAddress : kAddress,
+                          .address = fault == core::FaultKind::kWrongId ? kOtherAddress : kAddress,
                           .speed_m_s = moment.speed_m_s,
                           .angle_rad = moment.direction_deg * kRadPerDeg,
                           .reference = reference_})};
@@ -145,13 +146,14 @@ class Nmea2000CanDevice final : public TextDevice {
  public:
   explicit Nmea2000CanDevice(unsigned reference) : reference_(reference) {}
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kWrongId, FaultKind::kException};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kWrongId, core::FaultKind::kException};
     return kKnown;
   }
-  std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> fault) override {
-    if (fault == FaultKind::kException) return {bytes_of_frame(CAN_ERR_FLAG | CAN_ERR_BUSOFF, {})};
-    const unsigned address = fault == FaultKind::kWrongId ? kOtherAddress : kAddress;
+  std::vector<std::string> send_messages(const core::PlayedMoment& moment,
+                                         std::optional<core::FaultKind> fault) override {
+    if (fault == core::FaultKind::kException) return {bytes_of_frame(CAN_ERR_FLAG | CAN_ERR_BUSOFF, {})};
+    const unsigned address = fault == core::FaultKind::kWrongId ? kOtherAddress : kAddress;
     const BusMessage message = {.number = number_++,
                                 .address = address,
                                 .speed_m_s = moment.speed_m_s,

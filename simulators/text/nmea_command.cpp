@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "simulators/commands.hpp"
+#include "simulators/text/commands.hpp"
 #include "simulators/text/nmea_device.hpp"
 #include "simulators/text/text_options.hpp"
 

@@ -64,26 +64,26 @@ int whole_deg(double direction_deg) {
   return static_cast<int>(std::lround(direction_deg) % 360);
 }
 
-std::string mwv(const PlayedMoment& now, const Style& style) {
+std::string mwv(const core::PlayedMoment& now, const Style& style) {
   return sentence(fmt::format("{}MWV,{:.1f},R,{:.2f},M,A", style.talker, now.direction_deg, now.speed_m_s), style);
 }
 
 /// The eight fields that end MWD and MDA.
-std::string from_north(const PlayedMoment& now) {
+std::string from_north(const core::PlayedMoment& now) {
   return fmt::format("{:.1f},T,,M,{:.2f},N,{:.2f},M", now.direction_deg, now.speed_m_s * kKnotsOfAMetrePerSecond,
                      now.speed_m_s);
 }
 
-std::string mwd(const PlayedMoment& now, const Style& style) {
+std::string mwd(const core::PlayedMoment& now, const Style& style) {
   return sentence(fmt::format("{}MWD,{}", style.talker, from_north(now)), style);
 }
 
-std::string mda(const PlayedMoment& now, const Style& style) {
+std::string mda(const core::PlayedMoment& now, const Style& style) {
   constexpr std::string_view kWeather = "29.9200,I,1.0132,B,12.5,C,,,55.0,,3.7,C";
   return sentence(fmt::format("{}MDA,{},{}", style.talker, kWeather, from_north(now)), style);
 }
 
-std::string from_bow(std::string_view name, const PlayedMoment& now, const Style& style) {
+std::string from_bow(std::string_view name, const core::PlayedMoment& now, const Style& style) {
   const bool is_left = now.direction_deg > 180.0;
   return sentence(
       fmt::format("{}{},{:.1f},{},{:.2f},N,{:.2f},M,{:.2f},K", style.talker, name,
@@ -91,14 +91,14 @@ std::string from_bow(std::string_view name, const PlayedMoment& now, const Style
                   now.speed_m_s * kKnotsOfAMetrePerSecond, now.speed_m_s, now.speed_m_s * kKmhOfAMetrePerSecond),
       style);
 }
-std::string vwr(const PlayedMoment& now, const Style& style) {
+std::string vwr(const core::PlayedMoment& now, const Style& style) {
   return from_bow("VWR", now, style);
 }
-std::string vwt(const PlayedMoment& now, const Style& style) {
+std::string vwt(const core::PlayedMoment& now, const Style& style) {
   return from_bow("VWT", now, style);
 }
 
-std::string xdr(const PlayedMoment& now, const Style& style) {
+std::string xdr(const core::PlayedMoment& now, const Style& style) {
   const auto turned = [&](double by_deg) { return whole_deg(now.direction_deg + by_deg + 360.0); };
   return sentence(
       fmt::format("{}XDR,A,{},D,0,A,{},D,1,A,{},D,2,S,{:.1f},M,0,S,{:.1f},M,1,S,{:.1f},M,2", style.talker, turned(-5.0),
@@ -106,24 +106,24 @@ std::string xdr(const PlayedMoment& now, const Style& style) {
       style);
 }
 
-std::string gill(const PlayedMoment& now, const Style& style) {
+std::string gill(const core::PlayedMoment& now, const Style& style) {
   const std::string direction = now.speed_m_s < kGillCalm_m_s ? "" : fmt::format("{:03}", whole_deg(now.direction_deg));
   return gill_frame(fmt::format("{},{},{:06.2f},M,00,", style.node, direction, now.speed_m_s), style);
 }
 
-std::string gill_uv(const PlayedMoment& now, const Style& style) {
+std::string gill_uv(const core::PlayedMoment& now, const Style& style) {
   const double from_rad = now.direction_deg * kRadPerDeg;
   return gill_frame(fmt::format("{},{:+07.2f},{:+07.2f},M,00,", style.node, -now.speed_m_s * std::cos(from_rad),
                                 now.speed_m_s * std::sin(from_rad)),
                     style);
 }
 
-std::string ft(const PlayedMoment& now, const Style& style) {
+std::string ft(const core::PlayedMoment& now, const Style& style) {
   return sentence(fmt::format("{},WVP={:05.1f},{:03},0", style.talker, now.speed_m_s, whole_deg(now.direction_deg)),
                   style);
 }
 
-std::string umb(const PlayedMoment& now, const Style& style) {
+std::string umb(const core::PlayedMoment& now, const Style& style) {
   return sentence(fmt::format("{}MWV,{:05.1f},R,{:05.1f},M,A", style.talker, now.direction_deg, now.speed_m_s), style);
 }
 
@@ -138,7 +138,7 @@ std::string wxt_characters(std::string_view text) {
           static_cast<char>('@' + crc % 64)};
 }
 
-std::string wxt(const PlayedMoment& now, const Style& style) {
+std::string wxt(const core::PlayedMoment& now, const Style& style) {
   const auto turned = [&](double by_deg) { return whole_deg(now.direction_deg + by_deg + 360.0); };
   const std::string body =
       fmt::format("{}r1,Dn={:03}D,Dm={:03}D,Dx={:03}D,Sn={:.1f}M,Sm={:.1f}M,Sx={:.1f}M", style.address, turned(-5.0),
@@ -158,7 +158,7 @@ bool is_wxt_request(std::string_view line) {
 
 struct Format {
   std::string_view name;
-  std::string (*send_messages)(const PlayedMoment& now, const Style& style);
+  std::string (*send_messages)(const core::PlayedMoment& now, const Style& style);
   bool (*is_request)(std::string_view line) = nullptr;
 };
 constexpr std::array<Format, 11> kFormats = {{{"mwv", mwv},
@@ -177,15 +177,16 @@ class NmeaDevice final : public TextDevice {
  public:
   explicit NmeaDevice(std::vector<Format> formats) : formats_(std::move(formats)) {}
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kBadChecksum, FaultKind::kWrongId};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kBadChecksum, core::FaultKind::kWrongId};
     return kKnown;
   }
 
-  std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> fault) override {
+  std::vector<std::string> send_messages(const core::PlayedMoment& moment,
+                                         std::optional<core::FaultKind> fault) override {
     Style style;
-    if (fault == FaultKind::kBadChecksum) style.checksum_error = 1;
-    if (fault == FaultKind::kWrongId) {
+    if (fault == core::FaultKind::kBadChecksum) style.checksum_error = 1;
+    if (fault == core::FaultKind::kWrongId) {
       style.talker = "II";
       style.node = 'R';
       style.address = '1';

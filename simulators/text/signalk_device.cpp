@@ -27,8 +27,8 @@ class SignalKDevice final : public TextDevice {
  public:
   explicit SignalKDevice(bool is_asked) : is_asked_(is_asked), is_subscribed_(!is_asked) {}
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kWrongId};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kWrongId};
     return kKnown;
   }
   std::string greeting() const override {
@@ -45,9 +45,10 @@ class SignalKDevice final : public TextDevice {
     is_subscribed_ = true;
     recalls_ = true;
   }
-  std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> fault) override {
+  std::vector<std::string> send_messages(const core::PlayedMoment& moment,
+                                         std::optional<core::FaultKind> fault) override {
     if (!is_subscribed_) return {};
-    const std::string_view source = fault == FaultKind::kWrongId ? "n2k.36" : "n2k.35";
+    const std::string_view source = fault == core::FaultKind::kWrongId ? "n2k.36" : "n2k.35";
     std::vector<std::string> messages;
     if (recalls_) {
       constexpr std::string_view kDayBefore = "2026-06-20T12:00:00.000Z";

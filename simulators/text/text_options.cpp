@@ -17,7 +17,7 @@ CLI::Option_group& SerialOrTcpOptions::add_to(CLI::App& command, const std::stri
 
 std::unique_ptr<TextWire> SerialOrTcpOptions::make_wire() const {
   if (pty) return make_pty_wire(link);
-  const Address address = address_option("--tcp", tcp);
+  const Address address = core::address_option("--tcp", tcp);
   return make_tcp_wire(address.host, address.port);
 }
 
@@ -46,14 +46,14 @@ void TextOptions::add_websocket_to(CLI::App& command) {
 std::unique_ptr<TextWire> TextOptions::make_wire() const {
   if (!can.empty()) return make_can_wire(can);
   if (!websocket_place.empty()) {
-    const Address address = address_option("--websocket", websocket_place);
+    const Address address = core::address_option("--websocket", websocket_place);
     WebSocketWireOptions options = websocket;
     options.host = address.host;
     options.port = address.port;
     return make_websocket_wire(options);
   }
   if (udp.empty()) return line.make_wire();
-  const Address address = address_option("--udp", udp);
+  const Address address = core::address_option("--udp", udp);
   return make_udp_wire(address.host, address.port);
 }
 

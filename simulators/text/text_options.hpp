@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
 #include "simulators/text/text_simulator.hpp"
 
 namespace yuragi::simulators::text {
@@ -33,7 +33,7 @@ struct TextOptions {
   WebSocketWireOptions websocket = {};  ///< its path: what clients ask for
   std::string websocket_place;          ///< HOST:PORT; empty: no WebSocket
   double rate_hz = 4.0;
-  CommonOptions common;
+  core::CommonOptions common;
 
   /// Returns the group of options of which one says how the device is connected.
   CLI::Option_group& add_to(CLI::App& command);

@@ -18,27 +18,27 @@ constexpr std::size_t kLongestRequest = 256;
 }  // namespace
 
 TextSimulator::TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr<TextWire> wire, double rate_hz,
-                             MeasuredWind wind, std::uint64_t seed)
+                             core::MeasuredWind wind, std::uint64_t seed)
     : device_(std::move(device)),
       wire_(std::move(wire)),
       rate_hz_(rate_hz),
       wind_(std::move(wind)),
       random_(seed),
-      known_faults_{FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike,
-                    FaultKind::kGarbage, FaultKind::kSplit,  FaultKind::kPartial} {
-  const auto add = [this](std::span<const FaultKind> more) {
+      known_faults_{core::FaultKind::kSilence, core::FaultKind::kFreeze, core::FaultKind::kSpike,
+                    core::FaultKind::kGarbage, core::FaultKind::kSplit,  core::FaultKind::kPartial} {
+  const auto add = [this](std::span<const core::FaultKind> more) {
     known_faults_.insert(known_faults_.end(), more.begin(), more.end());
   };
   add(device_->known_faults());
-  if (rate_hz_ <= 0.0) known_faults_.push_back(FaultKind::kLate);
+  if (rate_hz_ <= 0.0) known_faults_.push_back(core::FaultKind::kLate);
   add(wire_->known_faults());
   wire_->greet_with(device_->greeting());
   if (device_->waits_for_clients()) wire_->wait_for_clients();
 }
 
-void TextSimulator::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+void TextSimulator::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   fault_ = fault;
-  if (fault == FaultKind::kDisconnect || fault == FaultKind::kUnplug) {
+  if (fault == core::FaultKind::kDisconnect || fault == core::FaultKind::kUnplug) {
     wire_->take_away();
     waiting_.clear();
     request_.clear();
@@ -46,7 +46,7 @@ void TextSimulator::serve(std::span<const int> ready, double time_s, std::option
     return;
   }
   wire_->bring_back();
-  wire_->refuse(fault == FaultKind::kException);
+  wire_->refuse(fault == core::FaultKind::kException);
 
   receive(wire_->read(ready), time_s, fault);
   while (!waiting_.empty() && waiting_.front().time_s <= time_s) {
@@ -56,7 +56,7 @@ void TextSimulator::serve(std::span<const int> ready, double time_s, std::option
   for (; rate_hz_ > 0.0 && next_s_ <= time_s; next_s_ += 1.0 / rate_hz_) send_messages(next_s_, fault);
 }
 
-void TextSimulator::receive(std::string_view bytes, double time_s, std::optional<FaultKind> fault) {
+void TextSimulator::receive(std::string_view bytes, double time_s, std::optional<core::FaultKind> fault) {
   for (const char c : bytes) {
     if (c != '\r' && c != '\n') {
       if (request_.size() < kLongestRequest) request_ += c;
@@ -68,22 +68,22 @@ void TextSimulator::receive(std::string_view bytes, double time_s, std::optional
   }
 }
 
-void TextSimulator::send_messages(double time_s, std::optional<FaultKind> fault) {
+void TextSimulator::send_messages(double time_s, std::optional<core::FaultKind> fault) {
   moment_ = wind_.at(time_s, fault);
-  if (fault == FaultKind::kSilence) return;
+  if (fault == core::FaultKind::kSilence) return;
   for (const std::string& message : device_->send_messages(moment_, fault)) send(message, time_s, fault);
   ++sent_;
 }
 
-void TextSimulator::send(const std::string& message, double time_s, std::optional<FaultKind> fault) {
-  if (fault == FaultKind::kGarbage) {
+void TextSimulator::send(const std::string& message, double time_s, std::optional<core::FaultKind> fault) {
+  if (fault == core::FaultKind::kGarbage) {
     std::string noise(kTextGarbageBytes, '\0');
     std::ranges::generate(noise, [this] { return static_cast<char>(random_()); });
     return send_after(0.0, noise, time_s);
   }
-  if (fault == FaultKind::kPartial) return send_after(0.0, message.substr(0, message.size() * 2 / 3), time_s);
-  if (fault == FaultKind::kLate) return send_after(kLate_s, message, time_s);
-  if (fault == FaultKind::kSplit) {
+  if (fault == core::FaultKind::kPartial) return send_after(0.0, message.substr(0, message.size() * 2 / 3), time_s);
+  if (fault == core::FaultKind::kLate) return send_after(kLate_s, message, time_s);
+  if (fault == core::FaultKind::kSplit) {
     const std::size_t size = message.size() / kPieces + 1;
     for (std::size_t piece = 0; piece * size < message.size(); ++piece) {
       send_after(static_cast<double>(piece) * kPieceGap_s, message.substr(piece * size, size), time_s);

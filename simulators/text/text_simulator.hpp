@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "simulators/played_wind.hpp"
-#include "simulators/simulator.hpp"
+#include "simulators/core/played_wind.hpp"
+#include "simulators/core/simulator.hpp"
 #include "simulators/text/text_wire.hpp"
 
 namespace yuragi::simulators::text {
@@ -23,10 +23,11 @@ class TextDevice {
 
   /// The faults of its own that it can play; freeze and spike are the wind's (MeasuredWind), faults of bytes the
   /// simulator's.
-  virtual std::span<const FaultKind> known_faults() const = 0;
+  virtual std::span<const core::FaultKind> known_faults() const = 0;
 
   /// Its messages about one moment, with their line ends.
-  virtual std::vector<std::string> send_messages(const PlayedMoment& moment, std::optional<FaultKind> fault) = 0;
+  virtual std::vector<std::string> send_messages(const core::PlayedMoment& moment,
+                                                 std::optional<core::FaultKind> fault) = 0;
 
   /// What it says to each new client, with its line end.
   virtual std::string greeting() const { return {}; }
@@ -42,23 +43,23 @@ class TextDevice {
 };
 
 /// A device that sends text over a wire: unasked, at a rate, or on request.
-class TextSimulator final : public Simulator {
+class TextSimulator final : public core::Simulator {
  public:
   /// `rate_hz`: how often it sends unasked; 0: only on request. `seed`: of the bytes of the garbage fault.
-  TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr<TextWire> wire, double rate_hz, MeasuredWind wind,
-                std::uint64_t seed);
+  TextSimulator(std::unique_ptr<TextDevice> device, std::unique_ptr<TextWire> wire, double rate_hz,
+                core::MeasuredWind wind, std::uint64_t seed);
 
   const TextWire& wire() const noexcept { return *wire_; }
 
-  std::span<const FaultKind> known_faults() const override { return known_faults_; }
+  std::span<const core::FaultKind> known_faults() const override { return known_faults_; }
   std::vector<int> descriptors() const override { return wire_->descriptors(); }
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override;
 
  private:
-  void receive(std::string_view bytes, double time_s, std::optional<FaultKind> fault);
-  void send_messages(double time_s, std::optional<FaultKind> fault);
-  void send(const std::string& message, double time_s, std::optional<FaultKind> fault);
+  void receive(std::string_view bytes, double time_s, std::optional<core::FaultKind> fault);
+  void send_messages(double time_s, std::optional<core::FaultKind> fault);
+  void send(const std::string& message, double time_s, std::optional<core::FaultKind> fault);
   void send_after(double delay_s, const std::string& bytes, double time_s);
 
   /// Bytes that wait for their moment.
@@ -70,15 +71,15 @@ class TextSimulator final : public Simulator {
   std::unique_ptr<TextDevice> device_;
   std::unique_ptr<TextWire> wire_;
   double rate_hz_;
-  MeasuredWind wind_;
+  core::MeasuredWind wind_;
   std::mt19937_64 random_;
-  std::vector<FaultKind> known_faults_;
+  std::vector<core::FaultKind> known_faults_;
   double next_s_ = 0.0;
   std::string request_;
   std::deque<Waiting> waiting_;
-  PlayedMoment moment_;
+  core::PlayedMoment moment_;
   std::uint64_t sent_ = 0;
-  std::optional<FaultKind> fault_;
+  std::optional<core::FaultKind> fault_;
 };
 
 }  // namespace yuragi::simulators::text

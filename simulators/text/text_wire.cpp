@@ -11,9 +11,9 @@
 #include <boost/asio/write.hpp>
 #include <fmt/format.h>
 
-#include "simulators/pty.hpp"
-#include "simulators/socket_address.hpp"
-#include "simulators/tcp_listener.hpp"
+#include "simulators/core/pty.hpp"
+#include "simulators/core/socket_address.hpp"
+#include "simulators/core/tcp_listener.hpp"
 
 namespace yuragi::simulators::text {
 namespace {
@@ -36,8 +36,8 @@ class PtyWire final : public TextWire {
  public:
   explicit PtyWire(const std::string& link) : pty_(link) {}
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kUnplug};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kUnplug};
     return kKnown;
   }
   std::vector<int> descriptors() const override {
@@ -57,20 +57,20 @@ class PtyWire final : public TextWire {
   std::string place() const override { return "listening on " + pty_.path(); }
 
  private:
-  Pty pty_;
+  core::Pty pty_;
 };
 
 class TcpWire final : public TextWire {
  public:
   TcpWire(const std::string& host, std::uint16_t port) : listener_(host, port) {}
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kDisconnect, FaultKind::kUnplug};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kDisconnect, core::FaultKind::kUnplug};
     return kKnown;
   }
   std::vector<int> descriptors() const override {
     std::vector<int> all;
-    if (listener_.is_open()) all.push_back(const_cast<TcpListener&>(listener_).descriptor());
+    if (listener_.is_open()) all.push_back(const_cast<core::TcpListener&>(listener_).descriptor());
     for (const Client& client : clients_) all.push_back(const_cast<tcp::socket&>(client.socket).native_handle());
     return all;
   }
@@ -128,7 +128,7 @@ class TcpWire final : public TextWire {
     std::erase_if(clients_, [](const Client& client) { return !client.socket.is_open(); });
   }
 
-  TcpListener listener_;
+  core::TcpListener listener_;
   std::vector<Client> clients_;
   std::string greeting_;
   bool waits_for_clients_ = false;
@@ -136,13 +136,13 @@ class TcpWire final : public TextWire {
 
 class UdpWire final : public TextWire {
  public:
-  UdpWire(const std::string& host, std::uint16_t port) : endpoint_(socket_address(host), port) {
+  UdpWire(const std::string& host, std::uint16_t port) : endpoint_(core::socket_address(host), port) {
     if (port == 0) throw std::runtime_error("cannot send to port 0");
     bring_back();
   }
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kUnplug};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kUnplug};
     return kKnown;
   }
   std::vector<int> descriptors() const override { return {}; }

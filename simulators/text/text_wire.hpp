@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "simulators/faults.hpp"
+#include "simulators/core/faults.hpp"
 
 namespace yuragi::simulators::text {
 
@@ -17,7 +17,7 @@ class TextWire {
   virtual ~TextWire() = default;
 
   /// The faults of the transport itself.
-  virtual std::span<const FaultKind> known_faults() const = 0;
+  virtual std::span<const core::FaultKind> known_faults() const = 0;
   /// The descriptors on which bytes or new clients arrive.
   virtual std::vector<int> descriptors() const = 0;
   /// The bytes that clients have sent; `ready` are the descriptors that can be read.

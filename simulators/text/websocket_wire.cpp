@@ -18,7 +18,7 @@
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/stream.hpp>
 
-#include "simulators/tcp_listener.hpp"
+#include "simulators/core/tcp_listener.hpp"
 #include "simulators/text/text_wire.hpp"
 
 namespace yuragi::simulators::text {
@@ -134,13 +134,14 @@ class WebSocketWire final : public TextWire {
       : options_(options), listener_(options.host, options.port) {}
   ~WebSocketWire() override { drop_all(); }
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kException, FaultKind::kDisconnect, FaultKind::kUnplug};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kException, core::FaultKind::kDisconnect,
+                                          core::FaultKind::kUnplug};
     return kKnown;
   }
   std::vector<int> descriptors() const override {
     std::vector<int> all;
-    if (listener_.is_open()) all.push_back(const_cast<TcpListener&>(listener_).descriptor());
+    if (listener_.is_open()) all.push_back(const_cast<core::TcpListener&>(listener_).descriptor());
     for (const auto& peer : peers_) {
       if (!peer->has_ended()) all.push_back(peer->descriptor());
     }
@@ -196,7 +197,7 @@ class WebSocketWire final : public TextWire {
   }
 
   WebSocketWireOptions options_;
-  TcpListener listener_;
+  core::TcpListener listener_;
   boost::asio::io_context context_{1};
   std::list<std::shared_ptr<WebSocketPeer>> peers_;
   std::string greeting_;

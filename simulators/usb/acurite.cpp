@@ -19,8 +19,8 @@ namespace yuragi::simulators::usb {
 namespace {
 
 // Silence is a console in mode 1 or 2: it is on the bus and refuses every request.
-constexpr std::array kAcuriteFaults = {FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike, FaultKind::kGarbage,
-                                       FaultKind::kPartial};
+constexpr std::array kAcuriteFaults = {core::FaultKind::kSilence, core::FaultKind::kFreeze, core::FaultKind::kSpike,
+                                       core::FaultKind::kGarbage, core::FaultKind::kPartial};
 constexpr double kReport1Every_s = 18.0;
 constexpr double kMetrePerSecond_kmh = 3.6;
 
@@ -58,10 +58,10 @@ class Acurite final : public HidModel {
     measure();
   }
 
-  bool take_output(std::span<const std::uint8_t>) override { return !suffers(FaultKind::kSilence); }
+  bool take_output(std::span<const std::uint8_t>) override { return !suffers(core::FaultKind::kSilence); }
 
   std::optional<UsbBytes> input_report(std::uint8_t id) override {
-    if (suffers(FaultKind::kSilence)) return std::nullopt;
+    if (suffers(core::FaultKind::kSilence)) return std::nullopt;
     UsbBytes report;
     if (id == 1) report = report_1_;
     if (id == 2) {
@@ -69,11 +69,11 @@ class Acurite final : public HidModel {
                 0x18, 0xEE, 0x09, 0xC4, 0x08, 0x22, 0x06, 0x07, 0x7B, 0xA4, 0x8A, 0x46};
     }
     if (report.empty()) return std::nullopt;
-    if (suffers(FaultKind::kGarbage)) {
+    if (suffers(core::FaultKind::kGarbage)) {
       report = random_bytes(report.size());
       report[0] = id;
     }
-    if (suffers(FaultKind::kPartial)) report.resize(report.size() / 2);
+    if (suffers(core::FaultKind::kPartial)) report.resize(report.size() / 2);
     return report;
   }
 

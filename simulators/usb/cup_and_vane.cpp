@@ -4,7 +4,7 @@
 
 namespace yuragi::simulators::usb {
 
-void CupAndVane::advance(double time_s, const PlayedMoment& wind, bool is_jammed) {
+void CupAndVane::advance(double time_s, const core::PlayedMoment& wind, bool is_jammed) {
   const double step_s = std::max(time_s - time_s_, 0.0);
   time_s_ = std::max(time_s, time_s_);
   if (is_jammed) return;

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "simulators/played_wind.hpp"
+#include "simulators/core/played_wind.hpp"
 
 namespace yuragi::simulators::usb {
 
@@ -21,7 +21,7 @@ class CupAndVane {
   static constexpr double kOpenWiper_v = 5.5;
 
   /// Advances to `time_s`, which must not decrease. A jammed cup makes no pulses, and the vane does not turn.
-  void advance(double time_s, const PlayedMoment& wind, bool is_jammed);
+  void advance(double time_s, const core::PlayedMoment& wind, bool is_jammed);
 
   /// Pulses since the start.
   std::uint64_t pulses() const noexcept;

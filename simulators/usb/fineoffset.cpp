@@ -21,9 +21,9 @@
 namespace yuragi::simulators::usb {
 namespace {
 
-constexpr std::array kFineOffsetFaults = {FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike,
-                                          FaultKind::kGarbage, FaultKind::kSplit,  FaultKind::kPartial,
-                                          FaultKind::kLate};
+constexpr std::array kFineOffsetFaults = {
+    core::FaultKind::kSilence, core::FaultKind::kFreeze,  core::FaultKind::kSpike, core::FaultKind::kGarbage,
+    core::FaultKind::kSplit,   core::FaultKind::kPartial, core::FaultKind::kLate};
 constexpr std::size_t kMemory = 0x10000;
 constexpr std::uint16_t kFirstRecord = 0x0100;
 constexpr std::uint16_t kRecordCountAt = 0x001B;
@@ -134,7 +134,7 @@ void FineOffset::end_minute() {
 
 bool FineOffset::take_output(std::span<const std::uint8_t> report) {
   if (report.size() != 8) return false;
-  if (suffers(FaultKind::kSilence)) return true;
+  if (suffers(core::FaultKind::kSilence)) return true;
   const auto address = static_cast<std::uint16_t>((report[1] << 8U) | report[2]);
   const bool is_repeated = std::equal(report.begin(), report.begin() + 4, report.begin() + 4);
   if (report[0] == 0xA1 && is_repeated) {
@@ -158,13 +158,13 @@ void FineOffset::reply(std::uint16_t address) {
 }
 
 void FineOffset::queue_block(UsbBytes block) {
-  if (suffers(FaultKind::kGarbage)) block = random_bytes(block.size());
-  if (suffers(FaultKind::kPartial)) block.resize(16);
-  double delay_s = suffers(FaultKind::kLate) ? kBlockLateReply_s : kBlockReply_s;
+  if (suffers(core::FaultKind::kGarbage)) block = random_bytes(block.size());
+  if (suffers(core::FaultKind::kPartial)) block.resize(16);
+  double delay_s = suffers(core::FaultKind::kLate) ? kBlockLateReply_s : kBlockReply_s;
   for (std::size_t at = 0; at < block.size(); at += 8) {
     const auto from = block.begin() + static_cast<std::ptrdiff_t>(at);
     queue_report(UsbBytes(from, from + 8), delay_s);
-    delay_s += suffers(FaultKind::kSplit) ? kBlockSplitReport_s : kBlockReport_s;
+    delay_s += suffers(core::FaultKind::kSplit) ? kBlockSplitReport_s : kBlockReport_s;
   }
 }
 

@@ -97,14 +97,15 @@ unsigned compass_point(double direction_deg) {
   return static_cast<unsigned>(std::lround(direction_deg / 22.5)) % 16U;
 }
 
-HidModel::HidModel(const HidIdentity& identity, std::span<const FaultKind> known_faults, const HidModelOptions& options)
+HidModel::HidModel(const HidIdentity& identity, std::span<const core::FaultKind> known_faults,
+                   const HidModelOptions& options)
     : descriptors_(hid_descriptors(identity)),
       known_faults_(known_faults),
       options_(options),
       has_out_endpoint_(identity.has_out_endpoint),
       random_(options.seed) {}
 
-void HidModel::advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) {
+void HidModel::advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) {
   now_s_ = std::max(now_s_, time_s);
   wind_ = wind;
   fault_ = fault;

@@ -44,15 +44,15 @@ struct HidModelOptions {
 class HidModel : public UsbDevice {
  public:
   const UsbDescriptors& descriptors() const final { return descriptors_; }
-  std::span<const FaultKind> known_faults() const final { return known_faults_; }
-  void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) final;
+  std::span<const core::FaultKind> known_faults() const final { return known_faults_; }
+  void advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) final;
   std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) final;
   std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) final;
   bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) final;
 
  protected:
   /// `known_faults` must live for ever.
-  HidModel(const HidIdentity& identity, std::span<const FaultKind> known_faults, const HidModelOptions& options);
+  HidModel(const HidIdentity& identity, std::span<const core::FaultKind> known_faults, const HidModelOptions& options);
 
   /// Advances to now_s().
   virtual void play() = 0;
@@ -62,8 +62,8 @@ class HidModel : public UsbDevice {
   virtual std::optional<UsbBytes> input_report(std::uint8_t id);
 
   double now_s() const noexcept { return now_s_; }
-  const PlayedMoment& wind() const noexcept { return wind_; }
-  bool suffers(FaultKind kind) const noexcept { return fault_ == kind; }
+  const core::PlayedMoment& wind() const noexcept { return wind_; }
+  bool suffers(core::FaultKind kind) const noexcept { return fault_ == kind; }
   /// A duration of the real station, divided by the pace.
   double paced(double duration_s) const noexcept { return duration_s / options_.pace; }
 
@@ -82,14 +82,14 @@ class HidModel : public UsbDevice {
   };
 
   UsbDescriptors descriptors_;
-  std::span<const FaultKind> known_faults_;
+  std::span<const core::FaultKind> known_faults_;
   HidModelOptions options_;
   bool has_out_endpoint_;
   std::deque<Waiting> waiting_;
   std::mt19937_64 random_;
   double now_s_ = 0.0;
-  PlayedMoment wind_;
-  std::optional<FaultKind> fault_;
+  core::PlayedMoment wind_;
+  std::optional<core::FaultKind> fault_;
 };
 
 /// Which of the 16 points of the compass: 0 north, 1 north-north-east ... 15.

@@ -97,24 +97,24 @@ class Labjack final : public UsbDevice {
  public:
   const UsbDescriptors& descriptors() const override { return descriptors_; }
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kSilence,
-                                          FaultKind::kFreeze,
-                                          FaultKind::kSpike,
-                                          FaultKind::kGarbage,
-                                          FaultKind::kPartial,
-                                          FaultKind::kBadChecksum,
-                                          FaultKind::kWrongTransaction,
-                                          FaultKind::kLate,
-                                          FaultKind::kException,
-                                          FaultKind::kUnplug};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kSilence,
+                                          core::FaultKind::kFreeze,
+                                          core::FaultKind::kSpike,
+                                          core::FaultKind::kGarbage,
+                                          core::FaultKind::kPartial,
+                                          core::FaultKind::kBadChecksum,
+                                          core::FaultKind::kWrongTransaction,
+                                          core::FaultKind::kLate,
+                                          core::FaultKind::kException,
+                                          core::FaultKind::kUnplug};
     return kKnown;
   }
 
-  void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) override {
+  void advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) override {
     fault_ = fault;
-    cup_and_vane_.advance(time_s, wind, fault == FaultKind::kFreeze);
-    if (fault != FaultKind::kUnplug) return;
+    cup_and_vane_.advance(time_s, wind, fault == core::FaultKind::kFreeze);
+    if (fault != core::FaultKind::kUnplug) return;
     // Without power it loses its configuration.
     counted_from_ = cup_and_vane_.pulses();
     timers_and_counters_ = 0;
@@ -129,19 +129,19 @@ class Labjack final : public UsbDevice {
 
   bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) override {
     if (endpoint != kCommandEndpoint) return false;
-    if (fault_ == FaultKind::kSilence) return true;
+    if (fault_ == core::FaultKind::kSilence) return true;
     // A late reply is sent with the next command.
     std::ranges::move(late_, std::back_inserter(replies_));
     late_.clear();
     if (std::optional<UsbBytes> reply = reply_to(data)) {
-      (fault_ == FaultKind::kLate ? late_ : replies_).push_back(spoilt(std::move(*reply)));
+      (fault_ == core::FaultKind::kLate ? late_ : replies_).push_back(spoilt(std::move(*reply)));
     }
     while (replies_.size() > kMostReplies) replies_.pop_front();
     return true;
   }
 
   std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) override {
-    if (endpoint != kReplyEndpoint || replies_.empty() || fault_ == FaultKind::kSilence) return std::nullopt;
+    if (endpoint != kReplyEndpoint || replies_.empty() || fault_ == core::FaultKind::kSilence) return std::nullopt;
     UsbBytes& next = replies_.front();
     const auto size = static_cast<std::ptrdiff_t>(std::min(max_size, next.size()));
     UsbBytes part(next.begin(), next.begin() + size);
@@ -170,10 +170,10 @@ class Labjack final : public UsbDevice {
 
   UsbBytes feedback(UsbView data) const {
     UsbBytes reply = {0, 0, data[0]};
-    if (fault_ == FaultKind::kWrongTransaction) --reply[2];
+    if (fault_ == core::FaultKind::kWrongTransaction) --reply[2];
     std::uint8_t part = 0;
     const auto refuse = [&](std::uint8_t error) { return frame_of(0x00, {error, part, reply[2]}); };
-    if (fault_ == FaultKind::kException) return refuse(kNotEnabled);
+    if (fault_ == core::FaultKind::kException) return refuse(kNotEnabled);
     for (std::size_t at = 1; at < data.size(); ++part) {
       const std::uint8_t type = data[at];
       const std::size_t remaining = data.size() - at;
@@ -256,11 +256,11 @@ class Labjack final : public UsbDevice {
   }
 
   UsbBytes spoilt(UsbBytes reply) {
-    if (fault_ == FaultKind::kGarbage) {
+    if (fault_ == core::FaultKind::kGarbage) {
       std::ranges::generate(reply, [this] { return static_cast<std::uint8_t>(random_()); });
     }
-    if (fault_ == FaultKind::kBadChecksum) ++reply[reply.size() > kFrameHeader ? 4 : 0];
-    if (fault_ == FaultKind::kPartial) reply.pop_back();
+    if (fault_ == core::FaultKind::kBadChecksum) ++reply[reply.size() > kFrameHeader ? 4 : 0];
+    if (fault_ == core::FaultKind::kPartial) reply.pop_back();
     return reply;
   }
 
@@ -271,7 +271,7 @@ class Labjack final : public UsbDevice {
   std::array<std::uint8_t, 2> digital_as_analog_{};
   std::deque<UsbBytes> replies_;
   std::deque<UsbBytes> late_;
-  std::optional<FaultKind> fault_;
+  std::optional<core::FaultKind> fault_;
   std::mt19937_64 random_{3};
 };
 

@@ -5,28 +5,28 @@
 #include <vector>
 
 #include "engine/platform/child_process.hpp"
-#include "simulators/simulator.hpp"
+#include "simulators/core/simulator.hpp"
 
 namespace yuragi::simulators::usb {
 
 /// A program that runs in the simulator's testbed; when it ends, the simulation ends. Its standard input is empty,
 /// since the simulator's own takes commands.
-class LaunchedProgram final : public Simulator {
+class LaunchedProgram final : public core::Simulator {
  public:
   /// Starts it; `simulator` must outlive this. Throws std::system_error.
-  LaunchedProgram(const std::vector<std::string>& command, Simulator& simulator);
+  LaunchedProgram(const std::vector<std::string>& command, core::Simulator& simulator);
 
   /// As a shell reports it; nothing: it still runs.
   std::optional<int> exit_code() const noexcept { return exit_code_; }
 
-  std::span<const FaultKind> known_faults() const override { return simulator_.known_faults(); }
+  std::span<const core::FaultKind> known_faults() const override { return simulator_.known_faults(); }
   std::vector<int> descriptors() const override;
-  void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
+  void serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) override;
   std::string status() const override { return simulator_.status(); }
   bool is_over() const override { return exit_code_.has_value(); }
 
  private:
-  Simulator& simulator_;
+  core::Simulator& simulator_;
   platform::ChildProcess program_;
   std::optional<int> exit_code_;
 };

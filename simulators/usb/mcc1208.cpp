@@ -65,28 +65,28 @@ class Mcc1208 final : public UsbDevice {
  public:
   const UsbDescriptors& descriptors() const override { return descriptors_; }
 
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kSilence, FaultKind::kFreeze,  FaultKind::kSpike,
-                                          FaultKind::kGarbage, FaultKind::kPartial, FaultKind::kException,
-                                          FaultKind::kUnplug};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {
+        core::FaultKind::kSilence, core::FaultKind::kFreeze,    core::FaultKind::kSpike, core::FaultKind::kGarbage,
+        core::FaultKind::kPartial, core::FaultKind::kException, core::FaultKind::kUnplug};
     return kKnown;
   }
 
-  void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) override {
+  void advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) override {
     fault_ = fault;
-    cup_and_vane_.advance(time_s, wind, fault == FaultKind::kFreeze);
-    if (fault == FaultKind::kUnplug) counted_from_ = cup_and_vane_.pulses();  // without power the count is lost
+    cup_and_vane_.advance(time_s, wind, fault == core::FaultKind::kFreeze);
+    if (fault == core::FaultKind::kUnplug) counted_from_ = cup_and_vane_.pulses();  // without power the count is lost
   }
 
   std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> /*data*/) override {
-    if (fault_ == FaultKind::kException) return std::nullopt;
+    if (fault_ == core::FaultKind::kException) return std::nullopt;
     std::optional<UsbBytes> reply = setup.request_type == 0xC0 ? reply_to(setup) : obey(setup);
     if (!reply) return std::nullopt;
     if (reply->size() > setup.length) reply->resize(setup.length);
-    if (fault_ == FaultKind::kGarbage) {
+    if (fault_ == core::FaultKind::kGarbage) {
       std::ranges::generate(*reply, [this] { return static_cast<std::uint8_t>(random_()); });
     }
-    if (fault_ == FaultKind::kPartial && !reply->empty()) reply->pop_back();
+    if (fault_ == core::FaultKind::kPartial && !reply->empty()) reply->pop_back();
     return reply;
   }
 
@@ -140,7 +140,7 @@ class Mcc1208 final : public UsbDevice {
   UsbBytes memory_ = calibration_memory();
   CupAndVane cup_and_vane_;
   std::uint64_t counted_from_ = 0;
-  std::optional<FaultKind> fault_;
+  std::optional<core::FaultKind> fault_;
   std::mt19937_64 random_{1208};
 };
 

@@ -17,9 +17,9 @@
 namespace yuragi::simulators::usb {
 namespace {
 
-constexpr std::array kTe923Faults = {FaultKind::kSilence,     FaultKind::kFreeze, FaultKind::kSpike,
-                                     FaultKind::kGarbage,     FaultKind::kSplit,  FaultKind::kPartial,
-                                     FaultKind::kBadChecksum, FaultKind::kLate};
+constexpr std::array kTe923Faults = {core::FaultKind::kSilence,     core::FaultKind::kFreeze, core::FaultKind::kSpike,
+                                     core::FaultKind::kGarbage,     core::FaultKind::kSplit,  core::FaultKind::kPartial,
+                                     core::FaultKind::kBadChecksum, core::FaultKind::kLate};
 constexpr double kTe923Every_s = 33.0;
 constexpr double kTe923Reply_s = 0.05;       // from the request to the first report
 constexpr double kTe923Report_s = 0.01;      // from one report to the next
@@ -67,7 +67,7 @@ class Te923 final : public HidModel {
   bool take_output(std::span<const std::uint8_t> report) override {
     if (report.size() != 8) return false;
     const bool is_request = report[0] == 0x05 && report[1] == 0xAF && xor_of(report.subspan(1, 5)) == 0;
-    if (is_request && !suffers(FaultKind::kSilence)) {
+    if (is_request && !suffers(core::FaultKind::kSilence)) {
       reply(report[2] + 0x100U * report[3] + 0x10000U * report[4]);
     }
     return true;
@@ -87,19 +87,19 @@ class Te923 final : public HidModel {
     block[0] = 0x5A;
     if (address == kTe923ReadingsAt) std::copy(readings_.begin(), readings_.end(), block.begin() + 1);
     block.push_back(xor_of(block));
-    if (suffers(FaultKind::kBadChecksum)) block.back() ^= 0x05U;
-    if (suffers(FaultKind::kGarbage)) block = random_bytes(block.size());
-    if (suffers(FaultKind::kPartial)) block.resize(block.size() / 2);
+    if (suffers(core::FaultKind::kBadChecksum)) block.back() ^= 0x05U;
+    if (suffers(core::FaultKind::kGarbage)) block = random_bytes(block.size());
+    if (suffers(core::FaultKind::kPartial)) block.resize(block.size() / 2);
 
     drop_reports();
-    double delay_s = suffers(FaultKind::kLate) ? kTe923LateReply_s : kTe923Reply_s;
+    double delay_s = suffers(core::FaultKind::kLate) ? kTe923LateReply_s : kTe923Reply_s;
     for (std::size_t at = 0; at < block.size();) {
       const std::size_t count = std::min<std::size_t>(7, block.size() - at);
       UsbBytes report(8);
       report[0] = static_cast<std::uint8_t>(count);
       std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(at), count, report.begin() + 1);
       queue_report(std::move(report), delay_s);
-      delay_s += suffers(FaultKind::kSplit) ? kTe923SplitReport_s : kTe923Report_s;
+      delay_s += suffers(core::FaultKind::kSplit) ? kTe923SplitReport_s : kTe923Report_s;
       at += count;
     }
   }

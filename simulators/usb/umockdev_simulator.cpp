@@ -166,12 +166,12 @@ struct UmockdevSimulator::State {
   }
 
   UmockdevTestbed testbed;
-  std::vector<FaultKind> known_faults;
+  std::vector<core::FaultKind> known_faults;
   std::vector<std::unique_ptr<Socket>> sockets;
   std::vector<std::unique_ptr<EmulatedNode>> gone;  // of unplugged devices, still open in a program
   unsigned device_number = 1;                       // the root hub's
   unsigned hid_number = 0;
-  std::optional<FaultKind> fault;
+  std::optional<core::FaultKind> fault;
 };
 
 UmockdevSimulator::UmockdevSimulator(std::vector<std::unique_ptr<UsbPort>> ports)
@@ -179,7 +179,7 @@ UmockdevSimulator::UmockdevSimulator(std::vector<std::unique_ptr<UsbPort>> ports
 
 UmockdevSimulator::~UmockdevSimulator() = default;
 
-std::span<const FaultKind> UmockdevSimulator::known_faults() const {
+std::span<const core::FaultKind> UmockdevSimulator::known_faults() const {
   return state_->known_faults;
 }
 
@@ -193,7 +193,7 @@ std::vector<int> UmockdevSimulator::descriptors() const {
   return all;
 }
 
-void UmockdevSimulator::serve(std::span<const int> /*ready*/, double time_s, std::optional<FaultKind> fault) {
+void UmockdevSimulator::serve(std::span<const int> /*ready*/, double time_s, std::optional<core::FaultKind> fault) {
   State& state = *state_;
   state.fault = fault;
   for (std::size_t i = 0; i < state.sockets.size(); ++i) {
@@ -214,7 +214,8 @@ void UmockdevSimulator::serve(std::span<const int> /*ready*/, double time_s, std
 
 std::string UmockdevSimulator::status() const {
   const State& state = *state_;
-  const PlayedMoment moment = state.sockets.empty() ? PlayedMoment{} : state.sockets.front()->port->moment();
+  const core::PlayedMoment moment =
+      state.sockets.empty() ? core::PlayedMoment{} : state.sockets.front()->port->moment();
   std::size_t open = 0;
   for (const auto& socket : state.sockets) {
     if (socket->plugged) open += std::ranges::any_of(socket->plugged->nodes, &EmulatedNode::is_open) ? 1U : 0U;

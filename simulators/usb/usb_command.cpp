@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "simulators/commands.hpp"
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
+#include "simulators/usb/commands.hpp"
 #include "simulators/usb/daqs.hpp"
 #include "simulators/usb/hid_stations.hpp"
 #include "simulators/usb/usb_port.hpp"
@@ -26,7 +26,7 @@ struct UsbOptions {
   bool in_umockdev = false;
   std::vector<std::string> program;
   double pace = 1.0;
-  CommonOptions common;
+  core::CommonOptions common;
 };
 
 using MakeUsbDevice = std::unique_ptr<UsbDevice> (*)(const std::string& name, const UsbOptions& options);
@@ -41,7 +41,7 @@ std::vector<std::unique_ptr<UsbPort>> make_ports(const UsbOptions& options, Make
 }
 
 void serve_usbip(const UsbOptions& options, MakeUsbDevice make) {
-  const Address address = address_option("--usbip", options.usbip);
+  const Address address = core::address_option("--usbip", options.usbip);
   UsbipServer server(address.host, address.port, make_ports(options, make));
 
   // Scripts wait for this line.

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "simulators/faults.hpp"
-#include "simulators/played_wind.hpp"
+#include "simulators/core/faults.hpp"
+#include "simulators/core/played_wind.hpp"
 
 namespace yuragi::simulators::usb {
 
@@ -42,11 +42,11 @@ class UsbDevice {
   virtual ~UsbDevice() = default;
 
   virtual const UsbDescriptors& descriptors() const = 0;
-  virtual std::span<const FaultKind> known_faults() const = 0;
+  virtual std::span<const core::FaultKind> known_faults() const = 0;
 
   /// Advances to `time_s` after the start, in that wind. Called before anything else of that moment. kUnplug and
   /// kSilence of the whole device are played by UsbPort; wrong content is the device's own.
-  virtual void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) = 0;
+  virtual void advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) = 0;
 
   /// A control transfer. `data` is what the host sends (empty if it reads). Returns what the host receives, at most
   /// `setup.length` bytes; nothing for a request that the device refuses (a stall).

@@ -8,7 +8,8 @@ namespace yuragi::simulators::usb {
 namespace {
 
 /// The faults of every device: of its wind, or of its port.
-constexpr std::array kFaultsOfAPort = {FaultKind::kSilence, FaultKind::kFreeze, FaultKind::kSpike, FaultKind::kUnplug};
+constexpr std::array kFaultsOfAPort = {core::FaultKind::kSilence, core::FaultKind::kFreeze, core::FaultKind::kSpike,
+                                       core::FaultKind::kUnplug};
 
 /// The most transfers that a host may have pending; a kernel has a few.
 constexpr std::size_t kMostWaiting = 1024;
@@ -18,7 +19,7 @@ constexpr int kMostLost = 1000;
 
 }  // namespace
 
-UsbPort::UsbPort(std::unique_ptr<UsbDevice> device, MeasuredWind wind)
+UsbPort::UsbPort(std::unique_ptr<UsbDevice> device, core::MeasuredWind wind)
     : device_(std::move(device)),
       control_pipe_(*device_),
       summary_(summary_of(device_->descriptors())),
@@ -26,15 +27,15 @@ UsbPort::UsbPort(std::unique_ptr<UsbDevice> device, MeasuredWind wind)
       wind_(std::move(wind)) {
   const auto own = device_->known_faults();
   device_faults_.assign(own.begin(), own.end());
-  for (const FaultKind kind : own) {
+  for (const core::FaultKind kind : own) {
     if (std::ranges::count(known_faults_, kind) == 0) known_faults_.push_back(kind);
   }
 }
 
-void UsbPort::advance(double time_s, std::optional<FaultKind> fault) {
+void UsbPort::advance(double time_s, std::optional<core::FaultKind> fault) {
   moment_ = wind_.at(time_s, fault);
-  const bool was_plugged_in = std::exchange(is_plugged_in_, fault != FaultKind::kUnplug);
-  is_silent_ = fault == FaultKind::kSilence;
+  const bool was_plugged_in = std::exchange(is_plugged_in_, fault != core::FaultKind::kUnplug);
+  is_silent_ = fault == core::FaultKind::kSilence;
   if (!is_plugged_in_) waiting_.clear();
   const bool is_the_devices = fault && std::ranges::count(device_faults_, *fault) != 0;
   device_->advance(time_s, moment_, is_the_devices ? fault : std::nullopt);

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "simulators/faults.hpp"
-#include "simulators/played_wind.hpp"
+#include "simulators/core/faults.hpp"
+#include "simulators/core/played_wind.hpp"
 #include "simulators/usb/usb_device.hpp"
 #include "simulators/usb/usb_standard.hpp"
 
@@ -38,16 +38,16 @@ struct UsbOutcome {
 /// Pure. Thread-safe: no.
 class UsbPort {
  public:
-  UsbPort(std::unique_ptr<UsbDevice> device, MeasuredWind wind);
+  UsbPort(std::unique_ptr<UsbDevice> device, core::MeasuredWind wind);
 
   const UsbSummary& summary() const noexcept { return summary_; }
   const UsbDescriptors& descriptors() const { return device_->descriptors(); }
-  const PlayedMoment& moment() const noexcept { return moment_; }
+  const core::PlayedMoment& moment() const noexcept { return moment_; }
   /// The faults of the device, and those of its port.
-  std::span<const FaultKind> known_faults() const noexcept { return known_faults_; }
+  std::span<const core::FaultKind> known_faults() const noexcept { return known_faults_; }
 
   /// Advances to `time_s` after the start. Unplugging drops all transfers.
-  void advance(double time_s, std::optional<FaultKind> fault);
+  void advance(double time_s, std::optional<core::FaultKind> fault);
   bool is_plugged_in() const noexcept { return is_plugged_in_; }
 
   void submit(UsbTransfer transfer);
@@ -66,10 +66,10 @@ class UsbPort {
   std::unique_ptr<UsbDevice> device_;
   UsbControlPipe control_pipe_;
   UsbSummary summary_;
-  std::vector<FaultKind> known_faults_;
-  std::vector<FaultKind> device_faults_;
-  MeasuredWind wind_;
-  PlayedMoment moment_;
+  std::vector<core::FaultKind> known_faults_;
+  std::vector<core::FaultKind> device_faults_;
+  core::MeasuredWind wind_;
+  core::PlayedMoment moment_;
   bool is_plugged_in_ = true;
   bool is_silent_ = false;
   std::deque<UsbTransfer> waiting_;

@@ -173,9 +173,9 @@ struct UsbipServer::State {
   asio::io_context context;  // never run: every call here returns at once
   tcp::acceptor acceptor{context};
   std::vector<std::unique_ptr<UsbPort>> ports;
-  std::vector<FaultKind> known_faults;
+  std::vector<core::FaultKind> known_faults;
   std::vector<std::unique_ptr<Client>> clients;
-  std::optional<FaultKind> fault;
+  std::optional<core::FaultKind> fault;
   std::string trouble;  // what was wrong with the last connection that was closed
 };
 
@@ -188,7 +188,7 @@ std::uint16_t UsbipServer::port() const {
   return state_->acceptor.local_endpoint().port();
 }
 
-std::span<const FaultKind> UsbipServer::known_faults() const {
+std::span<const core::FaultKind> UsbipServer::known_faults() const {
   return state_->known_faults;
 }
 
@@ -198,7 +198,7 @@ std::vector<int> UsbipServer::descriptors() const {
   return all;
 }
 
-void UsbipServer::serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) {
+void UsbipServer::serve(std::span<const int> ready, double time_s, std::optional<core::FaultKind> fault) {
   State& state = *state_;
   state.fault = fault;
   for (const auto& port : state.ports) port->advance(time_s, fault);
@@ -219,7 +219,7 @@ void UsbipServer::serve(std::span<const int> ready, double time_s, std::optional
 
 std::string UsbipServer::status() const {
   const State& state = *state_;
-  const PlayedMoment moment = state.ports.empty() ? PlayedMoment{} : state.ports.front()->moment();
+  const core::PlayedMoment moment = state.ports.empty() ? core::PlayedMoment{} : state.ports.front()->moment();
   const auto attached =
       std::ranges::count_if(state.clients, [](const auto& client) { return client->device.has_value(); });
   return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {} of {} attached{}{}{}{}", moment.speed_m_s,
@@ -228,10 +228,10 @@ std::string UsbipServer::status() const {
                      state.trouble.empty() ? "" : ", given up: ", state.trouble);
 }
 
-std::vector<FaultKind> faults_of(std::span<const std::unique_ptr<UsbPort>> ports) {
-  std::vector<FaultKind> all;
+std::vector<core::FaultKind> faults_of(std::span<const std::unique_ptr<UsbPort>> ports) {
+  std::vector<core::FaultKind> all;
   for (const auto& port : ports) {
-    for (const FaultKind kind : port->known_faults()) {
+    for (const core::FaultKind kind : port->known_faults()) {
       if (std::ranges::count(all, kind) == 0) all.push_back(kind);
     }
   }

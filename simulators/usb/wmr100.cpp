@@ -19,9 +19,9 @@
 namespace yuragi::simulators::usb {
 namespace {
 
-constexpr std::array kWmr100Faults = {FaultKind::kSilence,    FaultKind::kFreeze, FaultKind::kSpike,
-                                      FaultKind::kGarbage,    FaultKind::kSplit,  FaultKind::kPartial,
-                                      FaultKind::kBadChecksum};
+constexpr std::array kWmr100Faults = {core::FaultKind::kSilence,    core::FaultKind::kFreeze, core::FaultKind::kSpike,
+                                      core::FaultKind::kGarbage,    core::FaultKind::kSplit,  core::FaultKind::kPartial,
+                                      core::FaultKind::kBadChecksum};
 constexpr std::array<std::uint8_t, 4> kWmr100StartsWith = {0x20, 0x00, 0x08, 0x01};
 
 constexpr double kWmr100Report_s = 0.01;       // from one report to the next
@@ -52,7 +52,7 @@ class Wmr100 final : public HidModel {
     for (std::size_t i = 0; i < kFrameKinds.size(); ++i) {
       if (now_s() < next_s_[i]) continue;
       next_s_[i] = std::max(next_s_[i] + paced(kFrameKinds[i].every_s), now_s());
-      if (is_started_ && !suffers(FaultKind::kSilence)) queue_frame(frame(kFrameKinds[i].kind));
+      if (is_started_ && !suffers(core::FaultKind::kSilence)) queue_frame(frame(kFrameKinds[i].kind));
     }
   }
 
@@ -97,25 +97,25 @@ class Wmr100 final : public HidModel {
     }
     unsigned sum = 0;
     for (const std::uint8_t byte : bytes) sum += byte;
-    if (suffers(FaultKind::kBadChecksum)) sum ^= 0x0005U;
+    if (suffers(core::FaultKind::kBadChecksum)) sum ^= 0x0005U;
     bytes.push_back(static_cast<std::uint8_t>(sum & 0xFFU));
     bytes.push_back(static_cast<std::uint8_t>(sum >> 8U));
     return bytes;
   }
 
   void queue_frame(UsbBytes bytes) {
-    if (suffers(FaultKind::kGarbage)) bytes = random_bytes(bytes.size());
-    if (suffers(FaultKind::kPartial)) bytes.resize(bytes.size() / 2);
+    if (suffers(core::FaultKind::kGarbage)) bytes = random_bytes(bytes.size());
+    if (suffers(core::FaultKind::kPartial)) bytes.resize(bytes.size() / 2);
     bytes.insert(bytes.begin(), {0xFF, 0xFF});
 
     // One or two bytes a report most often, as the real console does; the length of garbage is random.
-    const double gap_s = suffers(FaultKind::kSplit) ? kWmr100SplitReport_s : kWmr100Report_s;
+    const double gap_s = suffers(core::FaultKind::kSplit) ? kWmr100SplitReport_s : kWmr100Report_s;
     report_from_s_ = std::max(report_from_s_, now_s());
     for (std::size_t at = 0; at < bytes.size();) {
-      const std::size_t wanted = suffers(FaultKind::kSplit) ? 1 : 1 + random_below(3);
+      const std::size_t wanted = suffers(core::FaultKind::kSplit) ? 1 : 1 + random_below(3);
       const std::size_t count = std::min(wanted, bytes.size() - at);
       UsbBytes report(8);
-      report[0] = static_cast<std::uint8_t>(suffers(FaultKind::kGarbage) ? random_below(256) : count);
+      report[0] = static_cast<std::uint8_t>(suffers(core::FaultKind::kGarbage) ? random_below(256) : count);
       std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), count, report.begin() + 1);
       queue_report(std::move(report), report_from_s_ - now_s());
       report_from_s_ += gap_s;

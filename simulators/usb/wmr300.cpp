@@ -19,8 +19,9 @@
 namespace yuragi::simulators::usb {
 namespace {
 
-constexpr std::array kWmr300Faults = {FaultKind::kSilence, FaultKind::kFreeze,  FaultKind::kSpike,
-                                      FaultKind::kGarbage, FaultKind::kPartial, FaultKind::kBadChecksum};
+constexpr std::array kWmr300Faults = {core::FaultKind::kSilence, core::FaultKind::kFreeze,
+                                      core::FaultKind::kSpike,   core::FaultKind::kGarbage,
+                                      core::FaultKind::kPartial, core::FaultKind::kBadChecksum};
 constexpr std::array<std::uint8_t, 5> kHeartbeat = {0xA6, 0x91, 0xCA, 0x45, 0x52};
 constexpr std::array<std::uint8_t, 6> kBegin = {0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1};
 constexpr std::array<std::uint8_t, 3> kAcknowledgement = {0x41, 0x43, 0x4B};
@@ -54,7 +55,7 @@ class Wmr300 final : public HidModel {
  protected:
   void play() override {
     gust_m_s_ = std::max(gust_m_s_, wind().speed_m_s);
-    const bool sends = has_begun_ && now_s() < received_s_ + paced(kRunsOnFor_s) && !suffers(FaultKind::kSilence);
+    const bool sends = has_begun_ && now_s() < received_s_ + paced(kRunsOnFor_s) && !suffers(core::FaultKind::kSilence);
     for (std::size_t i = 0; i < kPacketKinds.size(); ++i) {
       if (now_s() < next_s_[i]) continue;
       next_s_[i] = std::max(next_s_[i] + paced(kPacketKinds[i].every_s), now_s());
@@ -68,10 +69,10 @@ class Wmr300 final : public HidModel {
     };
     if (begins_with(kHeartbeat)) {
       received_s_ = now_s();
-      if (!suffers(FaultKind::kSilence)) queue_packet(who_it_is());
+      if (!suffers(core::FaultKind::kSilence)) queue_packet(who_it_is());
     } else if (begins_with(kBegin)) {
       has_begun_ = true;
-      if (!suffers(FaultKind::kSilence)) queue_packet({0x41, 0x43, 0x4B, 0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1});
+      if (!suffers(core::FaultKind::kSilence)) queue_packet({0x41, 0x43, 0x4B, 0x73, 0xE5, 0x0A, 0x26, 0x0E, 0xC1});
     } else if (begins_with(kAcknowledgement)) {
       received_s_ = now_s();
     }
@@ -114,18 +115,18 @@ class Wmr300 final : public HidModel {
     }
     unsigned sum = 0;
     for (const std::uint8_t byte : bytes) sum += byte;
-    if (suffers(FaultKind::kBadChecksum)) sum ^= 0x0005U;
+    if (suffers(core::FaultKind::kBadChecksum)) sum ^= 0x0005U;
     put(bytes.size() - 2, static_cast<double>(sum & 0xFFFFU));
     return bytes;
   }
 
   void queue_packet(UsbBytes bytes) {
-    if (suffers(FaultKind::kPartial)) {
+    if (suffers(core::FaultKind::kPartial)) {
       bytes.resize(bytes.size() / 2);  // a short packet ends the report
     } else {
       bytes.resize(kWmr300Report, 0x00);
     }
-    if (suffers(FaultKind::kGarbage)) bytes = random_bytes(kWmr300Report);
+    if (suffers(core::FaultKind::kGarbage)) bytes = random_bytes(kWmr300Report);
     queue_report(std::move(bytes));
   }
 

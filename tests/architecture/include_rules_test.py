@@ -222,8 +222,8 @@ class TheCheck(unittest.TestCase):
         ("daemon/settings/a.cpp", '#include "daemon/commands/command.hpp"'),
         ("viewer/a.cpp", '#include "engine/scenes/scene.hpp"'),
         ("viewer/a.cpp", '#include "drivers/sensor/sensor.hpp"'),
-        ("simulators/a.cpp", '#include "drivers/decode/modbus/modbus.hpp"'),
-        ("simulators/a.cpp", '#include "drivers/modbus/modbus_profile.hpp"'),
+        ("simulators/core/a.cpp", '#include "drivers/decode/modbus/modbus.hpp"'),
+        ("simulators/core/a.cpp", '#include "drivers/modbus/modbus_profile.hpp"'),
     ]
 
     PASSED = [
@@ -235,7 +235,7 @@ class TheCheck(unittest.TestCase):
         ("drivers/modbus/modbus.cpp", '#include "drivers/bus/modbus_connection.hpp"\n#include <toml++/toml.h>'),
         ("daemon/commands/a.cpp", '#include "engine/scenes/scene.hpp"\n#include <CLI/CLI.hpp>'),
         ("viewer/a.cpp", "#include <GLFW/glfw3.h>\n#include <backends/imgui_impl_glfw.h>\n#include <stb_image_write.h>"),
-        ("simulators/a.cpp", '#include "drivers/windlog/windlog_reader.hpp"'),
+        ("simulators/core/a.cpp", '#include "drivers/windlog/windlog_reader.hpp"'),
         ("simulators/modbus/a.cpp", "#include <modbus/modbus.h>"),
     ]
 

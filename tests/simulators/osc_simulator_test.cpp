@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <lo/lo.h>
 
-#include "simulators/common_options.hpp"
+#include "simulators/core/common_options.hpp"
 
 namespace yuragi::simulators::network {
 namespace {
@@ -52,8 +52,8 @@ class LoServer {
   std::unique_ptr<std::remove_pointer_t<lo_server>, Freed> server_;
 };
 
-MeasuredWind constant_wind() {
-  CommonOptions options;
+core::MeasuredWind constant_wind() {
+  core::CommonOptions options;
   options.synthetic.mean_speed_m_s = 8.0;
   options.synthetic.turbulence_intensity = 0.0;
   options.synthetic.mean_direction_deg = 225.0;
@@ -74,8 +74,8 @@ TEST(OscSimulator, IsUnderstoodByTheLibrary) {
 TEST(OscSimulator, SendsAtItsIntervalAndFailsOnDemand) {
   LoServer server;
   OscSimulator simulator({.port = server.port(), .interval_s = 0.5}, constant_wind());
-  simulator.serve({}, 0.0, FaultKind::kSilence);
-  simulator.serve({}, 0.1, FaultKind::kWrongId);
+  simulator.serve({}, 0.0, core::FaultKind::kSilence);
+  simulator.serve({}, 0.1, core::FaultKind::kWrongId);
   server.receive();
   EXPECT_EQ(server.address, "/elsewhere");
   simulator.serve({}, 0.4, std::nullopt);  // not due

@@ -11,7 +11,7 @@
 
 #include "drivers/bus/hid_device.hpp"
 #include "drivers/hid/hid_sensor.hpp"
-#include "simulators/faults.hpp"
+#include "simulators/core/faults.hpp"
 #include "simulators/usb/hid_stations.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
@@ -28,9 +28,11 @@ class HidBus {
 
   ManualClock clock;
   /// The wind of each moment.
-  std::function<simulators::PlayedMoment(double)> wind = [](double) { return simulators::PlayedMoment{8.6, 225.0}; };
+  std::function<simulators::core::PlayedMoment(double)> wind = [](double) {
+    return simulators::core::PlayedMoment{8.6, 225.0};
+  };
   /// What goes wrong at each moment; kUnplug pulls the plug.
-  std::function<std::optional<simulators::FaultKind>(double)> fault = [](double) { return std::nullopt; };
+  std::function<std::optional<simulators::core::FaultKind>(double)> fault = [](double) { return std::nullopt; };
   int opened = 0;
   bool is_interrupted = false;
 
@@ -72,12 +74,12 @@ class HidBus {
  private:
   void go_on() {
     const auto kind = fault(now_s());
-    is_plugged_in_ = kind != simulators::FaultKind::kUnplug;
+    is_plugged_in_ = kind != simulators::core::FaultKind::kUnplug;
     // A wind that does not change, and one that leaps, are what the air in front of the sensor does.
-    simulators::PlayedMoment moment = measured_.value_or(wind(now_s()));
-    if (kind != simulators::FaultKind::kFreeze) moment = wind(now_s());
+    simulators::core::PlayedMoment moment = measured_.value_or(wind(now_s()));
+    if (kind != simulators::core::FaultKind::kFreeze) moment = wind(now_s());
     measured_ = moment;
-    if (kind == simulators::FaultKind::kSpike) moment.speed_m_s = 55.0;
+    if (kind == simulators::core::FaultKind::kSpike) moment.speed_m_s = 55.0;
     device_->advance(now_s(), moment, kind);
     if (!is_plugged_in_) {
       is_open_ = false;  // whoever had it open has nothing any more
@@ -95,7 +97,7 @@ class HidBus {
   bool is_plugged_in_ = true;
   bool is_open_ = false;
   std::deque<simulators::usb::UsbBytes> reports_;  ///< that the kernel keeps for whoever has it open
-  std::optional<simulators::PlayedMoment> measured_;
+  std::optional<simulators::core::PlayedMoment> measured_;
 };
 
 /// The device on that bus, in place of hidapi's.

@@ -25,8 +25,8 @@ struct SimulatedUsbBus {
 
   ManualClock& clock;
   std::vector<Socket> sockets;
-  simulators::PlayedMoment wind = {5.0, 90.0};
-  std::optional<simulators::FaultKind> fault;  ///< of every device
+  simulators::core::PlayedMoment wind = {5.0, 90.0};
+  std::optional<simulators::core::FaultKind> fault;  ///< of every device
   bool is_permitted = true;
   bool has_arrived = false;
   Nanoseconds transfer_time{0};  ///< each transfer takes so long; what it brings is from its beginning
@@ -35,13 +35,13 @@ struct SimulatedUsbBus {
   bool is_interrupted = false;
   MonoTime start = clock.now().mono;
 
-  bool is_unplugged() const { return fault == simulators::FaultKind::kUnplug; }
-  bool is_silent() const { return fault == simulators::FaultKind::kSilence; }
+  bool is_unplugged() const { return fault == simulators::core::FaultKind::kUnplug; }
+  bool is_silent() const { return fault == simulators::core::FaultKind::kSilence; }
 
   /// All devices go on to the clock's time.
   void advance() {
-    simulators::PlayedMoment measured = wind;
-    if (fault == simulators::FaultKind::kSpike) measured.speed_m_s = 55.0;
+    simulators::core::PlayedMoment measured = wind;
+    if (fault == simulators::core::FaultKind::kSpike) measured.speed_m_s = 55.0;
     for (Socket& socket : sockets) socket.device->advance(seconds(clock.now().mono - start), measured, fault);
   }
 };

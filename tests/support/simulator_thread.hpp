@@ -13,7 +13,7 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 
-#include "simulators/simulator.hpp"
+#include "simulators/core/simulator.hpp"
 #include "tests/support/descriptor.hpp"
 
 namespace yuragi {
@@ -22,7 +22,7 @@ namespace yuragi {
 class SimulatorThread {
  public:
   /// `pace`: how many seconds pass for the simulator in each real one. `simulator` is used on the thread alone.
-  explicit SimulatorThread(std::unique_ptr<simulators::Simulator> simulator, double pace = 1.0)
+  explicit SimulatorThread(std::unique_ptr<simulators::core::Simulator> simulator, double pace = 1.0)
       : simulator_(std::move(simulator)), pace_(pace), thread_([this] { run(); }) {}
   ~SimulatorThread() {
     is_wanted_ = false;
@@ -33,7 +33,7 @@ class SimulatorThread {
   SimulatorThread& operator=(const SimulatorThread&) = delete;
 
   /// Comes back when the simulator has done what the fault, or the end of one, makes it do.
-  void set_fault(std::optional<simulators::FaultKind> fault) {
+  void set_fault(std::optional<simulators::core::FaultKind> fault) {
     std::unique_lock lock(mutex_);
     fault_ = fault;
     const std::uint64_t wanted = ++set_;
@@ -72,11 +72,11 @@ class SimulatorThread {
     simulator_.reset();
   }
 
-  std::unique_ptr<simulators::Simulator> simulator_;
+  std::unique_ptr<simulators::core::Simulator> simulator_;
   double pace_;
   std::mutex mutex_;
   std::condition_variable served_changed_;
-  std::optional<simulators::FaultKind> fault_;
+  std::optional<simulators::core::FaultKind> fault_;
   std::uint64_t set_ = 0;     ///< how often the fault was set
   std::uint64_t served_ = 0;  ///< the one of them that it has served with
   std::atomic<bool> is_wanted_ = true;

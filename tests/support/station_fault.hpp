@@ -16,9 +16,9 @@ class StationFault : public testing::Test {
   /// `speed_m_s`: of the wind, one that the station can say; `interval_s`: between two of its readings.
   StationFault(double speed_m_s, double interval_s) : speed_m_s_(speed_m_s), interval_s_(interval_s) {}
 
-  simulators::MeasuredWind still_wind() const {
-    return simulators::MeasuredWind(std::make_unique<StillWind>(
-        simulators::PlayedMoment{.speed_m_s = speed_m_s_, .direction_deg = kDirection_deg}));
+  simulators::core::MeasuredWind still_wind() const {
+    return simulators::core::MeasuredWind(std::make_unique<StillWind>(
+        simulators::core::PlayedMoment{.speed_m_s = speed_m_s_, .direction_deg = kDirection_deg}));
   }
 
   bool is_live() {
@@ -34,7 +34,7 @@ class StationFault : public testing::Test {
     }
   }
   /// For so long; the status then says so, in such words.
-  void expect_no_wind(simulators::FaultKind fault, double duration_s, const char* words) {
+  void expect_no_wind(simulators::core::FaultKind fault, double duration_s, const char* words) {
     bench_.run(duration_s, fault);
     EXPECT_TRUE(bench_.sink.readings.empty());
     EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting);
@@ -53,7 +53,7 @@ class StationFault : public testing::Test {
   /// Of a device that is connected: the driver publishes what it says, and the hub judges it.
   void expect_freeze_is_published() {
     ASSERT_TRUE(is_live());
-    bench_.run(8.0 * interval_s_, simulators::FaultKind::kFreeze);
+    bench_.run(8.0 * interval_s_, simulators::core::FaultKind::kFreeze);
     EXPECT_GE(bench_.sink.readings.size(), 7U);
     EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnected);
     expect_return();
@@ -62,7 +62,7 @@ class StationFault : public testing::Test {
     ASSERT_TRUE(is_live());
     bench_.run(24.0 * interval_s_);
     ASSERT_FALSE(bench_.sink.believed.empty());
-    bench_.run(2.0 * interval_s_, simulators::FaultKind::kSpike);
+    bench_.run(2.0 * interval_s_, simulators::core::FaultKind::kSpike);
     EXPECT_NEAR(bench_.sink.readings.back().speed_m_s, 55.0, 0.3);
     EXPECT_EQ(bench_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
     for (const wind::WindReading& believed : bench_.sink.believed) EXPECT_NEAR(believed.speed_m_s, speed_m_s_, 1e-9);

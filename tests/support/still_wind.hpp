@@ -1,17 +1,17 @@
 #pragma once
 
-#include "simulators/played_wind.hpp"
+#include "simulators/core/played_wind.hpp"
 
 namespace yuragi {
 
 /// A wind that stands still.
-class StillWind final : public simulators::PlayedWind {
+class StillWind final : public simulators::core::PlayedWind {
  public:
-  explicit StillWind(simulators::PlayedMoment moment) : moment_(moment) {}
-  simulators::PlayedMoment at(double /*time_s*/) override { return moment_; }
+  explicit StillWind(simulators::core::PlayedMoment moment) : moment_(moment) {}
+  simulators::core::PlayedMoment at(double /*time_s*/) override { return moment_; }
 
  private:
-  simulators::PlayedMoment moment_;
+  simulators::core::PlayedMoment moment_;
 };
 
 }  // namespace yuragi

@@ -10,8 +10,8 @@
 
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/sensor/sensor.hpp"
-#include "simulators/played_wind.hpp"
-#include "simulators/simulator.hpp"
+#include "simulators/core/played_wind.hpp"
+#include "simulators/core/simulator.hpp"
 #include "simulators/text/text_wire.hpp"
 #include "tests/support/manual_clock.hpp"
 #include "tests/support/recording_sink.hpp"
@@ -44,7 +44,7 @@ class ObservedWire final : public simulators::text::TextWire {
   ObservedWire(std::unique_ptr<simulators::text::TextWire> wire, bool& has_written)
       : wire_(std::move(wire)), has_written_(has_written) {}
 
-  std::span<const simulators::FaultKind> known_faults() const override { return wire_->known_faults(); }
+  std::span<const simulators::core::FaultKind> known_faults() const override { return wire_->known_faults(); }
   std::vector<int> descriptors() const override { return wire_->descriptors(); }
   std::string read(std::span<const int> ready) override { return wire_->read(ready); }
   void greet_with(const std::string& bytes) override { wire_->greet_with(bytes); }
@@ -78,20 +78,20 @@ class TextBench {
     return std::make_unique<ImpatientPort>(std::move(port), patience_);
   }
 
-  void put(std::unique_ptr<simulators::Simulator> simulator, std::unique_ptr<drivers::sensor::Sensor> sensor) {
+  void put(std::unique_ptr<simulators::core::Simulator> simulator, std::unique_ptr<drivers::sensor::Sensor> sensor) {
     simulator_ = std::move(simulator);
     sensor_ = std::move(sensor);
   }
 
   /// Lets both live for so long. The readings and refusals of before are forgotten.
-  void run(double duration_s, std::optional<simulators::FaultKind> fault = {}) {
+  void run(double duration_s, std::optional<simulators::core::FaultKind> fault = {}) {
     sink.readings.clear();
     sink.refusals.clear();
     for (double end_s = time_s_ + duration_s; time_s_ < end_s;) step(fault);
   }
   /// Lets both live until something holds; false if it does not within `limit_s`.
   template <class Condition>
-  bool run_until(double limit_s, std::optional<simulators::FaultKind> fault, Condition&& holds) {
+  bool run_until(double limit_s, std::optional<simulators::core::FaultKind> fault, Condition&& holds) {
     for (const double end_s = time_s_ + limit_s; time_s_ < end_s && !holds();) step(fault);
     return holds();
   }
@@ -109,7 +109,7 @@ class TextBench {
  private:
   static constexpr double kStep_s = 0.02;
 
-  void step(std::optional<simulators::FaultKind> fault) {
+  void step(std::optional<simulators::core::FaultKind> fault) {
     time_s_ += kStep_s;
     clock.advance(from_seconds(kStep_s));
 
@@ -123,7 +123,7 @@ class TextBench {
     sensor_->poll(clock, sink);
   }
 
-  void serve(std::optional<simulators::FaultKind> fault) {
+  void serve(std::optional<simulators::core::FaultKind> fault) {
     std::vector<pollfd> waits;
     for (const int descriptor : simulator_->descriptors()) waits.push_back({descriptor, POLLIN, 0});
     poll(waits.data(), waits.size(), 0);
@@ -134,7 +134,7 @@ class TextBench {
     simulator_->serve(ready, time_s_, fault);
   }
 
-  std::unique_ptr<simulators::Simulator> simulator_;
+  std::unique_ptr<simulators::core::Simulator> simulator_;
   std::unique_ptr<drivers::sensor::Sensor> sensor_;
   Nanoseconds patience_ = std::chrono::milliseconds(1);
   bool has_written_ = false;

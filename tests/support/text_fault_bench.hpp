@@ -26,7 +26,8 @@ class TextFaultBench : public testing::Test {
   using MakeSensor =
       std::function<std::unique_ptr<drivers::sensor::Sensor>(const ParameterValues& values, TextBench& bench)>;
 
-  TextFaultBench(std::string driver, simulators::PlayedMoment wind) : driver_name_(std::move(driver)), wind_(wind) {}
+  TextFaultBench(std::string driver, simulators::core::PlayedMoment wind)
+      : driver_name_(std::move(driver)), wind_(wind) {}
 
   /// `rate_hz`: how often the device speaks; 0: when it is asked. `given`: what is not the driver's default.
   void connect(Wire wire, std::unique_ptr<simulators::text::TextDevice> device, double rate_hz,
@@ -45,7 +46,7 @@ class TextFaultBench : public testing::Test {
     }
     bench_.put(std::make_unique<simulators::text::TextSimulator>(
                    std::move(device), bench_.observed(std::move(carried)), rate_hz,
-                   simulators::MeasuredWind(std::make_unique<StillWind>(wind_)), 1),
+                   simulators::core::MeasuredWind(std::make_unique<StillWind>(wind_)), 1),
                make_sensor(values_for(driver_name_, given), bench_));
   }
 
@@ -66,7 +67,7 @@ class TextFaultBench : public testing::Test {
     expect_only_the_wind();
   }
   /// What was live says nothing: nothing is published, and the link says so.
-  void expect_silence(simulators::FaultKind fault, double duration_s) {
+  void expect_silence(simulators::core::FaultKind fault, double duration_s) {
     bench_.run(duration_s, fault);
     EXPECT_TRUE(bench_.sink.readings.empty());
     EXPECT_EQ(bench_.sink.last_state(), wind::LinkState::kConnecting) << bench_.sink.last_detail();
@@ -76,7 +77,7 @@ class TextFaultBench : public testing::Test {
 
  private:
   std::string driver_name_;
-  simulators::PlayedMoment wind_;
+  simulators::core::PlayedMoment wind_;
   const std::uint16_t udp_port_ = free_port(SOCK_DGRAM);
   test::TemporaryFolder folder_;
 };

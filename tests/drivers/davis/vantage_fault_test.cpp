@@ -17,7 +17,7 @@
 namespace yuragi::drivers::davis {
 namespace {
 
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using simulators::davis::VantageConsole;
 using simulators::davis::VantageConsoleOptions;
 using testing::HasSubstr;

@@ -16,7 +16,7 @@
 namespace yuragi::drivers::davis {
 namespace {
 
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using simulators::davis::WeatherLinkLive;
 using testing::HasSubstr;
 

@@ -18,7 +18,7 @@
 namespace yuragi::drivers::hid {
 namespace {
 
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 
 constexpr double kFaultPace = 20.0;
 constexpr double kSplitPace = 6.0;  // a block that comes in pieces takes a second, and must hold still for so long

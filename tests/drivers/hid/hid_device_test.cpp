@@ -23,7 +23,7 @@ namespace yuragi::drivers::hid {
 namespace {
 
 using namespace std::chrono_literals;
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using testing::HasSubstr;
 
 constexpr std::array kIds = {bus::HidId{0x0FDE, 0xCA01}, bus::HidId{0x24C0, 0x0003}};

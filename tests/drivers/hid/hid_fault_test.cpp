@@ -11,7 +11,7 @@
 namespace yuragi::drivers::hid {
 namespace {
 
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using test::HidBench;
 
 constexpr double kFaultBegins_s = 300.0;
@@ -146,7 +146,7 @@ void expect_unchanged(FaultKind kind, double sent_m_s, double tolerance_m_s) {
     FaultyBench bench(patience.model, kind);
     // It freezes at 8.6 m/s; the true wind goes on and is 3 m/s.
     bench.bus.wind = [](double time_s) {
-      return simulators::PlayedMoment{time_s < kFaultBegins_s ? kSteady_m_s : 3.0, 225.0};
+      return simulators::core::PlayedMoment{time_s < kFaultBegins_s ? kSteady_m_s : 3.0, 225.0};
     };
     bench.run_until(kFaultBegins_s + 60.0);
     const std::size_t before = bench.readings();

@@ -12,8 +12,8 @@
 namespace yuragi::drivers::hid {
 namespace {
 
-using simulators::FaultKind;
-using simulators::PlayedMoment;
+using simulators::core::FaultKind;
+using simulators::core::PlayedMoment;
 using test::HidBench;
 using testing::HasSubstr;
 
@@ -391,8 +391,8 @@ TEST_P(EveryStation, NeverTellsAFalseWindAndAlwaysComesBackUnderRandomFaults) {
     for (const FaultKind kind : bench.bus.device().known_faults()) {
       if (kind != FaultKind::kFreeze && kind != FaultKind::kSpike) kinds.push_back(kind);
     }
-    simulators::Faults faults(kinds);
-    faults.add(simulators::RandomFaults{.every_s = 300.0, .duration_s = 60.0, .seed = seed});
+    simulators::core::Faults faults(kinds);
+    faults.add(simulators::core::RandomFaults{.every_s = 300.0, .duration_s = 60.0, .seed = seed});
     constexpr double kFaultsEnd_s = 6.0 * kHour_s;
     bench.bus.wind = wind_of;
     bench.bus.fault = [&faults](double time_s) { return time_s < kFaultsEnd_s ? faults.at(time_s) : std::nullopt; };

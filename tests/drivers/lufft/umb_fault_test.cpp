@@ -17,7 +17,7 @@
 namespace yuragi::drivers::lufft {
 namespace {
 
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using simulators::lufft::UmbStation;
 using simulators::lufft::UmbStationOptions;
 using testing::HasSubstr;

@@ -29,7 +29,7 @@ namespace yuragi::drivers::network {
 namespace {
 
 using namespace std::chrono_literals;
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using simulators::network::EcowittPushOptions;
 using simulators::network::EcowittPushSimulator;
 using simulators::network::PushProtocol;
@@ -41,7 +41,7 @@ using testing::Not;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
-constexpr simulators::PlayedMoment kPushedWind = {.speed_m_s = 7.3, .direction_deg = 123.0};
+constexpr simulators::core::PlayedMoment kPushedWind = {.speed_m_s = 7.3, .direction_deg = 123.0};
 constexpr std::string_view kPasskey = "0123456789ABCDEF0123456789ABCDEF";
 
 /// Hundredths of a mile per hour are what a push says.
@@ -58,8 +58,8 @@ std::unique_ptr<EcowittPushSimulator> pushing_gateway(std::uint16_t port, PushPr
   options.protocol = protocol;
   options.station = kPasskey;
   options.interval_s = 0.12;
-  return std::make_unique<EcowittPushSimulator>(options,
-                                                simulators::MeasuredWind(std::make_unique<StillWind>(kPushedWind)));
+  return std::make_unique<EcowittPushSimulator>(
+      options, simulators::core::MeasuredWind(std::make_unique<StillWind>(kPushedWind)));
 }
 
 class EcowittPushFault : public GatewayFault {

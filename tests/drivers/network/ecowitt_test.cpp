@@ -20,7 +20,7 @@ namespace yuragi::drivers::network {
 namespace {
 
 using namespace std::chrono_literals;
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using simulators::network::EcowittOptions;
 using simulators::network::EcowittSimulator;
 using testing::HasSubstr;
@@ -48,7 +48,8 @@ class EcowittFault : public GatewayFault {
     options.port = port;
     options.interval_s = 0.2;
     options.late_s = 1.0;
-    return std::make_unique<EcowittSimulator>(options, simulators::MeasuredWind(std::make_unique<StillWind>(kWind)));
+    return std::make_unique<EcowittSimulator>(options,
+                                              simulators::core::MeasuredWind(std::make_unique<StillWind>(kWind)));
   }
 };
 

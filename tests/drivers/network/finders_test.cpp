@@ -75,7 +75,7 @@ TEST(EcowittFinder, FindsTheGatewaysThatAnswer) {
   options.port = 0;
   options.search_host = "127.0.0.1";
   auto simulator = std::make_unique<simulators::network::EcowittSimulator>(
-      options, simulators::MeasuredWind(std::make_unique<StillWind>(simulators::PlayedMoment{})));
+      options, simulators::core::MeasuredWind(std::make_unique<StillWind>(simulators::core::PlayedMoment{})));
   sensor::NetworkSearch search = loopback();
   search.ecowitt_port = simulator->search_port();
   const std::string port = std::to_string(simulator->port());

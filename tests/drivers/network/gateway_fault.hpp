@@ -17,10 +17,10 @@ namespace yuragi::drivers::network {
 /// changes.
 class GatewayFault : public testing::Test {
  protected:
-  static constexpr simulators::PlayedMoment kWind = {.speed_m_s = 7.3, .direction_deg = 123.0};
+  static constexpr simulators::core::PlayedMoment kWind = {.speed_m_s = 7.3, .direction_deg = 123.0};
 
   /// `step_m_s`: of what the gateway can say.
-  GatewayFault(std::unique_ptr<simulators::Simulator> simulator, std::unique_ptr<sensor::Sensor> sensor,
+  GatewayFault(std::unique_ptr<simulators::core::Simulator> simulator, std::unique_ptr<sensor::Sensor> sensor,
                double step_m_s)
       : step_m_s_(step_m_s), simulator_(std::move(simulator)), live_(std::move(sensor)) {}
 
@@ -38,7 +38,7 @@ class GatewayFault : public testing::Test {
     forget();
   }
   /// Suffers it until so much was refused and the status says so; meanwhile no wind is said.
-  void expect_refusals(simulators::FaultKind fault, decode::Refusal why, const std::string& detail) {
+  void expect_refusals(simulators::core::FaultKind fault, decode::Refusal why, const std::string& detail) {
     simulator_.set_fault(fault);
     ASSERT_TRUE(live_.wait_until([&] { return live_.sink.count(why) >= 1; })) << live_.sink.last_detail();
     live_.sink.readings.clear();  // of a message from before
@@ -50,14 +50,14 @@ class GatewayFault : public testing::Test {
   }
   /// The driver publishes what the gateway says; the hub judges it.
   void expect_freeze_is_published() {
-    simulator_.set_fault(simulators::FaultKind::kFreeze);
+    simulator_.set_fault(simulators::core::FaultKind::kFreeze);
     ASSERT_TRUE(live_.wait_for_readings(5)) << live_.sink.last_detail();
     expect_only_the_wind();
     expect_return();
   }
   void expect_spike_is_not_believed() {
     ASSERT_TRUE(live_.wait_for_readings(20)) << "by which a spike is known";
-    simulator_.set_fault(simulators::FaultKind::kSpike);
+    simulator_.set_fault(simulators::core::FaultKind::kSpike);
     ASSERT_TRUE(live_.wait_until(
         [&] { return !live_.sink.readings.empty() && live_.sink.readings.back().speed_m_s > 55.0 - 2.0 * step_m_s_; }));
     EXPECT_EQ(live_.sink.judge.fault(), wind::judging::ReadingFault::kSpike);
@@ -65,7 +65,7 @@ class GatewayFault : public testing::Test {
       EXPECT_NEAR(believed.speed_m_s, kWind.speed_m_s, step_m_s_);
   }
   void expect_pieces_are_joined() {
-    simulator_.set_fault(simulators::FaultKind::kSplit);
+    simulator_.set_fault(simulators::core::FaultKind::kSplit);
     ASSERT_TRUE(live_.wait_for_readings(5)) << live_.sink.last_detail();
     expect_only_the_wind();
     EXPECT_THAT(live_.sink.refusals, testing::IsEmpty());

@@ -19,14 +19,14 @@ namespace yuragi::drivers::network {
 namespace {
 
 using namespace std::chrono_literals;
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using simulators::network::TempestOptions;
 using simulators::network::TempestSimulator;
 using testing::HasSubstr;
 using testing::Not;
 using testing::ThrowsMessage;
 
-constexpr simulators::PlayedMoment kTempestWind = {.speed_m_s = 7.25, .direction_deg = 123.0};
+constexpr simulators::core::PlayedMoment kTempestWind = {.speed_m_s = 7.25, .direction_deg = 123.0};
 
 /// A socket that sends from this machine, also to the loopback's broadcast address.
 class Sender {
@@ -94,8 +94,8 @@ class TempestBench : public testing::Test {
     options.port = port_;
     return options;
   }
-  static simulators::MeasuredWind still_wind() {
-    return simulators::MeasuredWind(std::make_unique<StillWind>(kTempestWind));
+  static simulators::core::MeasuredWind still_wind() {
+    return simulators::core::MeasuredWind(std::make_unique<StillWind>(kTempestWind));
   }
 
   std::uint16_t port_ = free_port(SOCK_DGRAM);

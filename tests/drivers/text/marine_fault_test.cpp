@@ -21,11 +21,11 @@
 namespace yuragi::drivers::text {
 namespace {
 
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using testing::HasSubstr;
 using Wire = TextFaultBench::Wire;
 
-constexpr simulators::PlayedMoment kWind = {.speed_m_s = 7.25, .direction_deg = 123.0};
+constexpr simulators::core::PlayedMoment kWind = {.speed_m_s = 7.25, .direction_deg = 123.0};
 
 /// What both drivers suffer.
 class MarineBench : public TextFaultBench {
@@ -221,7 +221,7 @@ class Nmea2000CanFault : public MarineBench {
     bench_.put(
         std::make_unique<simulators::text::TextSimulator>(
             simulators::text::make_nmea2000_can_device(), bench_.observed(std::move(wire)), 4.0,
-            simulators::MeasuredWind(std::make_unique<StillWind>(kWind)), 1),
+            simulators::core::MeasuredWind(std::make_unique<StillWind>(kWind)), 1),
         std::make_unique<Nmea2000Sensor>(settings, bench_.impatient(bus::make_can_port(settings.text.address, open))));
     ASSERT_TRUE(is_live()) << bench_.sink.last_detail();
     expect_only_the_wind();

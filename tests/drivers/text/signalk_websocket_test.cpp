@@ -17,18 +17,18 @@ namespace yuragi::drivers::text {
 namespace {
 
 using namespace std::chrono_literals;
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using simulators::text::TextSimulator;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-constexpr simulators::PlayedMoment kWindAtSea = {.speed_m_s = 7.25, .direction_deg = 123.0};
+constexpr simulators::core::PlayedMoment kWindAtSea = {.speed_m_s = 7.25, .direction_deg = 123.0};
 
 std::unique_ptr<TextSimulator> signalk_server(const std::string& token) {
   return std::make_unique<TextSimulator>(
       simulators::text::make_signalk_device(true),
       simulators::text::make_websocket_wire({.path = "/signalk/v1/stream", .token = token}), 20.0,
-      simulators::MeasuredWind(std::make_unique<StillWind>(kWindAtSea)), 1);
+      simulators::core::MeasuredWind(std::make_unique<StillWind>(kWindAtSea)), 1);
 }
 
 std::unique_ptr<sensor::Sensor> open_signalk(const simulators::text::TextWire& wire, ParameterValues::Map given) {

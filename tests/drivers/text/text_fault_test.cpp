@@ -18,7 +18,7 @@
 namespace yuragi::drivers::text {
 namespace {
 
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using testing::HasSubstr;
 using Wire = TextFaultBench::Wire;
 
@@ -31,7 +31,7 @@ struct PolledDevice {
 /// A driver, and the formats in which its device suffers each fault.
 struct TextDriver {
   std::string name;
-  simulators::PlayedMoment wind;
+  simulators::core::PlayedMoment wind;
   double speed_tolerance_m_s = 0.0;
   double direction_tolerance_deg = 0.0;
   std::unique_ptr<simulators::text::TextDevice> (*make_device)(const std::string& format);

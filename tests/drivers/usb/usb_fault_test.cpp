@@ -8,7 +8,7 @@
 namespace yuragi::drivers::usb {
 namespace {
 
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using testing::Contains;
 using testing::Each;
 using testing::HasSubstr;

@@ -22,7 +22,7 @@ namespace yuragi::drivers::usb {
 namespace {
 
 using namespace std::chrono_literals;
-using simulators::FaultKind;
+using simulators::core::FaultKind;
 using simulators::usb::steady_wind;
 
 constexpr double kPlayed_m_s = 8.6;
@@ -34,7 +34,7 @@ std::unique_ptr<sensor::Sensor> open_real(std::string_view driver_name, const Pa
   return driver.open(*ParameterValues::resolve(driver.parameters, given));
 }
 
-std::unique_ptr<simulators::Simulator> plugged_in(std::unique_ptr<simulators::usb::UsbDevice> device) {
+std::unique_ptr<simulators::core::Simulator> plugged_in(std::unique_ptr<simulators::usb::UsbDevice> device) {
   std::vector<std::unique_ptr<simulators::usb::UsbPort>> ports;
   ports.push_back(std::make_unique<simulators::usb::UsbPort>(std::move(device),
                                                              simulators::usb::steady_wind(kPlayed_m_s, kPlayed_deg)));

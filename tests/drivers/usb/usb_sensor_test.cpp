@@ -127,7 +127,7 @@ TEST_P(UsbSensorTest, SaysWhichDeviceItReads) {
 
 TEST_P(UsbSensorTest, IsThereAsSoonAsItIsPluggedInAgain) {
   UsbBench bench(GetParam());
-  bench.bus.fault = simulators::FaultKind::kUnplug;
+  bench.bus.fault = simulators::core::FaultKind::kUnplug;
   bench.poll_for(120.0);  // by now it looks for it every ten seconds
   bench.bus.fault.reset();
   bench.bus.has_arrived = true;

@@ -26,7 +26,7 @@ constexpr double kRate_hz = 16000.0;
 
 /// So many seconds of a steady wind.
 test::Sound sound_of(MicrophoneOptions options, double speed_m_s, double seconds, double direction_deg = 0.0,
-                     std::optional<FaultKind> fault = std::nullopt) {
+                     std::optional<core::FaultKind> fault = std::nullopt) {
   options.rate_hz = kRate_hz;
   MicrophoneSound sound(options);
   test::Sound out{kRate_hz, options.channels, {}};
@@ -117,12 +117,13 @@ TEST(MicrophoneSoundTest, TheFaceInTheWindIsTheLoudest) {
 }
 
 TEST(MicrophoneSoundTest, SuffersFaultsAsADeviceDoes) {
-  const test::Sound frozen = sound_of({}, 8.0, 3.0, 0.0, FaultKind::kFreeze);
+  const test::Sound frozen = sound_of({}, 8.0, 3.0, 0.0, core::FaultKind::kFreeze);
   const auto second = static_cast<std::size_t>(kRate_hz);
   for (std::size_t i = 0; i < second; ++i) ASSERT_EQ(frozen.at(i, 0), frozen.at(i + second, 0));
   EXPECT_GT(rms_db(frozen), -40.0);
 
-  EXPECT_NEAR(rms_db(sound_of({}, 8.0, 1.0, 0.0, FaultKind::kGarbage)), -4.77, 0.2) << "uniform over the full scale";
+  EXPECT_NEAR(rms_db(sound_of({}, 8.0, 1.0, 0.0, core::FaultKind::kGarbage)), -4.77, 0.2)
+      << "uniform over the full scale";
   for (const float sample : sound_of({.level_at_10_m_s_db = 10.0}, 20.0, 1.0).samples)
     ASSERT_LE(std::abs(sample), 1.0F);
 }
@@ -158,10 +159,10 @@ TEST(MicrophoneFile, IsAWavFileThatSaysWhatItHolds) {
   const test::TemporaryFolder folder;
   MicrophoneOptions options{.channels = 2, .rate_hz = 8000.0};
   const auto wind = [] {
-    return MeasuredWind(play_synthetic_wind({.mean_speed_m_s = 8.0, .turbulence_intensity = 0.0}));
+    return core::MeasuredWind(core::play_synthetic_wind({.mean_speed_m_s = 8.0, .turbulence_intensity = 0.0}));
   };
-  Faults faults(microphone_faults());
-  faults.add({FaultKind::kSilence, 1.0, 0.5});
+  core::Faults faults(microphone_faults());
+  faults.add({core::FaultKind::kSilence, 1.0, 0.5});
   const std::string path = folder / "wind.wav";
   write_microphone_file(path, SampleFormat::kSigned16, options, wind(), faults, 2.0);
   EXPECT_EQ(std::filesystem::file_size(path), 44U + 2U * 2U * 16000U);
@@ -190,11 +191,12 @@ TEST(MicrophoneFile, IsAWavFileThatSaysWhatItHolds) {
 class MicrophoneSocket : public testing::Test {
  protected:
   MicrophoneSocket()
-      : simulator_({.channels = 2, .rate_hz = 8000.0}, {.socket = path(), .pipe = ""},
-                   MeasuredWind(play_synthetic_wind({.mean_speed_m_s = 8.0, .turbulence_intensity = 0.0}))) {}
+      : simulator_(
+            {.channels = 2, .rate_hz = 8000.0}, {.socket = path(), .pipe = ""},
+            core::MeasuredWind(core::play_synthetic_wind({.mean_speed_m_s = 8.0, .turbulence_intensity = 0.0}))) {}
 
   std::string path() const { return folder_ / "mic.sock"; }
-  void serve(double by_s, std::optional<FaultKind> fault = std::nullopt) {
+  void serve(double by_s, std::optional<core::FaultKind> fault = std::nullopt) {
     time_s_ += by_s;
     std::vector<int> ready;
     for (const int descriptor : simulator_.descriptors()) {
@@ -249,7 +251,7 @@ TEST_F(MicrophoneSocket, WhoReadsSlowlyLosesWholeFrames) {
   std::size_t all = 0;
   for (int i = 0; i < 20; ++i) {
     all += take(slow).value();
-    simulator_.serve({}, time_s_, FaultKind::kSilence);
+    simulator_.serve({}, time_s_, core::FaultKind::kSilence);
   }
   EXPECT_GT(all, 30000U);
   EXPECT_LT(all, 50.0 * 8000.0 * 8.0);
@@ -261,13 +263,13 @@ TEST_F(MicrophoneSocket, IsGoneWhileUnpluggedAndBackAfterwards) {
   serve(0.1);
   EXPECT_GT(take(client).value(), 0U);
 
-  serve(0.1, FaultKind::kSilence);
+  serve(0.1, core::FaultKind::kSilence);
   EXPECT_EQ(take(client), 0U);
-  serve(0.1, FaultKind::kDisconnect);
+  serve(0.1, core::FaultKind::kDisconnect);
   EXPECT_EQ(take(client), std::nullopt);
   EXPECT_LT(connect().get(), 0) << "it refuses whoever comes";
   EXPECT_TRUE(std::filesystem::exists(path()));
-  serve(0.1, FaultKind::kUnplug);
+  serve(0.1, core::FaultKind::kUnplug);
   EXPECT_FALSE(std::filesystem::exists(path()));
 
   serve(0.1);

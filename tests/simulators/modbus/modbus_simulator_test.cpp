@@ -18,9 +18,9 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using testing::ElementsAre;
 
-class SteadyWind final : public PlayedWind {
+class SteadyWind final : public core::PlayedWind {
  public:
-  PlayedMoment at(double time_s) override { return {8.6 + time_s, 359.7}; }
+  core::PlayedMoment at(double time_s) override { return {8.6 + time_s, 359.7}; }
 };
 
 ModbusSimulator simulate(const std::vector<std::string>& devices, std::unique_ptr<ModbusPort> port,
@@ -29,11 +29,11 @@ ModbusSimulator simulate(const std::vector<std::string>& devices, std::unique_pt
   for (const std::string& device : devices) {
     for (const ModbusSlave& slave : modbus_slaves(device)) slaves.push_back(slave);
   }
-  return {slaves, std::move(port), MeasuredWind(std::make_unique<SteadyWind>()), options};
+  return {slaves, std::move(port), core::MeasuredWind(std::make_unique<SteadyWind>()), options};
 }
 
 /// Serves until there is nothing left to do.
-void serve_all(ModbusSimulator& simulator, double time_s, std::optional<FaultKind> fault) {
+void serve_all(ModbusSimulator& simulator, double time_s, std::optional<core::FaultKind> fault) {
   for (int ready_count = 1; ready_count > 0;) {
     std::vector<pollfd> waits;
     for (const int descriptor : simulator.descriptors()) waits.push_back({descriptor, POLLIN, 0});
@@ -67,7 +67,7 @@ class ModbusSimulatorTest : public testing::Test {
     reply.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
     return reply;
   }
-  Bytes exchange(const Descriptor& client, const Bytes& request, std::optional<FaultKind> fault = std::nullopt) {
+  Bytes exchange(const Descriptor& client, const Bytes& request, std::optional<core::FaultKind> fault = std::nullopt) {
     EXPECT_EQ(send(client.get(), request.data(), request.size(), MSG_NOSIGNAL), std::ssize(request));
     serve_all(simulator_, time_s_, fault);
     return received_by(client);
@@ -107,13 +107,13 @@ TEST_F(ModbusSimulatorTest, RefusesWhatTheDevicesDoNotHave) {
 
 TEST_F(ModbusSimulatorTest, FailsInEveryWayItIsToldTo) {
   const Descriptor client = connect_client();
-  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kSilence), ElementsAre());
-  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kException), ElementsAre(0, 7, 0, 0, 0, 3, 1, 0x83, 4));
-  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kWrongId), ElementsAre(0, 7, 0, 0, 0, 5, 2, 3, 2, 0, 86));
-  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kWrongTransaction),
+  EXPECT_THAT(exchange(client, read_speed_, core::FaultKind::kSilence), ElementsAre());
+  EXPECT_THAT(exchange(client, read_speed_, core::FaultKind::kException), ElementsAre(0, 7, 0, 0, 0, 3, 1, 0x83, 4));
+  EXPECT_THAT(exchange(client, read_speed_, core::FaultKind::kWrongId), ElementsAre(0, 7, 0, 0, 0, 5, 2, 3, 2, 0, 86));
+  EXPECT_THAT(exchange(client, read_speed_, core::FaultKind::kWrongTransaction),
               ElementsAre(0, 6, 0, 0, 0, 5, 1, 3, 2, 0, 86));
-  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kPartial), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0));
-  EXPECT_EQ(exchange(client, read_speed_, FaultKind::kGarbage).size(), 24U);
+  EXPECT_THAT(exchange(client, read_speed_, core::FaultKind::kPartial), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0));
+  EXPECT_EQ(exchange(client, read_speed_, core::FaultKind::kGarbage).size(), 24U);
   EXPECT_THAT(exchange(client, read_speed_), ElementsAre(0, 7, 0, 0, 0, 5, 1, 3, 2, 0, 86));
 }
 
@@ -122,7 +122,7 @@ TEST_F(ModbusSimulatorTest, DropsItsClientsRefusesNewOnesAndIsBackOnTheSamePort)
   ASSERT_EQ(exchange(client, read_speed_).size(), 11U);
   const std::uint16_t port_before = port();
 
-  simulator_.serve({}, time_s_, FaultKind::kDisconnect);
+  simulator_.serve({}, time_s_, core::FaultKind::kDisconnect);
   char byte = 0;
   EXPECT_EQ(recv(client.get(), &byte, 1, 0), 0);
   EXPECT_LT(connect_client().get(), 0);
@@ -141,7 +141,7 @@ TEST_F(ModbusSimulatorTest, OutlivesAClientThatStopsInTheMiddleOfARequest) {
 
 TEST_F(ModbusSimulatorTest, AnswersLateWhenItsTimeHasCome) {
   const Descriptor client = connect_client();
-  EXPECT_TRUE(exchange(client, read_speed_, FaultKind::kLate).empty());
+  EXPECT_TRUE(exchange(client, read_speed_, core::FaultKind::kLate).empty());
   time_s_ = 0.7;
   serve_all(simulator_, time_s_, std::nullopt);
   EXPECT_TRUE(received_by(client).empty());
@@ -152,7 +152,7 @@ TEST_F(ModbusSimulatorTest, AnswersLateWhenItsTimeHasCome) {
 
 TEST_F(ModbusSimulatorTest, SaysASplitAnswerInThreePieces) {
   const Descriptor client = connect_client();
-  EXPECT_THAT(exchange(client, read_speed_, FaultKind::kSplit), ElementsAre(0));
+  EXPECT_THAT(exchange(client, read_speed_, core::FaultKind::kSplit), ElementsAre(0));
   time_s_ = 0.03;
   serve_all(simulator_, time_s_, std::nullopt);
   EXPECT_THAT(received_by(client), ElementsAre(7, 0, 0, 0, 5));
@@ -173,7 +173,7 @@ TEST_F(ModbusSimulatorTest, AnswersQuestionsThatComeInPiecesAndTogether) {
 /// A serial line with three devices, of which the one with id 7 can be made to fail alone.
 class ModbusSerialSimulatorTest : public testing::Test {
  protected:
-  Bytes exchange(const Bytes& request, std::optional<FaultKind> fault = std::nullopt, double time_s = 0.0) {
+  Bytes exchange(const Bytes& request, std::optional<core::FaultKind> fault = std::nullopt, double time_s = 0.0) {
     const Descriptor line(open(link_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
     EXPECT_EQ(write(line.get(), request.data(), request.size()), std::ssize(request));
     serve_all(simulator_, time_s, fault);
@@ -210,12 +210,12 @@ TEST_F(ModbusSerialSimulatorTest, IsSilentForAnIdThatNobodyHas) {
 }
 
 TEST_F(ModbusSerialSimulatorTest, LetsOneSlaveAloneSuffer) {
-  EXPECT_TRUE(exchange(read_7_, FaultKind::kSilence).empty());
-  EXPECT_EQ(exchange(read_1_, FaultKind::kSilence), reply_1_);
+  EXPECT_TRUE(exchange(read_7_, core::FaultKind::kSilence).empty());
+  EXPECT_EQ(exchange(read_1_, core::FaultKind::kSilence), reply_1_);
   Bytes wrong_sum = exchange(read_7_);
   ASSERT_EQ(wrong_sum.size(), 7U);
   wrong_sum.back() ^= 0xFFU;
-  EXPECT_EQ(exchange(read_7_, FaultKind::kBadChecksum), wrong_sum);
+  EXPECT_EQ(exchange(read_7_, core::FaultKind::kBadChecksum), wrong_sum);
 }
 
 TEST_F(ModbusSerialSimulatorTest, ClearsExtremesWhenTheirMeanIsReadAsTheMakerSays) {
@@ -232,7 +232,7 @@ TEST_F(ModbusSerialSimulatorTest, ClearsExtremesWhenTheirMeanIsReadAsTheMakerSay
 }
 
 TEST_F(ModbusSerialSimulatorTest, IsGoneWhileUnpluggedAndBackUnderItsName) {
-  simulator_.serve({}, 0.0, FaultKind::kUnplug);
+  simulator_.serve({}, 0.0, core::FaultKind::kUnplug);
   EXPECT_LT(open(link_.c_str(), O_RDWR | O_NOCTTY), 0);
   simulator_.serve({}, 0.0, std::nullopt);
   EXPECT_EQ(exchange(read_1_), reply_1_);

@@ -15,9 +15,10 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::Not;
 
-constexpr PlayedMoment kMoment = {.speed_m_s = 3.42, .direction_deg = 230.6};
+constexpr core::PlayedMoment kMoment = {.speed_m_s = 3.42, .direction_deg = 230.6};
 
-std::string message_in(const std::string& format, std::optional<FaultKind> fault = {}, PlayedMoment moment = kMoment) {
+std::string message_in(const std::string& format, std::optional<core::FaultKind> fault = {},
+                       core::PlayedMoment moment = kMoment) {
   const auto messages = make_nmea_device({format})->send_messages(moment, fault);
   return messages.size() == 1 ? messages[0] : "";
 }
@@ -52,9 +53,9 @@ TEST(NmeaDevice, SaysSeveralFormatsInOneBurst) {
 }
 
 TEST(NmeaDevice, FailsAsItIsTold) {
-  EXPECT_EQ(message_in("mwv", FaultKind::kBadChecksum), "$WIMWV,230.6,R,3.42,M,A*13\r\n");
-  EXPECT_EQ(message_in("mwv", FaultKind::kWrongId).substr(0, 6), "$IIMWV");
-  EXPECT_EQ(message_in("gill", FaultKind::kWrongId).substr(0, 3), "\x02R,");
+  EXPECT_EQ(message_in("mwv", core::FaultKind::kBadChecksum), "$WIMWV,230.6,R,3.42,M,A*13\r\n");
+  EXPECT_EQ(message_in("mwv", core::FaultKind::kWrongId).substr(0, 6), "$IIMWV");
+  EXPECT_EQ(message_in("gill", core::FaultKind::kWrongId).substr(0, 3), "\x02R,");
 }
 
 TEST(NmeaDevice, KnowsWhatItIsAsked) {
@@ -90,13 +91,13 @@ TEST(Nmea2000Device, SaysEachFormatByteForByte) {
 }
 
 TEST(Nmea2000Device, SaysAFrameByteForByte) {
-  const auto frame_in = [](std::optional<FaultKind> fault) {
+  const auto frame_in = [](std::optional<core::FaultKind> fault) {
     return make_nmea2000_can_device("magnetic")->send_messages(kMoment, fault).at(0);
   };
   using namespace std::string_literals;
   EXPECT_EQ(frame_in({}), "\x23\x02\xFD\x89\x08\0\0\0\0\x56\x01\x37\x9D\xF9\xFF\xFF"s) << "29 bits: 0x80000000";
-  EXPECT_EQ(frame_in(FaultKind::kWrongId).front(), '\x24');
-  EXPECT_EQ(frame_in(FaultKind::kException), "\x40\0\0\x20\x08\0\0\0\0\0\0\0\0\0\0\0"s) << "bus off";
+  EXPECT_EQ(frame_in(core::FaultKind::kWrongId).front(), '\x24');
+  EXPECT_EQ(frame_in(core::FaultKind::kException), "\x40\0\0\x20\x08\0\0\0\0\0\0\0\0\0\0\0"s) << "bus off";
 }
 
 TEST(SignalKDevice, SaysItsWindToWhomAsksForItAfterWhatItRemembers) {
@@ -133,8 +134,8 @@ struct Heard {
 class KeepingWire final : public TextWire {
  public:
   explicit KeepingWire(Heard& heard) : received_(heard) {}
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kUnplug};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kUnplug};
     return kKnown;
   }
   std::vector<int> descriptors() const override { return {}; }
@@ -149,19 +150,19 @@ class KeepingWire final : public TextWire {
 };
 
 /// Blows harder each second.
-class GrowingWind final : public PlayedWind {
+class GrowingWind final : public core::PlayedWind {
  public:
-  PlayedMoment at(double time_s) override { return {.speed_m_s = time_s, .direction_deg = 90.0}; }
+  core::PlayedMoment at(double time_s) override { return {.speed_m_s = time_s, .direction_deg = 90.0}; }
 };
 
 class TextSimulatorTest : public testing::Test {
  protected:
   TextSimulator make(double rate_hz, const std::string& format = "mwv") {
     return {make_nmea_device({format}), std::make_unique<KeepingWire>(received_), rate_hz,
-            MeasuredWind(std::make_unique<GrowingWind>()), 1};
+            core::MeasuredWind(std::make_unique<GrowingWind>()), 1};
   }
   /// From one moment to another, 50 times a second.
-  void serve(TextSimulator& simulator, double from_s, double to_s, std::optional<FaultKind> fault = {}) {
+  void serve(TextSimulator& simulator, double from_s, double to_s, std::optional<core::FaultKind> fault = {}) {
     for (int i = 0; from_s + 0.02 * i < to_s; ++i) simulator.serve({}, from_s + 0.02 * i, fault);
   }
 
@@ -190,7 +191,7 @@ TEST_F(TextSimulatorTest, AnswersOnlyWhatItIsAsked) {
 
 TEST_F(TextSimulatorTest, FailsInEveryWayItIsToldTo) {
   auto simulator = make(4.0);
-  const auto message_with = [&](FaultKind fault) {
+  const auto message_with = [&](core::FaultKind fault) {
     static double time_s = 10.0;
     serve(simulator, time_s, time_s + 0.25, {});
     received_.messages.clear();
@@ -201,32 +202,32 @@ TEST_F(TextSimulatorTest, FailsInEveryWayItIsToldTo) {
     return all;
   };
   serve(simulator, 0.0, 10.0);
-  EXPECT_EQ(message_with(FaultKind::kSilence), "");
-  const std::string frozen = message_with(FaultKind::kFreeze);
-  EXPECT_EQ(message_with(FaultKind::kFreeze).substr(0, 13), frozen.substr(0, 13));
-  EXPECT_THAT(message_with(FaultKind::kSpike), testing::HasSubstr(",R,55.00,M"));
-  EXPECT_EQ(message_with(FaultKind::kGarbage).size() % 24, 0U);
-  EXPECT_THAT(message_with(FaultKind::kPartial), Not(testing::HasSubstr("*")));
-  const std::string split = message_with(FaultKind::kSplit);
+  EXPECT_EQ(message_with(core::FaultKind::kSilence), "");
+  const std::string frozen = message_with(core::FaultKind::kFreeze);
+  EXPECT_EQ(message_with(core::FaultKind::kFreeze).substr(0, 13), frozen.substr(0, 13));
+  EXPECT_THAT(message_with(core::FaultKind::kSpike), testing::HasSubstr(",R,55.00,M"));
+  EXPECT_EQ(message_with(core::FaultKind::kGarbage).size() % 24, 0U);
+  EXPECT_THAT(message_with(core::FaultKind::kPartial), Not(testing::HasSubstr("*")));
+  const std::string split = message_with(core::FaultKind::kSplit);
   EXPECT_GE(received_.messages.size(), 3U);
   EXPECT_THAT(split, testing::EndsWith("\r\n"));
-  message_with(FaultKind::kUnplug);
+  message_with(core::FaultKind::kUnplug);
   EXPECT_FALSE(received_.is_there);
   EXPECT_TRUE(received_.messages.empty());
-  EXPECT_THAT(message_with(FaultKind::kBadChecksum), testing::HasSubstr("*"));
+  EXPECT_THAT(message_with(core::FaultKind::kBadChecksum), testing::HasSubstr("*"));
   EXPECT_TRUE(received_.is_there);
 }
 
 TEST_F(TextSimulatorTest, IsLateOnlyWhereItIsAsked) {
   auto simulator = make(0.0, "umb");
   const auto known = simulator.known_faults();
-  EXPECT_THAT(std::vector<FaultKind>(known.begin(), known.end()), Contains(FaultKind::kLate));
+  EXPECT_THAT(std::vector<core::FaultKind>(known.begin(), known.end()), Contains(core::FaultKind::kLate));
   auto sender = make(1.0);
   const auto others = sender.known_faults();
-  EXPECT_THAT(std::vector<FaultKind>(others.begin(), others.end()), Not(Contains(FaultKind::kLate)));
+  EXPECT_THAT(std::vector<core::FaultKind>(others.begin(), others.end()), Not(Contains(core::FaultKind::kLate)));
 
   received_.asked = "01TR4\r";
-  serve(simulator, 0.0, 1.2, FaultKind::kLate);
+  serve(simulator, 0.0, 1.2, core::FaultKind::kLate);
   EXPECT_TRUE(received_.messages.empty());
   serve(simulator, 1.2, 1.5);
   EXPECT_EQ(received_.messages.size(), 1U);

@@ -89,15 +89,15 @@ TEST(Mcc1208Model, SuffersItsFaults) {
   const auto device = make_daq("mcc1208");
   device->advance(0.0, {5.0, 90.0}, {});
   device->advance(1.0, {5.0, 90.0}, {});
-  device->advance(3.0, {5.0, 90.0}, FaultKind::kFreeze);
+  device->advance(3.0, {5.0, 90.0}, core::FaultKind::kFreeze);
   EXPECT_EQ(count_of(*device), 50U);
-  device->advance(3.0, {5.0, 90.0}, FaultKind::kPartial);
+  device->advance(3.0, {5.0, 90.0}, core::FaultKind::kPartial);
   EXPECT_EQ(device->control(kReadCount, {})->size(), 3U);
-  device->advance(3.0, {5.0, 90.0}, FaultKind::kException);
+  device->advance(3.0, {5.0, 90.0}, core::FaultKind::kException);
   EXPECT_FALSE(device->control(kReadCount, {}).has_value());
-  device->advance(3.0, {5.0, 90.0}, FaultKind::kGarbage);
+  device->advance(3.0, {5.0, 90.0}, core::FaultKind::kGarbage);
   EXPECT_NE(count_of(*device), 50U);
-  device->advance(3.0, {5.0, 90.0}, FaultKind::kUnplug);
+  device->advance(3.0, {5.0, 90.0}, core::FaultKind::kUnplug);
   device->advance(4.0, {5.0, 90.0}, {});
   EXPECT_NEAR(static_cast<double>(count_of(*device)), 50.0, 1.0) << "since it was plugged in again";
 }
@@ -153,27 +153,27 @@ TEST(LabjackModel, AnswersACommandWithAWrongSumAsTheDeviceDoes) {
 
 TEST(LabjackModel, SuffersItsFaults) {
   const auto device = make_daq("labjack-u3");
-  const PlayedMoment wind = {5.0, 90.0};
+  const core::PlayedMoment wind = {5.0, 90.0};
   ask(*device, kEnableCounter0);
   const UsbBytes right = ask(*device, kReadVaneAndCup);
 
-  device->advance(0.0, wind, FaultKind::kSilence);
+  device->advance(0.0, wind, core::FaultKind::kSilence);
   EXPECT_TRUE(ask(*device, kReadVaneAndCup).empty());
-  device->advance(0.0, wind, FaultKind::kPartial);
+  device->advance(0.0, wind, core::FaultKind::kPartial);
   EXPECT_EQ(ask(*device, kReadVaneAndCup).size(), right.size() - 1);
-  device->advance(0.0, wind, FaultKind::kBadChecksum);
+  device->advance(0.0, wind, core::FaultKind::kBadChecksum);
   const UsbBytes damaged = ask(*device, kReadVaneAndCup);
   EXPECT_EQ(damaged.size(), right.size());
   EXPECT_EQ(damaged.at(4) - 1, std::accumulate(damaged.begin() + 6, damaged.end(), 0) & 0xFF);
-  device->advance(0.0, wind, FaultKind::kWrongTransaction);
+  device->advance(0.0, wind, core::FaultKind::kWrongTransaction);
   EXPECT_EQ(ask(*device, kReadVaneAndCup).at(8), 0xFF);
-  device->advance(0.0, wind, FaultKind::kException);
+  device->advance(0.0, wind, core::FaultKind::kException);
   EXPECT_NE(ask(*device, kReadVaneAndCup).at(6), 0);
-  device->advance(0.0, wind, FaultKind::kGarbage);
+  device->advance(0.0, wind, core::FaultKind::kGarbage);
   EXPECT_NE(ask(*device, kReadVaneAndCup).at(1), 0xF8);
 
   // What is late comes with the answer to the next command.
-  device->advance(0.0, wind, FaultKind::kLate);
+  device->advance(0.0, wind, core::FaultKind::kLate);
   EXPECT_TRUE(ask(*device, kReadVaneAndCup).empty());
   device->advance(0.0, wind, {});
   EXPECT_EQ(ask(*device, kReadVaneAndCup).size(), right.size());
@@ -202,8 +202,8 @@ TEST(DaqModels, OfAnotherNameAreNotThere) {
 
 TEST(DaqModels, StandAnyBytesFromTheHost) {
   std::mt19937_64 random(20260607);
-  const auto kinds = std::array{FaultKind::kGarbage, FaultKind::kPartial, FaultKind::kBadChecksum, FaultKind::kLate,
-                                FaultKind::kUnplug};
+  const auto kinds = std::array{core::FaultKind::kGarbage, core::FaultKind::kPartial, core::FaultKind::kBadChecksum,
+                                core::FaultKind::kLate, core::FaultKind::kUnplug};
   for (const std::string& name : daq_names()) {
     const auto device = make_daq(name);
     for (int round = 0; round < 50'000; ++round) {

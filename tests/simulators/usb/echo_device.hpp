@@ -34,12 +34,12 @@ class EchoDevice final : public UsbDevice {
   }
 
   const UsbDescriptors& descriptors() const override { return descriptors_; }
-  std::span<const FaultKind> known_faults() const override {
-    static constexpr std::array kKnown = {FaultKind::kGarbage};
+  std::span<const core::FaultKind> known_faults() const override {
+    static constexpr std::array kKnown = {core::FaultKind::kGarbage};
     return kKnown;
   }
 
-  void advance(double time_s, const PlayedMoment& wind, std::optional<FaultKind> fault) override {
+  void advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) override {
     time_s_ = time_s;
     wind_ = wind;
     fault_ = fault;
@@ -62,7 +62,7 @@ class EchoDevice final : public UsbDevice {
     }
     if (time_s_ < next_report_s_) return std::nullopt;
     next_report_s_ = time_s_ + kReportEvery_s;
-    if (fault_ == FaultKind::kGarbage) return UsbBytes(kReportSize, 0xA5);
+    if (fault_ == core::FaultKind::kGarbage) return UsbBytes(kReportSize, 0xA5);
     ++reports_;
     const auto speed_cm_s = static_cast<std::uint16_t>(100.0 * wind_.speed_m_s);
     const auto byte = [](std::uint32_t value) { return static_cast<std::uint8_t>(value); };
@@ -88,8 +88,8 @@ class EchoDevice final : public UsbDevice {
   UsbBytes bulk_;
   double time_s_ = 0.0;
   double next_report_s_ = 0.0;
-  PlayedMoment wind_;
-  std::optional<FaultKind> fault_;
+  core::PlayedMoment wind_;
+  std::optional<core::FaultKind> fault_;
   std::uint32_t reports_ = 0;
 };
 

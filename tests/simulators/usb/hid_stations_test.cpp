@@ -26,11 +26,11 @@ class HostOf {
   explicit HostOf(std::unique_ptr<UsbDevice> device) : device_(std::move(device)) {}
 
   UsbDevice& device() { return *device_; }
-  PlayedMoment wind = {8.6, 225.0};
-  std::optional<FaultKind> fault;
+  core::PlayedMoment wind = {8.6, 225.0};
+  std::optional<core::FaultKind> fault;
 
   /// From now on.
-  void suffer(FaultKind kind) {
+  void suffer(core::FaultKind kind) {
     fault = kind;
     listen(0.01);
   }
@@ -169,15 +169,15 @@ TEST(SimulatedWmr100, SpoilsItsFramesAsItIsTold) {
   host.wind = {4.6, 225.0};
   host.set_report(kWmr100StartReport);
   const UsbBytes whole = {0x2E, 0xE0, 0x02, 0x00, 0x20, 0x8E, 0x01};
-  const auto with = [&](FaultKind fault) {
+  const auto with = [&](core::FaultKind fault) {
     host.suffer(fault);
     return stream_of(host.listen(70.0));
   };
-  EXPECT_TRUE(holds(with(FaultKind::kSplit), whole));
-  EXPECT_FALSE(holds(with(FaultKind::kBadChecksum), whole));
-  EXPECT_FALSE(holds(with(FaultKind::kPartial), whole));
-  EXPECT_TRUE(with(FaultKind::kSilence).empty());
-  host.suffer(FaultKind::kGarbage);
+  EXPECT_TRUE(holds(with(core::FaultKind::kSplit), whole));
+  EXPECT_FALSE(holds(with(core::FaultKind::kBadChecksum), whole));
+  EXPECT_FALSE(holds(with(core::FaultKind::kPartial), whole));
+  EXPECT_TRUE(with(core::FaultKind::kSilence).empty());
+  host.suffer(core::FaultKind::kGarbage);
   EXPECT_FALSE(host.listen(70.0).empty());
 }
 
@@ -308,17 +308,17 @@ TEST(SimulatedFineOffset, WritesAByteAndSaysSo) {
 TEST(SimulatedFineOffset, FailsAsItIsTold) {
   HostOf host("fineoffset");
   host.listen(20.0);
-  host.suffer(FaultKind::kSilence);
+  host.suffer(core::FaultKind::kSilence);
   EXPECT_TRUE(read_memory(host, 0, 3.0).empty());
-  host.suffer(FaultKind::kPartial);
+  host.suffer(core::FaultKind::kPartial);
   EXPECT_EQ(read_memory(host, 0).size(), 16U);
-  host.suffer(FaultKind::kLate);
+  host.suffer(core::FaultKind::kLate);
   EXPECT_TRUE(read_memory(host, 0, 2.0).empty());
   EXPECT_EQ(host.listen(1.0).size(), 4U);
-  host.suffer(FaultKind::kSplit);
+  host.suffer(core::FaultKind::kSplit);
   EXPECT_LT(read_memory(host, 0, 0.5).size(), 32U);
   EXPECT_FALSE(host.listen(1.0).empty());
-  host.suffer(FaultKind::kGarbage);
+  host.suffer(core::FaultKind::kGarbage);
   EXPECT_NE(read_memory(host, 0), read_memory(host, 0));
 }
 
@@ -346,11 +346,11 @@ TEST(SimulatedAcurite, ChangesItsReportEvery18SecondsByTurns) {
 
 TEST(SimulatedAcurite, FailsAsItIsTold) {
   HostOf host("acurite");
-  host.suffer(FaultKind::kPartial);
+  host.suffer(core::FaultKind::kPartial);
   EXPECT_EQ(host.device().control(kGetInputReport1, {})->size(), 5U);
-  host.suffer(FaultKind::kGarbage);
+  host.suffer(core::FaultKind::kGarbage);
   EXPECT_NE(host.device().control(kGetInputReport1, {}), host.device().control(kGetInputReport1, {}));
-  host.suffer(FaultKind::kSilence);
+  host.suffer(core::FaultKind::kSilence);
   EXPECT_EQ(host.device().control(kGetInputReport1, {}), std::nullopt);
   EXPECT_EQ(host.device().control({0xA1, 0x01, 0x0104, 0, 10}, {}), std::nullopt) << "no such report";
 }
@@ -383,16 +383,16 @@ TEST(SimulatedTe923, DoesNotAnswerARequestWithAWrongCheckByte) {
 
 TEST(SimulatedTe923, FailsAsItIsTold) {
   HostOf host("te923");
-  const auto with = [&host](FaultKind fault, double wait_s) {
+  const auto with = [&host](core::FaultKind fault, double wait_s) {
     host.suffer(fault);
     host.set_report(kTe923Request);
     return stream_of(host.listen(wait_s));
   };
-  EXPECT_TRUE(with(FaultKind::kSilence, 2.0).empty());
-  EXPECT_EQ(with(FaultKind::kPartial, 1.0).size(), 17U);
-  EXPECT_LT(with(FaultKind::kSplit, 0.5).size(), 34U);
-  EXPECT_TRUE(with(FaultKind::kLate, 5.0).empty());
-  const UsbBytes bad = with(FaultKind::kBadChecksum, 1.0);
+  EXPECT_TRUE(with(core::FaultKind::kSilence, 2.0).empty());
+  EXPECT_EQ(with(core::FaultKind::kPartial, 1.0).size(), 17U);
+  EXPECT_LT(with(core::FaultKind::kSplit, 0.5).size(), 34U);
+  EXPECT_TRUE(with(core::FaultKind::kLate, 5.0).empty());
+  const UsbBytes bad = with(core::FaultKind::kBadChecksum, 1.0);
   EXPECT_NE(std::accumulate(bad.begin(), bad.end(), 0, [](int all, int byte) { return all ^ byte; }), 0);
 }
 

@@ -3,24 +3,24 @@
 #include <memory>
 #include <vector>
 
-#include "simulators/played_wind.hpp"
+#include "simulators/core/played_wind.hpp"
 #include "simulators/usb/usb_port.hpp"
 #include "tests/simulators/usb/echo_device.hpp"
 
 namespace yuragi::simulators::usb {
 
 /// The same wind all the time.
-class SteadyWind final : public PlayedWind {
+class SteadyWind final : public core::PlayedWind {
  public:
-  explicit SteadyWind(PlayedMoment moment) : moment_(moment) {}
-  PlayedMoment at(double /*time_s*/) override { return moment_; }
+  explicit SteadyWind(core::PlayedMoment moment) : moment_(moment) {}
+  core::PlayedMoment at(double /*time_s*/) override { return moment_; }
 
  private:
-  PlayedMoment moment_;
+  core::PlayedMoment moment_;
 };
 
-inline MeasuredWind steady_wind(double speed_m_s, double direction_deg) {
-  return MeasuredWind(std::make_unique<SteadyWind>(PlayedMoment{speed_m_s, direction_deg}));
+inline core::MeasuredWind steady_wind(double speed_m_s, double direction_deg) {
+  return core::MeasuredWind(std::make_unique<SteadyWind>(core::PlayedMoment{speed_m_s, direction_deg}));
 }
 
 inline std::unique_ptr<UsbPort> echo_port() {

@@ -92,7 +92,7 @@ TEST_F(UmockdevHidTest, ASilentDeviceLetsItsReaderWait) {
   ASSERT_TRUE(device);
   std::array<std::uint8_t, 64> report{};
   ASSERT_EQ(hid_read_timeout(device.get(), report.data(), report.size(), kPatience_ms), 8);
-  simulator_.set_fault(FaultKind::kSilence);
+  simulator_.set_fault(core::FaultKind::kSilence);
   // What it said before may still be to read.
   while (hid_read_timeout(device.get(), report.data(), report.size(), 0) > 0) {
   }
@@ -109,7 +109,7 @@ TEST_F(UmockdevHidTest, VanishesAndReturns) {
     ASSERT_TRUE(device) << round;
     std::array<std::uint8_t, 64> report{};
     ASSERT_EQ(hid_read_timeout(device.get(), report.data(), report.size(), kPatience_ms), 8);
-    simulator_.set_fault(FaultKind::kUnplug);
+    simulator_.set_fault(core::FaultKind::kUnplug);
     while (hid_read_timeout(device.get(), report.data(), report.size(), 0) > 0) {
     }
     EXPECT_EQ(hid_read_timeout(device.get(), report.data(), report.size(), kPatience_ms), -1);
@@ -211,7 +211,7 @@ TEST_F(UmockdevUsbTest, VanishesAndReturnsAndTheListenersAreTold) {
   };
   ASSERT_TRUE(open());
   for (int round = 1; round <= 2; ++round) {
-    simulator_.set_fault(FaultKind::kUnplug);
+    simulator_.set_fault(core::FaultKind::kUnplug);
     EXPECT_EQ(bulk_out({1}), LIBUSB_ERROR_NO_DEVICE);
     wait_for_count(seen.left, 2 * round);
     libusb_close(std::exchange(handle_, nullptr));

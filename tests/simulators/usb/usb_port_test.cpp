@@ -89,7 +89,7 @@ TEST_F(UsbPortTest, RefusalsAreTold) {
 }
 
 TEST_F(UsbPortTest, ASilentDeviceHearsAndSaysOnlyWhatItIs) {
-  port_->advance(1.0, FaultKind::kSilence);
+  port_->advance(1.0, core::FaultKind::kSilence);
   port_->submit(in_transfer(1, 1));
   port_->submit(control_transfer(2, kGetDeviceDescriptor));
   port_->submit(control_transfer(3, kSetFeature, {8, 7, 6, 5, 4, 3, 2, 1}));
@@ -108,7 +108,7 @@ TEST_F(UsbPortTest, ASilentDeviceHearsAndSaysOnlyWhatItIs) {
 
 TEST_F(UsbPortTest, AnUnpluggedDeviceForgetsAllTransfersAndTakesNone) {
   port_->submit(in_transfer(1, 2));
-  port_->advance(1.0, FaultKind::kUnplug);
+  port_->advance(1.0, core::FaultKind::kUnplug);
   EXPECT_FALSE(port_->is_plugged_in());
   port_->submit(control_transfer(2, kGetDeviceDescriptor));
   EXPECT_THAT(port_->take_outcomes(), IsEmpty());
@@ -118,13 +118,14 @@ TEST_F(UsbPortTest, AnUnpluggedDeviceForgetsAllTransfersAndTakesNone) {
 }
 
 TEST_F(UsbPortTest, ItsDevicesFaultsAndItsOwnAreKnown) {
-  for (const FaultKind kind : {FaultKind::kSilence, FaultKind::kUnplug, FaultKind::kSpike, FaultKind::kGarbage}) {
+  for (const core::FaultKind kind :
+       {core::FaultKind::kSilence, core::FaultKind::kUnplug, core::FaultKind::kSpike, core::FaultKind::kGarbage}) {
     EXPECT_THAT(port_->known_faults(), Contains(kind));
   }
-  port_->advance(1.0, FaultKind::kGarbage);
+  port_->advance(1.0, core::FaultKind::kGarbage);
   port_->submit(in_transfer(1, 1));
   EXPECT_EQ(port_->take_outcomes().at(0).data, UsbBytes(EchoDevice::kReportSize, 0xA5));
-  port_->advance(2.0, FaultKind::kException);  // of which the device knows nothing
+  port_->advance(2.0, core::FaultKind::kException);  // of which the device knows nothing
   port_->submit(in_transfer(2, 1));
   EXPECT_EQ(port_->take_outcomes().at(0).data.front(), 'W');
 }

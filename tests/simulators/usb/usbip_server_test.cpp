@@ -28,7 +28,7 @@ class UsbipServerTest : public testing::Test {
     return client;
   }
 
-  void serve_once(std::optional<FaultKind> fault = std::nullopt) {
+  void serve_once(std::optional<core::FaultKind> fault = std::nullopt) {
     std::vector<pollfd> waits;
     for (const int descriptor : server_.descriptors()) waits.push_back({descriptor, POLLIN, 0});
     poll(waits.data(), waits.size(), 5);
@@ -44,7 +44,7 @@ class UsbipServerTest : public testing::Test {
   }
 
   /// Serves until so many bytes have come, or the server has closed the connection; what has come.
-  UsbBytes answer(const Descriptor& client, std::size_t size, std::optional<FaultKind> fault = std::nullopt) {
+  UsbBytes answer(const Descriptor& client, std::size_t size, std::optional<core::FaultKind> fault = std::nullopt) {
     UsbBytes got;
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (got.size() < size && std::chrono::steady_clock::now() < deadline) {
@@ -57,12 +57,12 @@ class UsbipServerTest : public testing::Test {
     return got;
   }
   UsbBytes ask(const Descriptor& client, const UsbBytes& bytes, std::size_t size,
-               std::optional<FaultKind> fault = std::nullopt) {
+               std::optional<core::FaultKind> fault = std::nullopt) {
     send_bytes(client, bytes);
     return answer(client, size, fault);
   }
   /// Serves until the server closes the connection; false: it never does.
-  bool is_closed(const Descriptor& client, std::optional<FaultKind> fault = std::nullopt) {
+  bool is_closed(const Descriptor& client, std::optional<core::FaultKind> fault = std::nullopt) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < deadline) {
       serve_once(fault);
@@ -164,11 +164,11 @@ TEST_F(UsbipServerTest, ADeviceIsUnpluggedAndPluggedInAgain) {
   const Descriptor host = attach();
   const Descriptor other = connect_client();
   time_s_ = 1.0;
-  EXPECT_TRUE(is_closed(host, FaultKind::kUnplug));
-  EXPECT_EQ(ask(other, usbip_request_import("1-1"), kRefused, FaultKind::kUnplug),
+  EXPECT_TRUE(is_closed(host, core::FaultKind::kUnplug));
+  EXPECT_EQ(ask(other, usbip_request_import("1-1"), kRefused, core::FaultKind::kUnplug),
             (UsbBytes{1, 0x11, 0, 3, 0, 0, 0, 4}));
   const Descriptor requesting = connect_client();
-  EXPECT_EQ(ask(requesting, kUsbipRequestList, 12, FaultKind::kUnplug),
+  EXPECT_EQ(ask(requesting, kUsbipRequestList, 12, core::FaultKind::kUnplug),
             (UsbBytes{1, 0x11, 0, 5, 0, 0, 0, 0, 0, 0, 0, 0}));
 
   time_s_ = 2.0;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+namespace yuragi::simulators::core {
+
+/// A TCP server's listening socket, which can be closed and opened again at the same place. Nothing waits: neither it
+/// nor the sockets that it accepts. Thread-safe: no.
+class TcpListener {
+ public:
+  /// Listens; port 0 takes a free one. Throws std::runtime_error for a host that is no numeric address, and for a place
+  /// that cannot be listened at.
+  TcpListener(const std::string& host, std::uint16_t port);
+
+  /// Where it listens, or did.
+  const boost::asio::ip::tcp::endpoint& endpoint() const noexcept { return endpoint_; }
+  bool is_open() const { return acceptor_.is_open(); }
+  /// While it is open.
+  int descriptor() { return acceptor_.native_handle(); }
+
+  /// A client that has come; nothing where none has.
+  std::optional<boost::asio::ip::tcp::socket> accept();
+
+  void close();
+  /// False where the place is taken.
+  bool open_again();
+
+ private:
+  boost::system::error_code open();
+
+  boost::asio::io_context context_;
+  boost::asio::ip::tcp::endpoint endpoint_;
+  boost::asio::ip::tcp::acceptor acceptor_{context_};
+};
+
+}  // namespace yuragi::simulators::core
