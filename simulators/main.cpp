@@ -5,14 +5,7 @@
 
 #include "engine/base/version.hpp"
 #include "engine/base/word_suggestion.hpp"
-#include "simulators/core/commands.hpp"
-#include "simulators/davis/commands.hpp"
-#include "simulators/lufft/commands.hpp"
-#include "simulators/microphone/commands.hpp"
-#include "simulators/modbus/commands.hpp"
-#include "simulators/network/commands.hpp"
-#include "simulators/text/commands.hpp"
-#include "simulators/usb/commands.hpp"
+#include "simulators/core/command.hpp"
 
 namespace {
 
@@ -24,23 +17,8 @@ int run(int argc, char** argv) {
   CLI::App app{"Simulated wind sensors, with the protocols of real ones and with faults on demand.", "yuragi-sim"};
   app.set_version_flag("--version", yuragi::with_version("yuragi-sim"));
   app.require_subcommand(1);
-  yuragi::simulators::microphone::add_microphone_command(app);
-  yuragi::simulators::modbus::add_modbus_command(app);
-  yuragi::simulators::text::add_nmea_command(app);
-  yuragi::simulators::text::add_nmea2000_command(app);
-  yuragi::simulators::text::add_signalk_command(app);
-  yuragi::simulators::text::add_line_command(app);
-  yuragi::simulators::davis::add_davis_command(app);
-  yuragi::simulators::davis::add_weatherlink_live_command(app);
-  yuragi::simulators::lufft::add_umb_command(app);
-  yuragi::simulators::network::add_ecowitt_command(app);
-  yuragi::simulators::network::add_ecowitt_push_command(app);
-  yuragi::simulators::network::add_osc_command(app);
-  yuragi::simulators::network::add_tempest_command(app);
-  yuragi::simulators::usb::add_hid_command(app);
-  yuragi::simulators::usb::add_usb_command(app);
-  yuragi::simulators::core::add_recording_command(app);
-  yuragi::simulators::core::add_scenario_command(app);
+  for (const yuragi::simulators::core::Command* const command : yuragi::simulators::core::command_table())
+    command->add(app);
   try {
     app.parse(argc, argv);
     return 0;

@@ -12,6 +12,7 @@
 
 #include "drivers/bus/byte_port_kinds.hpp"
 #include "drivers/davis/vantage_sensor.hpp"
+#include "drivers/decode/davis/vantage.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "drivers/sensor/serial_or_tcp.hpp"
 #include "engine/base/fields.hpp"
@@ -78,6 +79,13 @@ Result<sensor::SimulatedDevice, Failure> davis_simulated(const ParameterValues& 
   return simulated;
 }
 
+constexpr std::array kDavisFormats = {
+    sensor::MessageFormat{.name = "davis",
+                          .unit = "a packet LOOP or LOOP2, of 99 bytes",
+                          .devices = "consoles of Davis Vantage Pro, Vantage Pro2, Vantage Vue",
+                          .example = "davis --hex packets.hex",
+                          .decode = decode::davis::decode_vantage_packet}};
+
 }  // namespace
 
 extern const sensor::DriverDescription kDavisDriver;
@@ -91,6 +99,6 @@ const sensor::DriverDescription kDavisDriver{
     .selection =
         [](const ParameterValues& values) { return sensor::selection_at(vantage_settings_of(values).address); },
     .simulated = davis_simulated,
-    .formats = "davis"};
+    .message_formats = kDavisFormats};
 
 }  // namespace yuragi::drivers::davis

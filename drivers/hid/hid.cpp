@@ -18,6 +18,8 @@
 
 #include <fmt/format.h>
 
+#include "drivers/decode/hid/acurite.hpp"
+#include "drivers/decode/hid/wmr300.hpp"
 #include "drivers/hid/hid_sensor.hpp"
 #include "drivers/sensor/driver.hpp"
 #include "engine/base/fields.hpp"
@@ -115,6 +117,17 @@ std::optional<sensor::StatedValue> hid_value(const ParameterValues& values) {
   return sensor::StatedValue{.value = wind::ReadingValue::kMean, .source = std::string(source)};
 }
 
+constexpr std::array kHidFormats = {sensor::MessageFormat{.name = "wmr300",
+                                                          .unit = "a packet",
+                                                          .devices = "Oregon Scientific WMR300",
+                                                          .example = "wmr300 --hex --refused packets.hex",
+                                                          .decode = decode::hid::decode_wmr300},
+                                    sensor::MessageFormat{.name = "acurite",
+                                                          .unit = "report 1, of 10 bytes",
+                                                          .devices = "AcuRite 01025, 01035, 01036, 02032, 02064",
+                                                          .example = "acurite --hex r1.hex",
+                                                          .decode = decode::hid::decode_acurite}};
+
 }  // namespace
 
 extern const sensor::DriverDescription kHidDriver;
@@ -133,6 +146,7 @@ const sensor::DriverDescription kHidDriver{
     .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
       return Failure{"a simulated hid needs USB or sound of its own, and rights for it"};
     },
-    .formats = "wmr100 wmr300 fineoffset acurite te923"};
+    .message_formats = kHidFormats,
+    .formats = "wmr100 fineoffset te923"};
 
 }  // namespace yuragi::drivers::hid

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/decode/byte_order.hpp"
+#include "drivers/decode/decoded_wind.hpp"
 #include "drivers/sensor/endpoint.hpp"
 #include "drivers/sensor/found_device.hpp"
 #include "drivers/sensor/network_search.hpp"
@@ -46,6 +48,16 @@ struct PromisedQuantities {
 enum class CalibrationMeans : std::uint8_t {
   kFactors,     ///< by gain, offset and north offset of [sensor.calibration]
   kSoundLevel,  ///< by the level of its sound beside another anemometer
+};
+
+/// A format of `yuragi decode` without options, each of whose messages is decoded by itself.
+struct MessageFormat {
+  std::string_view name;
+  bool is_text = false;      ///< lines of text; otherwise bytes, given as hexadecimal digits
+  std::string_view unit;     ///< what one message is
+  std::string_view devices;  ///< that send it
+  std::string_view example;  ///< a command line, without `yuragi decode`
+  Result<decode::DecodedWind, decode::Refusal> (*decode)(decode::ByteSpan message) noexcept;
 };
 
 /// A family of sensors: one constant `kXDriver` in its own file, listed in its folder's CMakeLists.txt.
@@ -88,7 +100,9 @@ struct DriverDescription {
   bool plays_recordings = false;
   /// What `yuragi calibrate` finds out of it.
   CalibrationMeans calibration = CalibrationMeans::kFactors;
-  /// The formats of `yuragi decode` that read its messages, with blanks between them; empty: it has none of its own.
+  /// The formats of `yuragi decode` that read its messages.
+  std::span<const MessageFormat> message_formats = {};
+  /// Those with options of the command (daemon/tools/decode), with blanks between them; empty: none.
   std::string_view formats = {};
   /// A relative sensor: only the fluctuations of its readings are valid, not their scale, which depends on where it
   /// is mounted. It is compared with no other sensor, and beside others only its gusts count, unless configured

@@ -128,10 +128,8 @@ std::string path_of(const BytePortKeys& keys, const ParameterValues& values) {
 
 }  // namespace
 
-std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, double delay_after_open_s) {
-  std::vector<Parameter> all = std::move(own);
-  const auto others = byte_port_fields().parameters();
-  all.insert(all.end(), others.begin(), others.end());
+std::vector<Parameter> with_byte_port_parameters(std::span<const Parameter> own, double delay_after_open_s) {
+  std::vector<Parameter> all = together(own, byte_port_fields().parameters());
   all.back().default_value = delay_after_open_s;
   return all;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "drivers/sensor/endpoint.hpp"
@@ -10,7 +11,7 @@ namespace yuragi::drivers::text {
 
 /// The parameters of drivers that read text from a byte port: its source, the request for it, and when a
 /// silent device is opened again. `own` are the driver's, which come first; `delay_after_open_s` is a default.
-std::vector<Parameter> with_byte_port_parameters(std::vector<Parameter> own, double delay_after_open_s);
+std::vector<Parameter> with_byte_port_parameters(std::span<const Parameter> own, double delay_after_open_s);
 
 /// The values of these, and of "interface" where a driver's transport may be "can". Throws std::runtime_error, saying
 /// what to do, where they cannot work together.

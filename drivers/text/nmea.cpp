@@ -90,7 +90,7 @@ std::vector<Parameter> nmea_parameters() {
       "which direction to use where a device sends several: from north (MWD, MDA), relative to its own mark (MWV R, "
       "VWR, "
       "XDR, Gill, FT, UMB, WXT), true (MWV T, VWT); auto: the first of these that it sends";
-  return with_byte_port_parameters(std::move(own), 0.0);
+  return with_byte_port_parameters(own, 0.0);
 }
 const std::vector<Parameter> kNmeaParameters = nmea_parameters();
 

@@ -65,7 +65,7 @@ std::vector<Parameter> nmea2000_parameters() {
                  .default_value = std::string("can0"),
                  .help = "can: the CAN interface, as ip link names it; it must be up, with the bus's bit rate (ip link "
                          "set can0 up type can bitrate 250000)"});
-  std::vector<Parameter> all = with_byte_port_parameters(std::move(own), 0.0);
+  std::vector<Parameter> all = with_byte_port_parameters(own, 0.0);
   const auto transport = std::ranges::find(all, "transport", &Parameter::name);
   transport->choices = kNmea2000Transports;
   transport->help =

@@ -11,7 +11,7 @@
 #include "drivers/windlog/series_lock.hpp"
 #include "drivers/windlog/windlog_writer.hpp"
 #include "engine/base/version.hpp"
-#include "simulators/core/commands.hpp"
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
 
 namespace yuragi::simulators::core {
@@ -115,7 +115,8 @@ void make_recording(const RecordingOptions& options) {
 
 }  // namespace
 
-void add_recording_command(CLI::App& app) {
+extern const Command kRecordingCommand;
+const Command kRecordingCommand{[](CLI::App& app) {
   auto options = std::make_shared<RecordingOptions>();
   CLI::App* command = app.add_subcommand("recording", "an hour of wind at once, as a recording (.windlog)");
   command->footer(kRecordingFooter);
@@ -128,6 +129,6 @@ void add_recording_command(CLI::App& app) {
       ->capture_default_str();
   options->common.add_to(*command);
   command->callback([options] { make_recording(*options); });
-}
+}};
 
 }  // namespace yuragi::simulators::core

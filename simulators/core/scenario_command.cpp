@@ -3,7 +3,7 @@
 #include <string>
 
 #include "engine/base/duration.hpp"
-#include "simulators/core/commands.hpp"
+#include "simulators/core/command.hpp"
 #include "simulators/core/rehearsal.hpp"
 
 namespace yuragi::simulators::core {
@@ -46,7 +46,8 @@ void rehearse(const ScenarioOptions& options) {
 
 }  // namespace
 
-void add_scenario_command(CLI::App& app) {
+extern const Command kScenarioCommand;
+const Command kScenarioCommand{[](CLI::App& app) {
   auto options = std::make_shared<ScenarioOptions>();
   CLI::App* command =
       app.add_subcommand("scenario", "several devices in one wind by time, with faults by time: a rehearsal");
@@ -58,6 +59,6 @@ void add_scenario_command(CLI::App& app) {
   command->add_flag("--verbose", options->run.verbose, "print the wind every second even without a terminal");
   command->footer(kScenarioFooter);
   command->callback([options] { rehearse(*options); });
-}
+}};
 
 }  // namespace yuragi::simulators::core

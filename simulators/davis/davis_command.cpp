@@ -1,7 +1,7 @@
 #include <memory>
 
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
-#include "simulators/davis/commands.hpp"
 #include "simulators/davis/vantage_console.hpp"
 #include "simulators/text/text_options.hpp"
 
@@ -26,7 +26,8 @@ struct DavisOptions {
 
 }  // namespace
 
-void add_davis_command(CLI::App& app) {
+extern const core::Command kDavisCommand;
+const core::Command kDavisCommand{[](CLI::App& app) {
   auto options = std::make_shared<DavisOptions>();
   CLI::App* command = app.add_subcommand("davis", "console of a Davis Vantage station, with its data logger");
   options->line.add_to(*command, "a server at HOST:PORT, as a WeatherLinkIP");
@@ -36,6 +37,6 @@ void add_davis_command(CLI::App& app) {
   command->add_flag("--old-firmware", options->has_old_firmware, "does not know the command LPS (before 1.90)");
   options->common.add_to(*command);
   command->callback([options] { options->run(); });
-}
+}};
 
 }  // namespace yuragi::simulators::davis

@@ -1,8 +1,8 @@
 #include <memory>
 #include <string>
 
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
-#include "simulators/davis/commands.hpp"
 #include "simulators/davis/weatherlink_live.hpp"
 #include "simulators/text/text_options.hpp"
 
@@ -30,7 +30,8 @@ struct LiveOptions {
 
 }  // namespace
 
-void add_weatherlink_live_command(CLI::App& app) {
+extern const core::Command kWeatherlinkLiveCommand;
+const core::Command kWeatherlinkLiveCommand{[](CLI::App& app) {
   auto options = std::make_shared<LiveOptions>();
   CLI::App* command = app.add_subcommand("weatherlink-live", "Davis WeatherLink Live: HTTP, and broadcasts by UDP");
   command->add_option("--tcp", options->tcp, "where it serves HTTP, HOST:PORT; port 0 takes a free one")->required();
@@ -40,6 +41,6 @@ void add_weatherlink_live_command(CLI::App& app) {
       ->capture_default_str();
   options->common.add_to(*command);
   command->callback([options] { options->run(); });
-}
+}};
 
 }  // namespace yuragi::simulators::davis

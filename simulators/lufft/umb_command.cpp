@@ -1,7 +1,7 @@
 #include <memory>
 
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
-#include "simulators/lufft/commands.hpp"
 #include "simulators/lufft/umb_station.hpp"
 #include "simulators/text/text_options.hpp"
 
@@ -26,7 +26,8 @@ struct UmbOptions {
 
 }  // namespace
 
-void add_umb_command(CLI::App& app) {
+extern const core::Command kUmbCommand;
+const core::Command kUmbCommand{[](CLI::App& app) {
   auto options = std::make_shared<UmbOptions>();
   CLI::App* command = app.add_subcommand("umb", "Lufft weather station or VENTUS, with the binary UMB protocol");
   options->line.add_to(*command, "a serial device server at HOST:PORT");
@@ -42,6 +43,6 @@ void add_umb_command(CLI::App& app) {
   command->add_flag("--echo", options->station.echoes, "its line has one pair of wires: clients hear what they say");
   options->common.add_to(*command);
   command->callback([options] { options->run(); });
-}
+}};
 
 }  // namespace yuragi::simulators::lufft

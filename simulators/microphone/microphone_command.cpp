@@ -2,8 +2,8 @@
 #include <memory>
 #include <string>
 
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
-#include "simulators/microphone/commands.hpp"
 #include "simulators/microphone/microphone_file.hpp"
 #include "simulators/microphone/microphone_simulator.hpp"
 
@@ -46,7 +46,8 @@ void simulate_microphone(MicrophoneCommandOptions options) {
 
 }  // namespace
 
-void add_microphone_command(CLI::App& app) {
+extern const core::Command kMicrophoneCommand;
+const core::Command kMicrophoneCommand{[](CLI::App& app) {
   auto options = std::make_shared<MicrophoneCommandOptions>();
   MicrophoneOptions& microphone = options->microphone;
   CLI::App* command = app.add_subcommand("microphone", "sound of wind in bare microphones, with voices and music");
@@ -89,6 +90,6 @@ void add_microphone_command(CLI::App& app) {
     }
     simulate_microphone(*options);
   });
-}
+}};
 
 }  // namespace yuragi::simulators::microphone

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
-#include "simulators/modbus/commands.hpp"
 #include "simulators/modbus/modbus_simulator.hpp"
 
 namespace yuragi::simulators::modbus {
@@ -59,7 +59,8 @@ void simulate_modbus(const ModbusOptions& options) {
 
 }  // namespace
 
-void add_modbus_command(CLI::App& app) {
+extern const core::Command kModbusCommand;
+const core::Command kModbusCommand{[](CLI::App& app) {
   auto options = std::make_shared<ModbusOptions>();
   CLI::App* command =
       app.add_subcommand("modbus", "Modbus line, over TCP or serial (RTU), with the registers of real wind sensors");
@@ -79,6 +80,6 @@ void add_modbus_command(CLI::App& app) {
       ->capture_default_str();
   options->common.add_to(*command);
   command->callback([options] { simulate_modbus(*options); });
-}
+}};
 
 }  // namespace yuragi::simulators::modbus

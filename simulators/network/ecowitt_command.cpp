@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
-#include "simulators/network/commands.hpp"
 #include "simulators/network/ecowitt_simulator.hpp"
 
 namespace yuragi::simulators::network {
@@ -37,7 +37,8 @@ void simulate_ecowitt(EcowittCommand& command) {
 
 }  // namespace
 
-void add_ecowitt_command(CLI::App& app) {
+extern const core::Command kEcowittCommand;
+const core::Command kEcowittCommand{[](CLI::App& app) {
   auto options = std::make_shared<EcowittCommand>();
   CLI::App* command = app.add_subcommand("ecowitt", "Ecowitt gateway (GW1000), which is asked over TCP");
   command->add_option("--tcp", options->tcp, "HOST:PORT to listen on; port 0 takes a free one")->capture_default_str();
@@ -52,6 +53,6 @@ void add_ecowitt_command(CLI::App& app) {
       ->capture_default_str();
   options->common.add_to(*command);
   command->callback([options] { simulate_ecowitt(*options); });
-}
+}};
 
 }  // namespace yuragi::simulators::network

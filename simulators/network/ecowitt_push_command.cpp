@@ -3,8 +3,8 @@
 #include <map>
 #include <memory>
 
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
-#include "simulators/network/commands.hpp"
 #include "simulators/network/ecowitt_push_simulator.hpp"
 
 namespace yuragi::simulators::network {
@@ -40,7 +40,8 @@ void simulate_ecowitt_push(EcowittPushCommand& command) {
 
 }  // namespace
 
-void add_ecowitt_push_command(CLI::App& app) {
+extern const core::Command kEcowittPushCommand;
+const core::Command kEcowittPushCommand{[](CLI::App& app) {
   auto options = std::make_shared<EcowittPushCommand>();
   CLI::App* command =
       app.add_subcommand("ecowitt-push", "Ecowitt gateway, Ambient or Wunderground station, which pushes by HTTP");
@@ -56,6 +57,6 @@ void add_ecowitt_push_command(CLI::App& app) {
       ->capture_default_str();
   options->common.add_to(*command);
   command->callback([options] { simulate_ecowitt_push(*options); });
-}
+}};
 
 }  // namespace yuragi::simulators::network

@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
-#include "simulators/network/commands.hpp"
 #include "simulators/network/osc_simulator.hpp"
 
 namespace yuragi::simulators::network {
@@ -35,7 +35,8 @@ void simulate_osc(OscCommand& command) {
 
 }  // namespace
 
-void add_osc_command(CLI::App& app) {
+extern const core::Command kOscCommand;
+const core::Command kOscCommand{[](CLI::App& app) {
   auto options = std::make_shared<OscCommand>();
   CLI::App* command = app.add_subcommand("osc", "program that sends the wind as Open Sound Control messages by UDP");
   command->add_option("--to", options->to, "send to HOST:PORT")->capture_default_str();
@@ -51,6 +52,6 @@ void add_osc_command(CLI::App& app) {
       ->capture_default_str();
   options->common.add_to(*command);
   command->callback([options] { simulate_osc(*options); });
-}
+}};
 
 }  // namespace yuragi::simulators::network

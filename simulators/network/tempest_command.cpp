@@ -1,8 +1,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
-#include "simulators/network/commands.hpp"
 #include "simulators/network/tempest_simulator.hpp"
 
 namespace yuragi::simulators::network {
@@ -30,7 +30,8 @@ void simulate_tempest(TempestCommand& command) {
 
 }  // namespace
 
-void add_tempest_command(CLI::App& app) {
+extern const core::Command kTempestCommand;
+const core::Command kTempestCommand{[](CLI::App& app) {
   auto options = std::make_shared<TempestCommand>();
   CLI::App* command = app.add_subcommand("tempest", "WeatherFlow hub with Tempest stations, which sends JSON by UDP");
   command->add_option("--udp", options->to, "send to HOST:PORT, which may be a broadcast address")
@@ -47,6 +48,6 @@ void add_tempest_command(CLI::App& app) {
       ->capture_default_str();
   options->common.add_to(*command);
   command->callback([options] { simulate_tempest(*options); });
-}
+}};
 
 }  // namespace yuragi::simulators::network

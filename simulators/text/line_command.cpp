@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "simulators/text/commands.hpp"
+#include "simulators/core/command.hpp"
 #include "simulators/text/line_device.hpp"
 #include "simulators/text/text_options.hpp"
 
@@ -14,7 +14,8 @@ struct LineOptions {
 
 }  // namespace
 
-void add_line_command(CLI::App& app) {
+extern const core::Command kLineCommand;
+const core::Command kLineCommand{[](CLI::App& app) {
   auto options = std::make_shared<LineOptions>();
   CLI::App* command = app.add_subcommand("line", "microcontroller that prints numbers, one reading per line");
   command->add_option("--format", options->format, "format of the lines")
@@ -22,6 +23,6 @@ void add_line_command(CLI::App& app) {
       ->capture_default_str();
   options->text.add_to(*command);
   command->callback([options] { options->text.run(make_line_device(options->format)); });
-}
+}};
 
 }  // namespace yuragi::simulators::text

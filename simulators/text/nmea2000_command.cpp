@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "simulators/text/commands.hpp"
+#include "simulators/core/command.hpp"
 #include "simulators/text/nmea2000_device.hpp"
 #include "simulators/text/text_options.hpp"
 
@@ -15,7 +15,8 @@ struct Nmea2000Options {
 
 }  // namespace
 
-void add_nmea2000_command(CLI::App& app) {
+extern const core::Command kNmea2000Command;
+const core::Command kNmea2000Command{[](CLI::App& app) {
   auto options = std::make_shared<Nmea2000Options>();
   CLI::App* command = app.add_subcommand(
       "nmea2000", "anemometer on an NMEA 2000 bus, on a CAN interface or behind a gateway that sends lines");
@@ -32,6 +33,6 @@ void add_nmea2000_command(CLI::App& app) {
     options->text.run(is_on_bus ? make_nmea2000_can_device(options->reference)
                                 : make_nmea2000_device(options->format, options->reference));
   });
-}
+}};
 
 }  // namespace yuragi::simulators::text

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "simulators/text/commands.hpp"
+#include "simulators/core/command.hpp"
 #include "simulators/text/nmea_device.hpp"
 #include "simulators/text/text_options.hpp"
 
@@ -23,7 +23,8 @@ void simulate_nmea(NmeaOptions options) {
 
 }  // namespace
 
-void add_nmea_command(CLI::App& app) {
+extern const core::Command kNmeaCommand;
+const core::Command kNmeaCommand{[](CLI::App& app) {
   auto options = std::make_shared<NmeaOptions>();
   CLI::App* command =
       app.add_subcommand("nmea", "anemometer that sends NMEA 0183, or the text formats of Gill, FT, Lufft or Vaisala");
@@ -33,6 +34,6 @@ void add_nmea_command(CLI::App& app) {
       ->capture_default_str();
   options->text.add_to(*command);
   command->callback([options] { simulate_nmea(*options); });
-}
+}};
 
 }  // namespace yuragi::simulators::text

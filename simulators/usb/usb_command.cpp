@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "simulators/core/command.hpp"
 #include "simulators/core/common_options.hpp"
-#include "simulators/usb/commands.hpp"
 #include "simulators/usb/daqs.hpp"
 #include "simulators/usb/hid_stations.hpp"
 #include "simulators/usb/usb_port.hpp"
@@ -106,7 +106,8 @@ CLI::App* add_usb_options(CLI::App& app, const std::string& name, const std::str
 
 }  // namespace
 
-void add_hid_command(CLI::App& app) {
+extern const core::Command kHidCommand;
+const core::Command kHidCommand{[](CLI::App& app) {
   auto options = std::make_shared<UsbOptions>();
   std::vector<std::string> names;
   for (const std::string_view name : hid_station_names()) names.emplace_back(name);
@@ -117,12 +118,13 @@ void add_hid_command(CLI::App& app) {
   command->add_option("--pace", options->pace, "how many times faster than the real station it measures")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
-}
+}};
 
-void add_usb_command(CLI::App& app) {
+extern const core::Command kUsbCommand;
+const core::Command kUsbCommand{[](CLI::App& app) {
   add_usb_options(app, "usb", "USB counters and converters with a cup anemometer and a wind vane", daq_names(),
                   std::make_shared<UsbOptions>(),
                   [](const std::string& name, const UsbOptions& /*asked*/) { return make_daq(name); });
-}
+}};
 
 }  // namespace yuragi::simulators::usb

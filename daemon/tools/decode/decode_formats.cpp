@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
+#include <vector>
 
-#include "drivers/decode/davis/vantage.hpp"
-#include "drivers/decode/hid/acurite.hpp"
 #include "drivers/decode/hid/fineoffset.hpp"
 #include "drivers/decode/hid/te923.hpp"
 #include "drivers/decode/hid/wmr100.hpp"
-#include "drivers/decode/hid/wmr300.hpp"
 #include "drivers/decode/lufft/umb.hpp"
 #include "drivers/decode/marine/signalk.hpp"
 #include "drivers/decode/network/ecowitt.hpp"
@@ -20,6 +19,7 @@
 #include "drivers/decode/text/nmea.hpp"
 #include "drivers/decode/text/umb.hpp"
 #include "drivers/decode/text/wxt.hpp"
+#include "drivers/sensor/driver.hpp"
 
 namespace yuragi::daemon::tools::decode {
 namespace {
@@ -125,7 +125,17 @@ Made make_fineoffset(const UnitDecoderOptions& options) {
                              : stateless(drivers::decode::hid::decode_fineoffset_record);
 }
 
-constexpr std::array kUnitFormats = {
+/// A driver's own format.
+UnitFormat of_driver(const drivers::sensor::MessageFormat& format) {
+  return {.name = format.name,
+          .is_text = format.is_text,
+          .unit = format.unit,
+          .devices = format.devices,
+          .example = format.example,
+          .make = [decode = format.decode](const UnitDecoderOptions&) { return stateless(decode); }};
+}
+
+const std::array kFormatsWithOptions = {
     UnitFormat{.name = "nmea",
                .is_text = true,
                .unit = "a line",
@@ -183,37 +193,18 @@ constexpr std::array kUnitFormats = {
                .devices = "Oregon Scientific WMR100, WMR88, WMRS200, RMS300, RMS600",
                .example = "wmr100 --hex stream.hex",
                .make = make_wmr100},
-    UnitFormat{.name = "wmr300",
-               .is_text = false,
-               .unit = "a packet",
-               .devices = "Oregon Scientific WMR300",
-               .example = "wmr300 --hex --refused packets.hex",
-               .make = [](const UnitDecoderOptions&) { return stateless(drivers::decode::hid::decode_wmr300); }},
     UnitFormat{.name = "fineoffset",
                .is_text = false,
                .unit = "a record of 16 or 20 bytes",
                .devices = "Fine Offset WH1080, WH1090, WH2080, WH3080 and their other names",
                .example = "fineoffset --hex records.hex",
                .make = make_fineoffset},
-    UnitFormat{.name = "acurite",
-               .is_text = false,
-               .unit = "report 1, of 10 bytes",
-               .devices = "AcuRite 01025, 01035, 01036, 02032, 02064",
-               .example = "acurite --hex r1.hex",
-               .make = [](const UnitDecoderOptions&) { return stateless(drivers::decode::hid::decode_acurite); }},
     UnitFormat{.name = "te923",
                .is_text = false,
                .unit = "the block of readings, of 34 bytes",
                .devices = "Hideki TE923 (Meade, TFA Nexus, Mebus, IROX)",
                .example = "te923 --hex blocks.hex",
                .make = make_te923},
-    UnitFormat{
-        .name = "davis",
-        .is_text = false,
-        .unit = "a packet LOOP or LOOP2, of 99 bytes",
-        .devices = "consoles of Davis Vantage Pro, Vantage Pro2, Vantage Vue",
-        .example = "davis --hex packets.hex",
-        .make = [](const UnitDecoderOptions&) { return stateless(drivers::decode::davis::decode_vantage_packet); }},
     UnitFormat{.name = "weatherlink",
                .is_text = true,
                .longest_line = 64UL * 1024,
@@ -267,6 +258,13 @@ constexpr std::array kUnitFormats = {
                .make = make_modbus_unit_decoder},
 };
 
+std::vector<UnitFormat> all_formats() {
+  std::vector<UnitFormat> formats(kFormatsWithOptions.begin(), kFormatsWithOptions.end());
+  for (const drivers::sensor::DriverDescription* const driver : drivers::sensor::driver_table())
+    std::ranges::transform(driver->message_formats, std::back_inserter(formats), of_driver);
+  return formats;
+}
+
 }  // namespace
 
 UnitDecoder::Outcome outcome_of(const Result<drivers::decode::DecodedWind, drivers::decode::Refusal>& decoded) {
@@ -275,7 +273,8 @@ UnitDecoder::Outcome outcome_of(const Result<drivers::decode::DecodedWind, drive
 }
 
 std::span<const UnitFormat> unit_formats() {
-  return kUnitFormats;
+  static const std::vector<UnitFormat> formats = all_formats();
+  return formats;
 }
 
 const UnitFormat* find_unit_format(std::string_view name) {
@@ -284,8 +283,9 @@ const UnitFormat* find_unit_format(std::string_view name) {
     return stem(format.name) == stem(name) &&
            (format.name.find(':') == format.name.npos) == (name.find(':') == name.npos);
   };
-  const auto* const found = std::ranges::find_if(kUnitFormats, fits);
-  return found == kUnitFormats.end() ? nullptr : found;
+  const auto formats = unit_formats();
+  const auto found = std::ranges::find_if(formats, fits);
+  return found == formats.end() ? nullptr : &*found;
 }
 
 }  // namespace yuragi::daemon::tools::decode

@@ -92,10 +92,10 @@ struct UnitFormat {
   std::string_view devices;
   std::string_view example;  ///< a command line, without `yuragi decode`
   /// Throws std::runtime_error for invalid options.
-  std::unique_ptr<UnitDecoder> (*make)(const UnitDecoderOptions& options);
+  std::function<std::unique_ptr<UnitDecoder>(const UnitDecoderOptions& options)> make;
 };
 
-/// All of them, in the order of the help.
+/// All of them, in the order of the help: those with options, then those that drivers describe (MessageFormat).
 std::span<const UnitFormat> unit_formats();
 
 /// The format of this name; nullptr: there is none.

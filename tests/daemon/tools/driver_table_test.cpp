@@ -41,8 +41,10 @@ TEST(DriverTable, EachDriverNamesWhatItNeeds) {
 
 TEST(DriverTable, EachFormatOfDecodeIsADriversAndTheReverse) {
   std::set<std::string> of_drivers;
-  for (const DriverDescription* const driver : drivers::sensor::driver_table())
+  for (const DriverDescription* const driver : drivers::sensor::driver_table()) {
     of_drivers.merge(words_of(driver->formats));
+    for (const drivers::sensor::MessageFormat& format : driver->message_formats) of_drivers.emplace(format.name);
+  }
   std::set<std::string> known;
   for (const decode::UnitFormat& format : decode::unit_formats()) known.emplace(format.name);
   EXPECT_EQ(of_drivers, known);

@@ -7,10 +7,13 @@
 
 #include "drivers/windlog/windlog_playback.hpp"
 #include "engine/wind/turbulence/synthetic_wind.hpp"
-#include "simulators/core/commands.hpp"
+#include "simulators/core/command.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace yuragi::simulators::core {
+
+extern const Command kRecordingCommand;
+
 namespace {
 
 class RecordingCommand : public testing::Test {
@@ -18,7 +21,7 @@ class RecordingCommand : public testing::Test {
   /// `yuragi-sim recording -o FILE ARGUMENTS`.
   static void record(const std::filesystem::path& file, const std::string& arguments) {
     CLI::App app;
-    add_recording_command(app);
+    kRecordingCommand.add(app);
     app.parse("recording -o " + file.string() + " " + arguments);
   }
 
