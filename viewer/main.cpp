@@ -1,14 +1,18 @@
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 
+#include <CLI/CLI.hpp>
+
 #include "engine/base/result.hpp"
 #include "engine/base/version.hpp"
 #include "engine/base/word_suggestion.hpp"
-#include "viewer/film.hpp"
-#include "viewer/viewer.hpp"
-#include "viewer/viewer_exit.hpp"
-#include "viewer/window.hpp"
+#include "viewer/app/command_line.hpp"
+#include "viewer/app/viewer.hpp"
+#include "viewer/app/window.hpp"
+#include "viewer/film/film.hpp"
+#include "viewer/picture/viewer_exit.hpp"
 
 namespace {
 
@@ -19,8 +23,8 @@ int run(int argc, char** argv) {
   using namespace yuragi;
   CLI::App app{"Shows the scenes that a Yuragi daemon streams.", "yuragi-viewer"};
   app.set_version_flag("--version", with_version("yuragi-viewer"));
-  viewer::ViewerOptions options;
-  viewer::add_options(app, options);
+  viewer::picture::ViewerOptions options;
+  viewer::app::add_options(app, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -32,7 +36,7 @@ int run(int argc, char** argv) {
   }
 
   if (options.lists_monitors) {
-    std::fputs(viewer::list_monitors().c_str(), stdout);
+    std::fputs(viewer::app::list_monitors().c_str(), stdout);
     return 0;
   }
   std::signal(SIGINT, [](int) { is_stopping = true; });
@@ -40,9 +44,9 @@ int run(int argc, char** argv) {
   // Its terminal was closed; under nohup it goes on.
   if (std::signal(SIGHUP, [](int) { is_stopping = true; }) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   if (!options.render.empty()) {
-    viewer::render_recording(options, is_stopping);
+    viewer::film::render_recording(options, is_stopping);
   } else {
-    viewer::Viewer(options, is_stopping).run();
+    viewer::app::Viewer(options, is_stopping).run();
   }
   return 0;
 }
@@ -52,12 +56,12 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return run(argc, argv);
-  } catch (const yuragi::viewer::ViewerExit& error) {
+  } catch (const yuragi::viewer::picture::ViewerExit& error) {
     std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
     return error.code();
   } catch (const yuragi::FailureError& error) {
     std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
-    return yuragi::viewer::exit_code_of(error.kind());
+    return yuragi::viewer::picture::exit_code_of(error.kind());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "yuragi-viewer: %s\n", error.what());
     return EX_SOFTWARE;

@@ -16,5 +16,5 @@ yuragi_join(tools yuragi_daemon_tools_acceptance yuragi_daemon_tools_calibration
   yuragi_daemon_tools_sensors yuragi_daemon_tools_support)
 yuragi_join(commands yuragi_daemon_commands yuragi)
 if(YURAGI_VIEWER)
-  yuragi_join(viewer yuragi_viewer yuragi_viewer_wall yuragi-viewer)
+  yuragi_join(viewer yuragi_viewer_app yuragi_viewer_film yuragi_viewer_picture yuragi_viewer_wall yuragi-viewer)
 endif()

@@ -85,7 +85,7 @@ function(yuragi_room folder)
         target_compile_options(${name} PRIVATE ${YURAGI_UNOPTIMIZED})
       endif()
     endif()
-    if(YURAGI_FUZZ AND NOT folder MATCHES "^engine/(fft|math|noise|operators|scenes|wind)|^viewer$")
+    if(YURAGI_FUZZ AND NOT folder MATCHES "^engine/(fft|math|noise|operators|scenes|wind)|^viewer/(app|film|picture)$")
       target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link) # what is fuzzed tells where it has been
     endif()
   else()

@@ -220,8 +220,10 @@ class TheCheck(unittest.TestCase):
         ("daemon/stream/a.cpp", '#include "viewer/meshes/orbit_camera.hpp"'),
         ("daemon/sensing/a.cpp", '#include "daemon/tools/plot/plot.hpp"'),
         ("daemon/settings/a.cpp", '#include "daemon/commands/command.hpp"'),
-        ("viewer/a.cpp", '#include "engine/scenes/scene.hpp"'),
-        ("viewer/a.cpp", '#include "drivers/sensor/sensor.hpp"'),
+        ("viewer/app/a.cpp", '#include "engine/scenes/scene.hpp"'),
+        ("viewer/app/a.cpp", '#include "drivers/sensor/sensor.hpp"'),
+        ("viewer/picture/a.cpp", '#include "viewer/film/film_output.hpp"'),
+        ("viewer/film/a.cpp", '#include "viewer/app/window.hpp"'),
         ("simulators/core/a.cpp", '#include "drivers/decode/modbus/modbus.hpp"'),
         ("simulators/core/a.cpp", '#include "drivers/modbus/modbus_profile.hpp"'),
     ]
@@ -234,7 +236,8 @@ class TheCheck(unittest.TestCase):
         ("drivers/bus/a.cpp", "#include <modbus/modbus.h>\n#include <sys/socket.h>\n#include <thread>"),
         ("drivers/modbus/modbus.cpp", '#include "drivers/bus/modbus_connection.hpp"\n#include <toml++/toml.h>'),
         ("daemon/commands/a.cpp", '#include "engine/scenes/scene.hpp"\n#include <CLI/CLI.hpp>'),
-        ("viewer/a.cpp", "#include <GLFW/glfw3.h>\n#include <backends/imgui_impl_glfw.h>\n#include <stb_image_write.h>"),
+        ("viewer/app/a.cpp", "#include <GLFW/glfw3.h>\n#include <backends/imgui_impl_glfw.h>\n#include <CLI/CLI.hpp>"),
+        ("viewer/picture/a.cpp", "#include <glm/vec3.hpp>\n#include <stb_image_write.h>"),
         ("simulators/core/a.cpp", '#include "drivers/windlog/windlog_reader.hpp"'),
         ("simulators/modbus/a.cpp", "#include <modbus/modbus.h>"),
     ]

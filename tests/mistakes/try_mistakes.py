@@ -43,7 +43,7 @@ MISTAKES = (
         ("daemon/commands/status.cpp", 'throw ExitError(kExitAttention, "");', 'throw ExitError(kExitNoDaemon, "");'),),
         "test", "yuragi yuragi-sim", "^json.the_exit_code_of_status_says_how_it_is$"),
     Mistake("a leak in the viewer", (
-        ("viewer/wind_place_text.cpp", '  const std::string where =', '  (new std::string("lost"))->append("for ever");\n  const std::string where ='),),
+        ("viewer/app/wind_place_text.cpp", '  const std::string where =', '  (new std::string("lost"))->append("for ever");\n  const std::string where ='),),
         "asan", "viewer_test", "^viewer_test"),
     Mistake("an overrun in a room that is compiled as one file", (
         ("drivers/decode/hid/wmr100.cpp", "std::min({std::size_t{report[0]}, report.size() - 1, std::size_t{7}})",
@@ -62,8 +62,8 @@ MISTAKES = (
         "asan", "drivers_tests_threadless", "^drivers_tests_threadless"),
     Mistake("an order of initialisation", (
         ("engine/base/printable_text.cpp", "namespace yuragi {\n", "namespace yuragi {\nstd::string first_of_two(3, 'a');\n"),
-        ("viewer/wind_place_text.cpp", "namespace yuragi::viewer {\n",
-         "namespace yuragi {\nextern std::string first_of_two;\n}\nnamespace yuragi::viewer {\nstd::string second_of_two = first_of_two;\n")),
+        ("viewer/app/wind_place_text.cpp", "namespace yuragi::viewer::app {\n",
+         "namespace yuragi {\nextern std::string first_of_two;\n}\nnamespace yuragi::viewer::app {\nstd::string second_of_two = first_of_two;\n")),
         "asan", "viewer_test", "^viewer_test"),
     Mistake("a race", (
         ("engine/base/latest.hpp", "middle_.exchange(static_cast<std::uint8_t>(write_ | kFresh), std::memory_order_acq_rel)",

@@ -5,7 +5,7 @@
 
 #include <stb_easy_font.h>
 
-#include "viewer/picture_file.hpp"
+#include "viewer/picture/picture_file.hpp"
 
 namespace yuragi::viewer {
 namespace {
@@ -53,7 +53,7 @@ void Canvas::write_text(int left_px, int top_px, std::string text) {
 }
 
 void Canvas::save(const std::filesystem::path& file) const {
-  write_picture(file, width_px_, height_px_, rgb_);
+  picture::write_picture(file, width_px_, height_px_, rgb_);
 }
 
 }  // namespace yuragi::viewer

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "tests/pictures/golden_pictures.hpp"
-#include "viewer/picture_file.hpp"
+#include "viewer/picture/picture_file.hpp"
 
 int main(int argc, char** argv) {
   using namespace yuragi::viewer;
@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
         const Picture picture = drawing.draw(golden_moment(name, weather));
         const std::string file = golden_file(name, weather);
         const auto other = others.empty() ? std::nullopt : read_picture(others / file);
-        write_picture(folder / file, picture.width_px, picture.height_px, picture.rgb);
+        picture::write_picture(folder / file, picture.width_px, picture.height_px, picture.rgb);
         if (!other) {
           fmt::print("{}\n", file);
           continue;

@@ -15,7 +15,7 @@
 #include "viewer/gl/driver.hpp"
 #include "viewer/gl/gl.hpp"
 #include "viewer/gl/pass_clock.hpp"
-#include "viewer/picture_file.hpp"
+#include "viewer/picture/picture_file.hpp"
 
 namespace yuragi::viewer {
 namespace {
@@ -40,7 +40,7 @@ testing::AssertionResult is_golden(const Picture& picture, const std::string& fi
   const std::string stem = std::filesystem::path(file).stem().string();
   const auto save = [&](const std::string& what, const Picture& of) {
     const std::filesystem::path to = folder / (stem + "-" + what + ".png");
-    write_picture(to, of.width_px, of.height_px, of.rgb);
+    picture::write_picture(to, of.width_px, of.height_px, of.rgb);
     return to.string();
   };
   std::filesystem::create_directories(folder);

@@ -7,7 +7,7 @@
 
 #include "daemon/sensing/sensor_hub.hpp"
 #include "tests/support/places.hpp"
-#include "viewer/camera_place.hpp"
+#include "viewer/picture/camera_place.hpp"
 
 namespace yuragi::viewer {
 namespace {
@@ -66,7 +66,7 @@ void ScenesInWind::advance(double duration_s) {
 meshes::CameraPlace ScenesInWind::home(const looks::Stage& stage, double aspect, double hour) const {
   if (cameras_.empty()) return stage.home(aspect, wind_from_deg_);
   const look::Camera& camera = cameras_[look::camera_at(cameras_, hour)];
-  return place_of(camera, stage.bounds_of(camera.scene), aspect, 0.0);
+  return picture::place_of(camera, stage.bounds_of(camera.scene), aspect, 0.0);
 }
 
 stream::PoseMoment ScenesInWind::moment() const {

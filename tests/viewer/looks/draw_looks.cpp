@@ -10,7 +10,7 @@
 #include "tests/viewer/test_models.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
-#include "viewer/picture_file.hpp"
+#include "viewer/picture/picture_file.hpp"
 
 int main(int argc, char** argv) {
   using namespace yuragi;
@@ -39,8 +39,8 @@ int main(int argc, char** argv) {
       moment.time_s = 10.0 * strength;
       for (std::size_t i = 0; i < models.size(); ++i) moment.poses[i] = viewer::test_pose(models[i], 2.0, strength);
       stage.draw(moment, camera, target);
-      viewer::write_picture(fmt::format("{}/{}-{:.0f}.png", words[0], kind, 10 * strength), width_px, height_px,
-                            target.read_rgb());
+      viewer::picture::write_picture(fmt::format("{}/{}-{:.0f}.png", words[0], kind, 10 * strength), width_px,
+                                     height_px, target.read_rgb());
     }
   }
   return viewer::gl::gl_error_count() == 0 ? 0 : 1;

@@ -13,7 +13,7 @@
 #include "tests/answer/test_wind.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
-#include "viewer/picture_file.hpp"
+#include "viewer/picture/picture_file.hpp"
 
 namespace {
 
@@ -57,7 +57,7 @@ class Sheet {
     }
   }
   void write(const std::string& file) const {
-    viewer::write_picture(file, 2 * width_px_, static_cast<int>(rgb_.size()) / (6 * width_px_), rgb_);
+    viewer::picture::write_picture(file, 2 * width_px_, static_cast<int>(rgb_.size()) / (6 * width_px_), rgb_);
   }
 
  private:
@@ -149,7 +149,8 @@ int draw_meadow(const std::vector<std::string>& words) {
       for (std::size_t i = 0; i < scenes.size(); ++i) moment.poses[i] = scenes[i]->pose();
       stage.draw(moment, camera, target);
       const std::vector<std::uint8_t> picture = target.read_rgb();
-      viewer::write_picture(fmt::format("{}/{}-{}.png", words[0], name, weather), width_px, height_px, picture);
+      viewer::picture::write_picture(fmt::format("{}/{}-{}.png", words[0], name, weather), width_px, height_px,
+                                     picture);
       sheet.add(picture);
       if (speed_m_s != 4.0) continue;
       double sum_ms = 0.0;

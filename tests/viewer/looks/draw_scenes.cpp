@@ -21,7 +21,7 @@
 #include "engine/scenes/scene.hpp"
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/looks/stage.hpp"
-#include "viewer/picture_file.hpp"
+#include "viewer/picture/picture_file.hpp"
 
 namespace {
 
@@ -130,7 +130,8 @@ int draw_scenes(std::vector<std::string> words) {
       moment.time_s = kSettlingTicks * kTick_s;
       moment.wind.wind = wind::wind_from(speed_m_s, kWindFrom_deg);
       stage.draw(moment, camera, target);
-      viewer::write_picture(fmt::format("{}/{}-{}.png", words[0], kind, name), width_px, height_px, target.read_rgb());
+      viewer::picture::write_picture(fmt::format("{}/{}-{}.png", words[0], kind, name), width_px, height_px,
+                                     target.read_rgb());
     }
   }
   return viewer::gl::gl_error_count() == 0 ? 0 : 1;

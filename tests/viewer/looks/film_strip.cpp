@@ -21,7 +21,7 @@
 #include "viewer/gl/headless_context.hpp"
 #include "viewer/light/sky_keeper.hpp"
 #include "viewer/looks/stage.hpp"
-#include "viewer/picture_file.hpp"
+#include "viewer/picture/picture_file.hpp"
 
 namespace {
 
@@ -154,7 +154,7 @@ class Sheet {
       std::copy_n(from, line, rgb_.begin() + 3 * (static_cast<std::ptrdiff_t>(row_px) * width_px_ + column_px));
     }
   }
-  void write(const std::string& file) const { viewer::write_picture(file, width_px_, height_px_, rgb_); }
+  void write(const std::string& file) const { viewer::picture::write_picture(file, width_px_, height_px_, rgb_); }
 
  private:
   int columns_, cell_width_px_, cell_height_px_, width_px_, height_px_;

@@ -19,7 +19,7 @@
 #include "tests/viewer/stream_server.hpp"
 #include "tests/viewer/test_models.hpp"
 #include "tests/viewer/wall/virtual_monitors.hpp"
-#include "viewer/picture_file.hpp"
+#include "viewer/picture/picture_file.hpp"
 
 namespace {
 
@@ -189,7 +189,7 @@ void write_half(const std::filesystem::path& file, const Pixels& pixels) {
       }
     }
   }
-  write_picture(file, width_px, height_px, rgb);
+  picture::write_picture(file, width_px, height_px, rgb);
 }
 
 /// Is a picture to be seen, neither the desktop nor black?

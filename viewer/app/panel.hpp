@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/wire/wire.hpp"
+
+namespace yuragi::viewer::app {
+
+/// The values of the daemon's [look] and scenes as a person sees and sets them: which Control is to be sent when, and
+/// what is shown meanwhile. It knows no name of a parameter; all it has comes from the daemon. Pure: time is a
+/// parameter. Thread-safe: no.
+///
+/// While a slider is dragged at most one value in kSendEvery_s is sent, and of each scene one at a time is on its way;
+/// the last one is always sent. What a person has set is shown until the daemon says what became of it.
+class Panel {
+ public:
+  static constexpr double kSendEvery_s = 0.1;
+  static constexpr double kListEvery_s = 0.5;  ///< the list of all parameters is asked for at most so often
+
+  /// The connection has been made, or lost: what was known is forgotten.
+  void set_connected(bool is_connected);
+  /// Sensors::parameters_revision, as often as it comes.
+  void take_revision(std::uint64_t revision);
+  void take_reply(const wire::ControlReply& reply);
+
+  /// A person has moved a handle; `value` as wire::ParameterEdit.
+  void set(std::string_view scene, std::string_view key, std::string value);
+  /// Back to the configuration's value.
+  void reset(std::string_view scene, std::string_view key);
+
+  /// What is to be sent at now_s, if anything: to be asked again until there is nothing.
+  std::optional<wire::Control> next(double now_s);
+
+  const std::vector<wire::ParameterGroup>& groups() const { return groups_; }
+  /// What to show for a parameter of a group: what a person has set of it, or what the daemon says.
+  const std::optional<std::string>& value(const wire::ParameterGroup& group, const wire::ParameterState& state) const;
+  /// Has a person set something that the list does not have yet?
+  bool is_setting() const { return !edits_.empty(); }
+  /// Why nothing can be set; empty: it can.
+  const std::string& refusal() const { return refusal_; }
+  /// Why the last value was not set; empty: it was.
+  const std::string& mistake() const { return mistake_; }
+  /// Has the list of parameters come?
+  bool has_list() const { return !groups_.empty(); }
+
+ private:
+  enum class Stage : std::uint8_t {
+    kWaiting,  ///< to be sent
+    kSent,     ///< as `number`
+    kDone,     ///< and the list that would say so was not asked for yet
+    kListed,   ///< and the next list says so
+  };
+  struct Edit {
+    std::string scene, key;
+    std::optional<std::string> value;
+    std::optional<std::string> shown;
+    Stage stage = Stage::kWaiting;
+    std::uint32_t number = 0;
+  };
+
+  void put(Edit edit);
+  std::optional<wire::Control> next_edits(double now_s);
+  std::optional<wire::Control> next_list(double now_s);
+
+  std::vector<wire::ParameterGroup> groups_;
+  std::vector<Edit> edits_;
+  std::string refusal_, mistake_;
+  bool is_connected_ = false;
+  bool is_list_due_ = false;
+  bool is_list_asked_ = false;
+  std::optional<std::uint64_t> revision_;
+  std::uint32_t number_ = 0;
+  std::optional<double> sent_s_, asked_s_;
+};
+
+}  // namespace yuragi::viewer::app

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/wire/message_reader.hpp"
+#include "viewer/film/piped_child.hpp"
+
+namespace yuragi::viewer::film {
+
+/// What a film is made of: a stream that waits for its reader.
+class FilmStream {
+ public:
+  virtual ~FilmStream() = default;
+
+  /// The next message; nothing at the stream's end. Throws ViewerExit where it is none, or its sender has failed.
+  virtual std::optional<wire::Message> next() = 0;
+};
+
+/// A recording that `yuragi replay` plays, as a child process: each tick comes when it is asked for. It stands beside
+/// this program, or is found by PATH.
+class ReplayFilmStream final : public FilmStream {
+ public:
+  /// `arguments`: those of `yuragi replay`, the recording first. `is_stopping` ends next() like the stream's end; must
+  /// outlive this. Throws ViewerExit.
+  ReplayFilmStream(const std::vector<std::string>& arguments, const std::atomic<bool>& is_stopping);
+
+  std::optional<wire::Message> next() override;
+
+ private:
+  bool receive();
+
+  const std::atomic<bool>& is_stopping_;
+  PipedChild replay_;
+  wire::MessageReader reader_;
+  std::array<std::uint8_t, 1u << 16> received_{};
+};
+
+}  // namespace yuragi::viewer::film

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/platform/child_process.hpp"
+
+namespace yuragi::viewer::film {
+
+/// Another program at one end of a pipe. It says on our standard error what it has to say, and does not hear Ctrl-C:
+/// whoever started it ends it. It is killed with this object.
+class PipedChild {
+ public:
+  /// Which of the child's own files the pipe is.
+  enum class Pipe : std::uint8_t { kStandardInput, kStandardOutput };
+
+  /// `command`: the program, found by PATH where it names no folder, and its arguments. Throws std::system_error where
+  /// it cannot be started.
+  PipedChild(const std::vector<std::string>& command, Pipe pipe);
+  ~PipedChild();
+  PipedChild(const PipedChild&) = delete;
+  PipedChild& operator=(const PipedChild&) = delete;
+
+  /// Our end of the pipe.
+  int fd() const { return ours_; }
+  void close_pipe();
+
+  /// Closes the pipe and waits until the child has ended; not where it reads on for ever, or writes.
+  platform::ChildEnd wait();
+
+ private:
+  /// Makes the pipe, starts the child with its end, and closes that here.
+  platform::ChildProcess start(const std::vector<std::string>& command, Pipe pipe);
+
+  int ours_ = -1;
+  platform::ChildProcess child_;
+};
+
+}  // namespace yuragi::viewer::film
