@@ -130,5 +130,5 @@ demo: what to try next. The programs on PATH, and recordings, a log and configur
   yuragi replay storm.windlog
 and in a second terminal, after the same two lines, what moves in that storm:
   yuragi-viewer
-There is more in $project/README.md
+The guide has a page for each task: $project/config/guide/README.md
 TEXT

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Types the lines of README.md, in their order, as somebody would after config/demo.sh; and those that config/demo.sh ends with.
+"""Types the lines of README.md and of the guide (config/guide), as a user would after config/demo.sh, and those that config/demo.sh
+ends with.
 
     readme_test.py PROJECT BIN
 
-PROJECT is the clone, BIN the folder of its programs. The lines are typed in a temporary folder that holds what a clone does after
-the demo: config, build/release/bin and what config/examples.sh makes. `source` and `cd` begin each terminal. A line that ends by
-itself must end with 0. One that runs on must say something that RUNS_ON knows; it is ended by Ctrl-C, `yuragi run` and `yuragi
-replay` only when the next of them begins, so that the lines between find a daemon. Lines that NOT_RUN knows are counted and not
-run. TOML is given to `yuragi check-config`.
+PROJECT is the clone, BIN the folder of its programs. The lines are typed in a temporary folder that has what a clone has after the
+demo: config, build/release/bin and what config/examples.sh makes. `source` and `cd` begin each terminal. A line that ends by itself
+must end with 0. A line that runs on must print what RUNS_ON expects; it is ended by Ctrl-C. `yuragi run` and `yuragi replay` are
+ended only when the next of them or the next page begins, so that the lines between find a daemon. A line is typed once for each
+daemon. Lines in NOT_RUN are counted and not run. TOML is given to `yuragi check-config`.
 """
 import collections
 import fcntl
@@ -25,17 +26,29 @@ import time
 
 from programs import HANG_S
 
-NOT_RUN = (
-    (r"^(config/demo|config/package|tests/run)\.sh", "installs packages and builds"),
-    (r"/etc/yuragi", "needs the package to be installed"),
-    (r"^sudo ", "changes the machine"),
-    (r"^yuragi-viewer\b(?!.*--render)", "needs a display"),
-    (r"^yuragi-viewer\b.*\.mp4$", "needs ffmpeg, and much time"),
-    (r"/dev/ttyUSB|^yuragi calibrate (zero|north)", "needs a device"),
-    (r"^yuragi token\b", "needs a daemon with a token: http_test.py has one"),
-    (r"--usbip", "needs a kernel with USB/IP"),
-    (r"--broker \d", "needs a broker"),
-)
+MAX_README_WORDS = 1200
+MAX_NOT_RUN = 20
+NOT_RUN = {
+    "config/demo.sh": "installs packages and builds",
+    "tests/run.sh": "installs packages and builds",
+    "config/package.sh": "installs packages and builds",
+    "yuragi-viewer": "needs a display",
+    "yuragi-viewer --config wall.toml": "needs a display",
+    "yuragi-viewer --render storm.windlog --duration 20 --size 1920x1080 --fps 60 --config garden.toml --scene fire --out fire.mp4":
+        "needs ffmpeg and much time",
+    "yuragi calibrate zero --config roof.toml --sensor roof": "needs a device",
+    "yuragi calibrate north --config roof.toml --sensor roof --bearing 214": "needs a device",
+    "yuragi token --config wall.toml --new": "needs a configuration with a token: http_test.py has one",
+    "sudo apt install ./build/package/package/yuragi_*.deb": "changes the machine",
+    "sudoedit /etc/yuragi/yuragi.toml": "needs the installed package",
+    "sudo yuragi check-config /etc/yuragi/yuragi.toml --as-service": "needs the installed package",
+    "sudo systemctl enable --now yuragi": "changes the machine",
+    "sudo systemctl enable --now yuragi-viewer@7": "changes the machine",
+    "sudo systemctl enable --now yuragi-report.timer": "changes the machine",
+    "sudo systemctl reload yuragi": "needs the installed package",
+    "sudo -u yuragi yuragi doctor": "needs the installed package",
+    "sudo yuragi support-bundle": "needs the installed package",
+}
 DAEMON = r"\byuragi (run|replay(?!.*--rate max))\b"
 RUNS_ON = (
     (DAEMON, r"listening on \S+:\d+"),
@@ -65,18 +78,32 @@ def code_blocks(text):
 
 
 def kind_of(block):
-    """Which of "toml", "drawing" and "lines" a block is."""
-    first = next(line for line in block if line.strip())
-    if first.startswith("["):
-        return "toml"
-    return "drawing" if " -> " in first else "lines"
+    """"toml" or "lines"."""
+    return "toml" if next(line for line in block if line.strip()).startswith("[") else "lines"
 
 
-def lines_of_readme(project):
-    """Its lines to type, and its TOML."""
-    blocks = code_blocks((project / "README.md").read_text(encoding="utf-8"))
-    typed = [line for block in blocks if kind_of(block) == "lines" for line in block if line.strip()]
-    return typed, ["\n".join(block).rstrip() + "\n" for block in blocks if kind_of(block) == "toml"]
+def documents_of(project):
+    return [project / "README.md", *sorted((project / "config/guide").glob("*.md"))]
+
+
+def blocks_of(document, kind):
+    """Its code blocks of this kind, each as a list of lines."""
+    return [block for block in code_blocks(document.read_text(encoding="utf-8")) if kind_of(block) == kind]
+
+
+def lines_of(document):
+    """Its lines to type."""
+    return [line for block in blocks_of(document, "lines") for line in block if line.strip()]
+
+
+def configurations_of(document):
+    """Its TOML, a text for each block."""
+    return ["\n".join(block).rstrip() + "\n" for block in blocks_of(document, "toml")]
+
+
+def command_of(line):
+    """A line without its comment."""
+    return re.sub(r"\s+#.*", "", line).strip()
 
 
 def lines_of_demo(project, clone):
@@ -93,15 +120,28 @@ class Terminal:
         self.clone = clone
         self.beginning = []  # the lines that begin each terminal
         self.daemon = None
+        self.daemon_command = None
+        self.typed = set()  # each command, and the command of the daemon that it found
         self.counts = collections.Counter()
         self.complaints = []
 
+    def begin_page(self):
+        """Ends the daemon of the page before: a page starts the daemon that it needs."""
+        if complaint := self.end_daemon():
+            self.complaints.append(complaint)
+
     def type(self, line):
         begun = time.monotonic()
-        reason = next((reason for pattern, reason in NOT_RUN if re.search(pattern, line)), None)
+        command = command_of(line)
+        reason = NOT_RUN.get(command)
+        if command == self.daemon_command or (not re.search(DAEMON, line) and (command, self.daemon_command) in self.typed):
+            self.counts["typed before"] += 1
+            return
+        self.typed.add((command, self.daemon_command))
         if line.split()[0] in ("source", "cd"):
             self.beginning = [one for one in self.beginning if one.split()[0] != line.split()[0]] + [line]
             reason, error = None, self.run("true")
+            self.typed.clear()
             self.counts["begin a terminal"] += 1
         elif reason:
             self.counts[f"not run: {reason}"] += 1
@@ -146,7 +186,7 @@ class Terminal:
                     return f"  did not say {said}; it said:\n{text_of(output)}"
                 time.sleep(0.02)
             if is_daemon:
-                self.daemon = process
+                self.daemon, self.daemon_command = process, command_of(line)
                 return complaint
             code = end(process)
             return None if code in CTRL_C else f"  Ctrl-C ended it with {code}:\n{text_of(output)}"
@@ -156,7 +196,7 @@ class Terminal:
             return None
         code = end(self.daemon)
         line = self.daemon.args[-1].splitlines()[-1]
-        self.daemon = None
+        self.daemon = self.daemon_command = None
         return None if code in CTRL_C else f"  Ctrl-C ended {line} with {code}"
 
 
@@ -188,8 +228,20 @@ def check_toml(terminal, text, folder):
         terminal.complaints.append(f"{text}\n{error}")
 
 
+def faults_of_documents(project):
+    """Too many words in README.md, too many lines in NOT_RUN, or lines there that no document has."""
+    written = {command_of(line) for document in documents_of(project) for line in lines_of(document)}
+    faults = [f"NOT_RUN has a line that no document has: {command}" for command in NOT_RUN if command not in written]
+    if len(NOT_RUN) > MAX_NOT_RUN:
+        faults.append(f"NOT_RUN has too many lines: {len(NOT_RUN)} (maximum {MAX_NOT_RUN})")
+    words = len((project / "README.md").read_text(encoding="utf-8").split())
+    if words > MAX_README_WORDS:
+        faults.append(f"README.md has too many words: {words} (maximum {MAX_README_WORDS}); move some to config/guide")
+    return faults
+
+
 def enter_network_of_its_own():
-    """Runs this again in a network namespace, where the addresses that README names are free; not where that is not allowed."""
+    """Runs this again in a network namespace, where the addresses that the documents name are free; not where that is not allowed."""
     if "YURAGI_README_TEST_INSIDE" in os.environ:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as any_socket:  # ip link set lo up
             fcntl.ioctl(any_socket, 0x8914, struct.pack("16sh14x", b"lo", 0x1 | 0x40))  # SIOCSIFFLAGS, IFF_UP | IFF_RUNNING
@@ -198,13 +250,12 @@ def enter_network_of_its_own():
     if shutil.which("unshare") and subprocess.run([*unshare, "true"], stderr=subprocess.DEVNULL, check=False).returncode == 0:
         os.environ["YURAGI_README_TEST_INSIDE"] = "1"
         os.execvp("unshare", [*unshare, sys.executable, *sys.argv])
-    print("no network of its own: the addresses that README names must be free")
+    print("no network of its own: the addresses that the documents name must be free")
 
 
 def main():
     enter_network_of_its_own()
     project, programs = (pathlib.Path(argument).resolve() for argument in sys.argv[1:])
-    lines, configurations = lines_of_readme(project)
     with tempfile.TemporaryDirectory() as name:
         clone = pathlib.Path(name)
         shutil.copytree(project / "config", clone / "config")
@@ -213,17 +264,21 @@ def main():
         subprocess.run([clone / "config/examples.sh"], check=True)
 
         terminal = Terminal(clone)
-        for line in lines:
-            terminal.type(line)
-        for text in configurations:
-            check_toml(terminal, text, clone)
-        if configurations[0] != (project / "config/examples/roof.toml").read_text(encoding="utf-8"):
+        for document in documents_of(project):
+            print(document.relative_to(project))
+            terminal.begin_page()
+            for line in lines_of(document):
+                terminal.type(line)
+            for text in configurations_of(document):
+                check_toml(terminal, text, clone / "build/examples")
+        if configurations_of(project / "README.md")[0] != (project / "config/examples/roof.toml").read_text(encoding="utf-8"):
             terminal.complaints.append("README's roof.toml is not config/examples/roof.toml")
+        terminal.complaints += faults_of_documents(project)
+        terminal.begin_page()
         terminal.beginning = []
         for line in lines_of_demo(project, clone):
             terminal.type(line)
-        if complaint := terminal.end_daemon():
-            terminal.complaints.append(complaint)
+        terminal.begin_page()
 
     print(*(f"{count:3d} {what}" for what, count in sorted(terminal.counts.items())), sep="\n")
     for complaint in terminal.complaints:

@@ -22,7 +22,7 @@ ROOT, BUILD = (pathlib.Path(word).resolve() for word in (sys.argv.pop(1), sys.ar
 EPOCH_S = 1_700_000_000
 CONFIGURATION = "etc/yuragi/yuragi.toml"
 RECORDING = "var/lib/yuragi/wind.windlog"
-# Files that the programs of an installation make when README.md's advice is followed: tokens, alerts, paired browsers, caches.
+# Files that the programs of an installation make when the guide's advice is followed: tokens, alerts, paired browsers, caches.
 MADE_IN_USE = [
     "etc/yuragi/token",
     "etc/yuragi/token.part-4711",
@@ -58,6 +58,7 @@ CONTENTS = [
     "usr/lib/yuragi/daily-report",
     "usr/share/doc/yuragi/changelog.gz",
     "usr/share/doc/yuragi/copyright",
+    "usr/share/doc/yuragi/guide/README.md",
     "usr/share/yuragi/profiles/generic-rs485-cup.toml",
 ]
 
