@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the pictures that documents show, and checks that they show today's drawing.
+"""Draws the pictures and the film that documents show, and checks that they show today's drawing.
 
     tests/pictures/documents.py BIN [PICTURE]...     draws them by the programs in BIN (build/test/bin), without a display
     tests/pictures/documents.py --check [SOURCES]    exit code 1 if a picture is older than the shaders; draws nothing
@@ -86,9 +86,14 @@ def draw_meadow(drawing, file):
     write_png(file, drawing.film(1280, 720, 9.4, *ONE)[0])
 
 
-def draw_garden(drawing, file):
-    garden = ("--config", SOURCES / "config/garden.toml", "--camera", "evening", "--look", "time=17:40")
-    write_png(file, drawing.film(1280, 720, 9.4, *garden, *ONE)[0])
+def draw_garden_film(drawing, file):
+    """Six seconds, again and again, by img2webp (Debian's package webp)."""
+    frames = drawing.folder / "frames"
+    subprocess.run([drawing.programs / "yuragi-viewer", "--render", drawing.wind(9.4), "--size", "640x360", "--look", "quality=high", *FROM,
+                    "--config", SOURCES / "config/garden.toml", "--camera", "evening", "--look", "time=17:40", "--fps", "12.5", "--duration", "6",
+                    "--out", frames], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    subprocess.run(["img2webp", "-loop", "0", "-mixed", "-q", "50", "-m", "6", "-d", "80", *sorted(frames.glob("*.png")), "-o", file],
+                   check=True, stdout=subprocess.DEVNULL)
 
 
 def draw_gust(drawing, file):
@@ -108,7 +113,7 @@ def draw_wall(drawing, file):
     shutil.copyfile(drawing.folder / file.name, file)
 
 
-PICTURES = {"viewer/meadow.png": draw_meadow, "viewer/garden.png": draw_garden, "engine/wind/gust.png": draw_gust, "tests/answer/answer.png": draw_answer,
+PICTURES = {"viewer/meadow.png": draw_meadow, "viewer/garden.webp": draw_garden_film, "engine/wind/gust.png": draw_gust, "tests/answer/answer.png": draw_answer,
             **{f"{WALL}/{name}.jpg": draw_wall for name in ("blend-canvas", "corners", "crop", "gamma", "monitor", "screen", "size")}}
 
 
@@ -141,7 +146,7 @@ def shown_pictures(sources):
     """Each picture that a document shows, and the document."""
     files = subprocess.run(["git", "-C", sources, "ls-files", "*.md"], check=True, capture_output=True, text=True).stdout.split()
     for document in map(pathlib.PurePosixPath, files):
-        for link in re.findall(r"\]\(([^():]+\.(?:png|jpe?g))\)", (sources / document).read_text()):
+        for link in re.findall(r"\]\(([^():]+\.(?:png|jpe?g|webp))\)", (sources / document).read_text()):
             yield str(document.parent / link), str(document)
 
 

@@ -49,11 +49,11 @@ class Documents(unittest.TestCase):
 
     def test_a_picture_by_another_hand_or_that_is_missing_is_found(self):
         self.write("viewer/meadow.png", "another")
-        (self.sources / "viewer/garden.png").unlink()
+        (self.sources / "viewer/garden.webp").unlink()
         faults = self.faults()
         self.assertEqual(len(faults), 2)
         self.assertIn("viewer/meadow.png was not drawn by", faults[0])
-        self.assertIn("viewer/garden.png is missing", faults[1])
+        self.assertIn("viewer/garden.webp is missing", faults[1])
 
     def test_a_picture_that_no_command_draws_is_found(self):
         self.write("README.md", "![Another](viewer/another.jpg)\n")
