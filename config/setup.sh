@@ -23,6 +23,7 @@ build_packages=(
   libtinygltf-dev            # takes for 3D programs
   libpng-dev libjpeg-dev     # pictures on cloth
   libglfw3-dev libepoxy-dev libglm-dev libimgui-dev libstb-dev
+  python3-markdown           # the guide as HTML
   gnuplot-nox                # plots
   tzdata                     # opening hours in local time
   libgl1-mesa-dri libegl-mesa0 libegl1 # the viewer's drivers, with a display and without

@@ -41,6 +41,7 @@
 #include "daemon/shaping/wind_shaper.hpp"
 #include "daemon/stream/tcp_stream.hpp"
 #include "daemon/web/access.hpp"
+#include "daemon/web/guide.hpp"
 #include "daemon/web/web_server.hpp"
 #include "engine/base/contain.hpp"
 #include "engine/base/count_text.hpp"
@@ -225,6 +226,7 @@ class Service::Io {
                               .pairings_file = pairings_file(),
                               .reading_takes_token = http_.reading_takes_token,
                               .proxies = http_.proxies,
+                              .guide = web::installed_guide(),
                               .software = with_version("yuragi"),
                               .tick_rate_hz = rate_hz_};
     settings.hosts.push_back(asio::ip::host_name());

@@ -4,15 +4,11 @@
 #include <algorithm>
 
 namespace yuragi::daemon::web {
-namespace {
 
-/// Nothing but this daemon's own files and answers; no script or style within the page's text (W3C, Content Security
-/// Policy Level 3).
-constexpr std::string_view kContentSecurityPolicy =
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self'; "
-    "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-
-}  // namespace
+std::string_view content_security_policy() {
+  return "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self'; "
+         "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+}
 
 std::optional<HttpResponse> page_answer(const HttpRequest& request) {
   if (request.method != "GET" && request.method != "HEAD") return std::nullopt;
@@ -21,7 +17,7 @@ std::optional<HttpResponse> page_answer(const HttpRequest& request) {
   if (file == files.end()) return std::nullopt;
   HttpResponse response{.content_type = std::string(file->content_type),
                         .fields = {{"Cache-Control", "no-cache"},  // kept, but asked for again each time
-                                   {"Content-Security-Policy", std::string(kContentSecurityPolicy)},
+                                   {"Content-Security-Policy", std::string(content_security_policy())},
                                    {"ETag", std::string(file->entity_tag)}}};
   if (request.if_none_match == file->entity_tag)
     response.status = 304;

@@ -18,6 +18,10 @@ struct PageFile {
 
 std::span<const PageFile> page_files();
 
+/// What a browser may load for a page of the daemon: only the daemon's own files and answers, and no script or style
+/// within a page's text (W3C, Content Security Policy Level 3).
+std::string_view content_security_policy();
+
 /// The file of the page that a GET or HEAD asks for, or that the browser has it already (304). Nothing: it asks for
 /// something else. The files are the same for everybody and hold no secret. Pure.
 std::optional<HttpResponse> page_answer(const HttpRequest& request);

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "daemon/stream/client_log.hpp"
+#include "daemon/web/guide.hpp"
 #include "daemon/web/http_server.hpp"
 #include "daemon/web/page.hpp"
 #include "daemon/web/pairings_file.hpp"
@@ -94,6 +95,7 @@ class WebServer::Thread {
  public:
   explicit Thread(WebSettings settings)
       : settings_(std::move(settings)),
+        guide_(settings_.guide.empty() ? Guide() : Guide(settings_.guide)),
         pairings_file_(settings_.pairings_file),
         server_(std::make_unique<HttpServer>(
             *io_, settings_.listen, HttpLimits{.clients = settings_.clients},
@@ -161,6 +163,7 @@ class WebServer::Thread {
     if (auto refusal = method_refusal(request)) return reply(std::move(*refusal));
     // Before who asks is looked at: those who are to be paired need it.
     if (auto page = page_answer(request)) return reply(std::move(*page));
+    if (auto page = guide_.answer(request)) return reply(std::move(*page));
     const bool only_reads = request.method == "GET" || request.method == "HEAD";
     if (!only_reads && !is_same_origin(request.origin, request.host))
       return reply(problem(403, "Another page's request", "only pages of this daemon may change something"));
@@ -295,6 +298,7 @@ class WebServer::Thread {
   }
 
   WebSettings settings_;
+  Guide guide_;
   PairingsFile pairings_file_;
   std::optional<Access> access_;  ///< of the thread, as all below
   Pairings pairings_;             ///< of the token

@@ -30,7 +30,8 @@ struct WebSettings {
   bool reading_takes_token = false;       ///< nobody reads without it, either; but this machine reads kHealthPath
   std::vector<std::string> proxies = {};  ///< addresses whose X-Forwarded-For is believed, for the log and limits
   stream::AdmissionLimits clients = {};
-  std::string software = {};  ///< "yuragi 0.2.0"
+  std::filesystem::path guide = {};  ///< the folder of the guide as HTML, read by the constructor; empty: none
+  std::string software = {};         ///< "yuragi 0.2.0"
   double tick_rate_hz = 0.0;
   /// Carries out a client's request and calls `reply` once, on any thread. Called on the web server's own; must not
   /// wait. `is_local`: the client is of this machine, or trusted as if it were. Empty: every request is refused.

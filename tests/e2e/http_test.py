@@ -101,6 +101,25 @@ class Http(unittest.TestCase):
         self.assertTrue(all(age_s >= 0 for age_s in recent["age_s"]))
         self.assertEqual({len(values) for values in recent.values()}, {len(recent["age_s"])})
 
+    def test_the_guide_has_every_page_that_it_links_and_every_key(self):
+        self.start_daemon('[[sensor]]\ndriver = "synthetic"\n')
+        self.assertIn('href="/guide/"', self.ask("/")[1])
+        left, texts = ["./"], {}
+        while left:
+            name = left.pop()
+            status, texts[name] = self.ask("/guide/" + name.removeprefix("./"))
+            self.assertEqual(status, 200, name)
+            links = re.findall(r'(?:href|src)="([^"#:]+)', texts[name])
+            left += [link for link in set(links) if link not in texts and link not in left]
+        for name, text in texts.items():
+            for page, anchor in re.findall(r'href="([^"#:]*)#([^"]+)"', text):
+                self.assertIn(f'id="{anchor}"', texts[page or name], f"{name}: {page}#{anchor}")
+        self.assertGreater(len(texts), 11)
+        described = json.loads(subprocess.run([YURAGI, "describe", "--json"], check=True, stdout=subprocess.PIPE, text=True).stdout)
+        for table in described:
+            for key in table["parameters"]:
+                self.assertIn(f"<code>{key['name']}</code>", texts["keys.html"])
+
     def test_a_sensor_that_is_not_there_is_told_with_what_to_do(self):
         self.start_daemon(f'[[sensor]]\nname = "roof"\ndriver = "nmea"\ntransport = "tcp"\nhost = "127.0.0.1"\nport = {free_port()}\n')
         self.wait_for("/healthz", 503, "roof.*127.0.0.1")

@@ -58,7 +58,7 @@ CONTENTS = [
     "usr/lib/yuragi/daily-report",
     "usr/share/doc/yuragi/changelog.gz",
     "usr/share/doc/yuragi/copyright",
-    "usr/share/doc/yuragi/guide/README.md",
+    *[f"usr/share/yuragi/guide/{name}" for name in ("index.html", "keys.html", "troubleshooting.html", "guide.css")],
     "usr/share/yuragi/profiles/generic-rs485-cup.toml",
 ]
 
