@@ -20,7 +20,7 @@ config/setup.sh
 log=$project/build/demo.log
 mkdir -p build
 
-# Shows ninja's lines "@ DONE ALL SECONDS ..." as one line that says how long it will go on; without a terminal, as a line
+# Shows ninja's lines "@ DONE ALL SECONDS ..." as one line with the time that is left; without a terminal, as a line
 # now and then. The part of a build from nothing that is done is about that of its steps (measured; at times 0.2 more or
 # less).
 show_progress() {
@@ -48,7 +48,7 @@ build() {
     NINJA_STATUS='@ %f %t %e ' cmake --build --preset release --target yuragi yuragi-sim yuragi-viewer 2>&1 |
     tee -a "$log" | show_progress
 }
-echo "demo: building; what it says goes to $log"
+echo "demo: building; its output goes to $log"
 began=$SECONDS
 if ! build; then
   tail -n 30 "$log" >&2
@@ -61,7 +61,7 @@ config/examples.sh
 # ---- Run it ----
 
 # A Modbus anemometer that is not there: the simulator plays its wind on the real protocol. Each part takes a free port and
-# says which.
+# prints it.
 work=$(mktemp -d)
 children=()
 finish() {

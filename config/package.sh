@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the Debian package and says where it lies. The same commit gives the same bytes, wherever and whenever it is built with
+# Builds the Debian package and prints its path. The same commit gives the same bytes, wherever and whenever it is built with
 # the same Debian packages.
 #
 #   config/package.sh           for this machine's processor

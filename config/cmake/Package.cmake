@@ -1,4 +1,4 @@
-# The Debian package: what is installed besides the programs, and what dpkg is told (config/package.sh builds it).
+# The Debian package: what is installed besides the programs, and its description for dpkg (config/package.sh builds it).
 set(maintainer "The Yuragi authors <yuragi@example.org>")
 set(package_folder ${PROJECT_SOURCE_DIR}/config/package)
 set(units_folder ${PROJECT_SOURCE_DIR}/config/systemd)

@@ -1,6 +1,6 @@
 # How the project's own targets are declared. A room (ARCHITECTURE.md) is a library: engine/wind is yuragi_engine_wind.
 
-# What one clone has compiled, another finds: nothing in a command line or in debug information says where a clone stands.
+# What one clone has compiled, another finds: no command line and no debug information has the path of a clone.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
@@ -86,7 +86,7 @@ function(yuragi_room folder)
       endif()
     endif()
     if(YURAGI_FUZZ AND NOT folder MATCHES "^engine/(fft|math|noise|operators|scenes|wind)|^viewer/(app|film|picture)$")
-      target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link) # what is fuzzed tells where it has been
+      target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link) # the fuzzer sees which branches ran
     endif()
   else()
     add_library(${name} INTERFACE)
@@ -337,7 +337,7 @@ function(yuragi_join name)
 endfunction()
 
 # yuragi_unity_groups(): to be called last. Where a unity build compiles a target as one file, sources whose unnamed namespaces
-# declare the same name get files of their own; config/cmake/unity_groups.py says which. A source that changes is read again.
+# declare the same name get files of their own; config/cmake/unity_groups.py lists them. A source that changes is read again.
 function(yuragi_unity_groups)
   if(NOT CMAKE_UNITY_BUILD)
     return()

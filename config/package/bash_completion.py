@@ -1,4 +1,4 @@
-"""A completion for bash of what a program says of itself: its subcommands and options by --help, the values that an option has to
+"""A completion for bash of what a program prints of itself: its subcommands and options by --help, the values that an option has to
 choose from, and the drivers by `sensors describe`; else names of files."""
 
 SCRIPT = """\

@@ -1,4 +1,4 @@
-"""A manual page, man(7), of what a program says by --help."""
+"""A manual page, man(7), of what a program prints by --help."""
 import time
 
 

@@ -1,4 +1,4 @@
-"""Reads what a program says of itself by --help, through all of its subcommands, as CLI11 prints it."""
+"""Reads what a program prints of itself by --help, through all of its subcommands, as CLI11 prints it."""
 import os
 import re
 import subprocess

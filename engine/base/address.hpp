@@ -16,7 +16,7 @@ struct Address {
 };
 
 /// Reads "HOST:PORT", an IPv6 address in brackets ("[::1]:7410"). ":PORT" may be left out where `default_port` stands
-/// for it. The failure says what is allowed. Pure.
+/// for it. The failure states what is allowed. Pure.
 Result<Address, Failure> parse_address(std::string_view text, std::optional<std::uint16_t> default_port = std::nullopt);
 
 /// The same form again.

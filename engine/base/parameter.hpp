@@ -43,7 +43,7 @@ struct Parameter {
   /// What it means where it is not given, which none of its values can express ("at the windward edge"). Then it has no
   /// default, and values have it only if it was given. Empty: default_value, of which otherwise only the type counts.
   std::string_view left_out = {};
-  /// What a new value does; nothing: what the table says of its keys.
+  /// What a new value does; nullopt: the table's own.
   std::optional<KeyChange> change = {};
   /// texts only: the path of a file with a secret in it, which other users of the machine are not to read
   bool is_secret_file = false;
@@ -99,7 +99,7 @@ class ParameterValues {
 std::string describe_allowed(const Parameter& parameter);
 
 /// A value as a person types it behind "KEY=": a number, true or false, or a text without quotes. What is not of the
-/// parameter's type stays the text that it is, so that ParameterValues::resolve() refuses it and says why.
+/// parameter's type stays the text that it is, so that ParameterValues::resolve() refuses it with the reason.
 ParameterValue typed_value(const Parameter& parameter, std::string_view text);
 
 /// The reverse: numbers with the fewest digits that read back as the same number. Of a secret, Secret::printable().

@@ -11,8 +11,8 @@ struct SinCos {
   Number cos;
 };
 
-/// Sine and cosine of an angle of magnitude up to pi/4, by polynomial: the second half of sin_cos(), which says the
-/// rest. Absolute error below 1.2e-7.
+/// Sine and cosine of an angle of magnitude up to pi/4, by polynomial: the second half of sin_cos(), which
+/// describes the rest. Absolute error below 1.2e-7.
 template <class Number>
 [[gnu::always_inline]] inline SinCos<Number> sin_cos_within_quarter_pi(Number x) noexcept {
   const Number xx = x * x;

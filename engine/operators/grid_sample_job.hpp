@@ -37,7 +37,7 @@ struct GridSampleJob {
   enum class Problem : std::uint8_t {
     kNone,
     kLayerCount,       ///< none, or more than kMaxLayers
-    kTileNotReadable,  ///< none, or is_readable() says no
+    kTileNotReadable,  ///< none, or is_readable() is false
     kSizesDiffer,      ///< the layers' columns or rows, or columns times rows and out
     kWeightNotNumber,
     kRowNotRunnable,

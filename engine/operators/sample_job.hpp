@@ -47,7 +47,7 @@ struct SampleJob {
   enum class Problem : std::uint8_t {
     kNone,
     kLayerCount,       ///< none, or more than kMaxLayers
-    kTileNotReadable,  ///< none, or is_readable() says no
+    kTileNotReadable,  ///< none, or is_readable() is false
     kSizesDiffer,      ///< place_x, place_z, weights (where there are any) and out
     kRangeNotNumber,   ///< a weight, scale or bias is not finite, or low and high are not in order
     kRowNotRunnable,

@@ -40,7 +40,7 @@ class ChildProcess {
     int patience_ms = 0;
   };
 
-  /// Starts it. Throws std::system_error, whose code says why it cannot be started.
+  /// Starts it. Throws std::system_error, whose code is the reason.
   explicit ChildProcess(const Setup& setup);
   /// Ends it, if it still runs. If the kernel does not let it go, for 0.4 s at most, it is left behind.
   ~ChildProcess();

@@ -31,7 +31,8 @@ class NotifySocket {
   int socket_ = -1;
 };
 
-/// What the environment says of the service manager. To be read during set-up, when no thread changes the environment.
+/// The service manager's socket and watchdog, from the environment. To be read during set-up, when no thread changes
+/// the environment.
 struct ServiceEnvironment {
   std::string socket_name;              ///< NOTIFY_SOCKET; empty: none
   std::optional<Nanoseconds> watchdog;  ///< WATCHDOG_USEC: time-out; none if it is absent, no number, or over 11 days

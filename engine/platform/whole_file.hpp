@@ -28,7 +28,7 @@ class OutputFile {
   /// Where to write.
   const std::filesystem::path& working_path() const { return working_path_; }
 
-  /// Renames the file to its final name; the failure says why that is not possible.
+  /// Renames the file to its final name; the failure has the reason if that is not possible.
   Result<void, Failure> commit();
 
  private:

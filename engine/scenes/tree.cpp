@@ -669,7 +669,7 @@ double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
 }
 
 const std::array kRetiredTreeParameters = {
-    RetiredParameter{"half_tilt_speed", "is now streamline_speed, and flexibility says how far wood bends"},
+    RetiredParameter{"half_tilt_speed", "is now streamline_speed; flexibility sets how far wood bends"},
     RetiredParameter{"half_flutter_speed", "is now half_lean_speed; how soon leaves flutter is their species' own"},
 };
 

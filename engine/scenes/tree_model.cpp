@@ -17,7 +17,7 @@ constexpr double kGoldenAngle_rad = kPi * (3.0 - 2.23606797749979);  // 137.5 de
 constexpr double kTwigRadiusPerHeight = 0.008 / 8.0;
 constexpr double kTipRadiusShare = 0.3;  ///< of the radius at the foot, for a twig
 
-/// No branch is longer than this times what the habit says.
+/// No branch is longer than this times the habit's length.
 constexpr double kLargestVigour = 1.06;
 
 /// Leaves stand at nodes, this many from a twig's foot to its tip, a spray at 16 that follow one another. (So the

@@ -8,8 +8,8 @@
 
 namespace yuragi::wind {
 
-/// What a weather station says besides the horizontal wind, as it says it. Empty: not told. For the recording alone:
-/// no estimate and no animation uses it.
+/// What a weather station reports besides the horizontal wind, unchanged. nullopt: not reported. For the recording
+/// alone: no estimate and no animation uses it.
 struct StationQuantities {
   Instant time;                              ///< when it arrived
   std::optional<double> vertical_speed_m_s;  ///< upward positive

@@ -272,7 +272,7 @@ std::optional<look::Color> color_of(flatbuffers::Optional<std::uint32_t> rgb) {
   return look::Color{part(16), part(8), part(0)};
 }
 
-/// A picture that is as large as it says, or none.
+/// Returns a picture whose size fits its pixels, or none.
 bool read(const fb::Cloth& from, look::ClothLook& to) {
   to.color = color_of(from.color());
   to.color_2 = color_of(from.color_2());

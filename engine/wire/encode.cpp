@@ -352,7 +352,7 @@ flatbuffers::Optional<std::uint32_t> to_schema(const std::optional<look::Color>&
   return std::uint32_t{color->red} << 16 | std::uint32_t{color->green} << 8 | color->blue;
 }
 
-/// Nothing where it says nothing.
+/// Null for a default ClothLook.
 flatbuffers::Offset<fb::Cloth> add_cloth(Builder& builder, const look::ClothLook& cloth) {
   if (cloth == look::ClothLook{}) return {};
   if (cloth.image == nullptr) return fb::CreateCloth(builder, to_schema(cloth.color), to_schema(cloth.color_2));

@@ -102,7 +102,7 @@ struct SceneModel {
   std::string kind;
   pose::Skeleton skeleton;
   look::ClothLook cloth =
-      {};  ///< of a cloth, or a ground's picture; it is as large as it says, and within Image's limits
+      {};  ///< of a cloth, or a ground's picture; its size fits its pixels, and is within Image's limits
 };
 
 struct Scenes {

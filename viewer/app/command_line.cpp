@@ -116,7 +116,7 @@ void add_options(CLI::App& app, picture::ViewerOptions& options) {
   auto* const config =
       app.add_option(
              "--config", options.config,
-             "A configuration of Yuragi: its [[output]] says which monitors show the picture and how; of a film "
+             "A configuration of Yuragi: its [[output]] selects the monitors and how they show the picture; of a film "
              "(--render) it has the scenes")
           ->type_name("FILE.toml");
   app.add_option("--output", options.output, "The name of the [[output]] to show; default: the first")

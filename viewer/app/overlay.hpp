@@ -7,8 +7,8 @@
 
 namespace yuragi::viewer::app {
 
-/// How large texts are, compared with those of a picture of 1080 rows: as the monitor says it, but on a monitor of high
-/// resolution that says nothing, large enough to be read. `asked`: by a person.
+/// How large texts are, compared with those of a picture of 1080 rows: as the monitor reports it, but on a monitor of
+/// high resolution that reports nothing, large enough to be read. `asked`: by a person.
 double overlay_scale(double content_scale, const PixelSize& picture, std::optional<double> asked);
 
 /// Small texts over the picture, drawn by OpenGL. One at a time; needs a current context.

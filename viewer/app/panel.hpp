@@ -15,7 +15,7 @@ namespace yuragi::viewer::app {
 /// parameter. Thread-safe: no.
 ///
 /// While a slider is dragged at most one value in kSendEvery_s is sent, and of each scene one at a time is on its way;
-/// the last one is always sent. What a person has set is shown until the daemon says what became of it.
+/// the last one is always sent. What a person has set is shown until the daemon has answered.
 class Panel {
  public:
   static constexpr double kSendEvery_s = 0.1;
@@ -36,7 +36,7 @@ class Panel {
   std::optional<wire::Control> next(double now_s);
 
   const std::vector<wire::ParameterGroup>& groups() const { return groups_; }
-  /// What to show for a parameter of a group: what a person has set of it, or what the daemon says.
+  /// What to show for a parameter of a group: what a person has set of it, or the daemon's value.
   const std::optional<std::string>& value(const wire::ParameterGroup& group, const wire::ParameterState& state) const;
   /// Has a person set something that the list does not have yet?
   bool is_setting() const { return !edits_.empty(); }
@@ -52,7 +52,7 @@ class Panel {
     kWaiting,  ///< to be sent
     kSent,     ///< as `number`
     kDone,     ///< and the list that would say so was not asked for yet
-    kListed,   ///< and the next list says so
+    kListed,   ///< and the next list has it
   };
   struct Edit {
     std::string scene, key;

@@ -204,7 +204,7 @@ void draw_group(Panel& panel, const wire::ParameterGroup& group) {
   std::string title = group.scene.empty() ? "light and weather" : group.scene;
   if (!group.kind.empty() && group.kind != group.scene) title += " (" + group.kind + ")";
   const ImGuiTreeNodeFlags flags = group.scene.empty() ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None;
-  // What is behind ### tells the groups apart, whatever they are called.
+  // The part after ### distinguishes groups of the same name.
   if (!ImGui::CollapsingHeader((title + "###" + group.scene).c_str(), flags)) return;
   ImGui::PushID(group.scene.c_str());
   if (ImGui::BeginTable("parameters", 3)) {

@@ -65,7 +65,7 @@ stream::StreamOptions address_of(const picture::ViewerOptions& options) {
   return {.host = address->host, .port = address->port, .token = own_token()};
 }
 
-/// What the configuration says of the wall; nothing where there is none.
+/// The outputs of the configuration; nullopt without one.
 std::optional<output::Output> output_of(const picture::ViewerOptions& options) {
   if (options.config.empty()) return std::nullopt;
   return wall::load_output(options.config, options.output);
@@ -427,7 +427,7 @@ class Viewer::Show {
     while (auto control = panel_.next(now_s())) connection_.send(*control);
   }
 
-  /// Dark until the first status says whether it is open, so that a wall that starts at night stays dark.
+  /// Dark until the first status reports whether it is open, so that a wall that starts at night stays dark.
   void follow_brightness(double passed_s) {
     const double wanted = wanted_brightness();
     brightness_ += std::min(1.0, passed_s / kDimming_s) * (wanted - brightness_);

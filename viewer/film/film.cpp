@@ -158,7 +158,7 @@ bool make_film(const picture::ViewerOptions& options, FilmStream& stream, pictur
 }
 
 void render_recording(const picture::ViewerOptions& options, const std::atomic<bool>& is_stopping) {
-  // What is not read any more and what does not fit are errors that are told, not the end at once.
+  // A reader that has gone and data that does not fit are reported as errors; they do not end the program at once.
   for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   const std::unique_ptr<FilmOutput> output = make_film_output(
       options.out, {.width_px = options.width_px, .height_px = options.height_px, .pictures_per_s = options.fps},

@@ -9,7 +9,7 @@
 
 namespace yuragi::viewer::film {
 
-/// As a shell says it of a program that Ctrl-C has ended.
+/// The shell's exit code for a program that Ctrl-C has ended.
 inline constexpr int kExitInterrupted = 128 + SIGINT;
 
 /// Where the pictures of a film go. What is wrong throws ViewerExit. Without finish() the destructor removes every file

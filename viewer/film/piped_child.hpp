@@ -8,7 +8,7 @@
 
 namespace yuragi::viewer::film {
 
-/// Another program at one end of a pipe. It says on our standard error what it has to say, and does not hear Ctrl-C:
+/// Another program at one end of a pipe. It writes to our standard error, and Ctrl-C does not reach it:
 /// whoever started it ends it. It is killed with this object.
 class PipedChild {
  public:

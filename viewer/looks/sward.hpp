@@ -13,7 +13,7 @@ namespace yuragi::viewer::looks {
 /// How much a quality draws of grass, streamed and other alike.
 const meshes::GrassDetail& grass_detail(look::Quality quality);
 
-/// Blades of grass around the eye as far as they can be told apart, drawn from static buffers: tall grass around a
+/// Blades of grass around the eye as far as they can be distinguished, drawn from static buffers: tall grass around a
 /// stand of streamed blades, as dense, or a lawn. The View and the GroundMaps are bound. Needs a current context.
 class Sward {
  public:

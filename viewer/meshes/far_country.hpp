@@ -15,7 +15,7 @@ struct FarRange {
   float distance_m;         ///< mean
   float distance_varies_m;  ///< by so much, both ways
   float land_m;             ///< height of the land
-  float trees_m;            ///< of the trees on it; 0: none can be told apart
+  float trees_m;            ///< of the trees on it; 0: none can be distinguished
 };
 inline constexpr std::array<FarRange, 5> kFarRanges{{{580.0F, 170.0F, 0.0F, 13.0F},
                                                      {1150.0F, 150.0F, 9.0F, 17.0F},

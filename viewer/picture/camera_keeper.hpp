@@ -23,7 +23,7 @@ struct Shot {
 /// the picture cross-fades, too. Pure: time is a parameter. Thread-safe: no.
 class CameraKeeper {
  public:
-  /// How long a cross-fade takes that is not the hour's: by a key, or to what the configuration says now.
+  /// How long a cross-fade takes that is not the hour's: by a key, or to the configuration's camera.
   static constexpr double kFade_s = 1.0;
 
   /// What it begins with, and what reset() returns to: by hand, the camera of this name, or the hour's.
@@ -35,7 +35,7 @@ class CameraKeeper {
   const std::vector<look::Camera>& cameras() const { return cameras_; }
   bool has(const std::string& name) const { return find(name) != nullptr; }
 
-  /// What the daemon's clock shows now, seconds since 1970, as far as its newest frame says.
+  /// What the daemon's clock shows now, seconds since 1970, by its newest frame.
   void hear_clock(double utc_s);
 
   /// The user moves the camera: it is by hand from now on, without a cross-fade.

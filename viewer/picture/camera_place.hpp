@@ -10,7 +10,7 @@
 namespace yuragi::viewer::picture {
 
 /// Where a camera of the daemon's is at a moment (seconds since 1970, UTC): its place, and its slow moves, as
-/// engine/wire/pose.fbs tells them. `scene`: the box around what it looks at; nothing: the middle of the world.
+/// engine/wire/pose.fbs defines them. `scene`: the box around what it looks at; nothing: the middle of the world.
 /// `aspect`: the picture's width / height. Pure, and smooth in time.
 ///
 /// A camera with a wind_angle looks so far to the right of `view_wind_from_deg` (its own heading if that is not known).

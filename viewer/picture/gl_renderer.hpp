@@ -16,7 +16,7 @@ namespace yuragi::viewer::picture {
 /// A current context that needs no display. Throws ViewerExit (EX_UNAVAILABLE) where there is none to be had.
 std::unique_ptr<gl::HeadlessContext> make_headless_context();
 
-/// Draws by OpenGL into its target: all of each picture, or less where it is told to.
+/// Draws by OpenGL into its target: all of each picture, or less if asked to.
 class GlRenderer final : public Renderer {
  public:
   /// Needs `context`, or, where this is null, a current one that outlives it: a window's.

@@ -12,7 +12,7 @@
 
 namespace yuragi::viewer::picture {
 
-/// What the pictures of a stream show, of what the sender says and the command line asks for: scenes, light, camera.
+/// What the pictures of a stream show, by the sender's values and the command line's: scenes, light, camera.
 /// Pure but for the renderer: time is a parameter. Thread-safe: no.
 class PictureDirector {
  public:
@@ -39,7 +39,7 @@ class PictureDirector {
   void show_camera(std::size_t number) { cameras_.show(number); }
   /// The camera by hand at its first place.
   void show_home();
-  /// The next quality, whatever the look says: low, medium, high, and low again. `present`: what is drawn.
+  /// The next quality, regardless of the look: low, medium, high, and low again. `present`: what is drawn.
   void show_next_quality(look::Quality present);
   void reset_camera();
   /// After the choice of scenes: the camera by hand at its first place for them, or, where all are drawn, the first

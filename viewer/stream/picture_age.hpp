@@ -22,12 +22,12 @@ struct AgeFigures {
 };
 
 /// Measures the age of the sensor's newest reading at the moment when its picture is seen: from the reading's arrival
-/// in the daemon to the animation's tick, as the frame says; from there to the picture that was handed to the display,
+/// in the daemon to the animation's tick, by the frame; from there to the picture that was handed to the display,
 /// by the viewer's clock; and the display's interval, which nobody measures, as an estimate.
 ///
-/// Where the daemon runs on the same machine its clock is this one's. The clocks of two machines differ by nobody knows
-/// what: then the age begins anew with the quickest frame's arrival, is too small by its way through the network, and
-/// says so.
+/// If the daemon runs on the same machine, both have one clock. Clocks of two machines differ by an unknown time: then
+/// the age begins anew with the quickest frame's arrival, is too small by its way through the network, and is marked as
+/// such.
 ///
 /// Pure: time is a parameter, in seconds. Allocates nothing. Thread-safe: no.
 class PictureAge {

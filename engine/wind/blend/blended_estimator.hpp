@@ -64,7 +64,7 @@ class BlendedEstimator {
   /// false.
   bool accept(std::size_t source, const WindReading& reading) noexcept;
 
-  /// Goes on to `now` and says what the wind is where it is measured.
+  /// Advances to `now` and returns the wind at the place of the measurement.
   WindState advance(MonoTime now) noexcept;
 
   /// The same wind over the ground, as of the last advance(); without tapes.

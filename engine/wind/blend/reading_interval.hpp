@@ -5,7 +5,7 @@
 
 namespace yuragi::wind::blend {
 
-/// How often a source says something new, from the gaps between its readings (engine/wind/README.md W38).
+/// How often a source reports something new, from the gaps between its readings (engine/wind/README.md W38).
 ///
 /// A station that speaks regularly has the median of its last nine gaps. One that speaks in bursts (it repeats each
 /// message, or sends several at once, or has two rates in turn) would be taken for a quick one by that: what lies
@@ -13,7 +13,7 @@ namespace yuragi::wind::blend {
 /// quarter of its usual pause; the usual pause is the gap that half of the time, but for the longest gap, is spent in
 /// gaps up to. So one outage is no pause, and every pattern that comes again within 16 readings is known.
 ///
-/// A source that speaks on change only says something new where its reading is another one; its interval is the median
+/// A source that sends only changes reports something new only when its reading differs; its interval is the median
 /// of the last nine times from one change to the next.
 ///
 /// Thread-safe: no. Realtime-safe: yes; no allocation.

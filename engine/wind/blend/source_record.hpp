@@ -12,7 +12,7 @@ namespace yuragi::wind::blend {
 /// Thread-safe: no. Realtime-safe: yes.
 class SourceRecord {
  public:
-  /// `unchanged_for_s`: so long a silence of the source says that nothing has changed (BlendSourceSettings).
+  /// `unchanged_for_s`: so long a silence of the source means that nothing has changed (BlendSourceSettings).
   explicit SourceRecord(double unchanged_for_s = 0.0) noexcept
       : unchanged_for_s_(unchanged_for_s),
         interval_(unchanged_for_s > 0.0 ? ReadingInterval::Speaks::kOnChange : ReadingInterval::Speaks::kAtIntervals) {}
@@ -42,7 +42,7 @@ class SourceRecord {
   double age_s(MonoTime now) const noexcept { return last_ ? std::max(0.0, seconds(now - last_->time.mono)) : 0.0; }
 
   /// A silence of at least so long is explained whatever the interval is, where `intervals` of its own are usual: as
-  /// long as silence says that nothing has changed; and as long as the interval may still be that of repetitions.
+  /// long as silence means that nothing has changed; and as long as the interval may still be that of repetitions.
   double explained_s(double intervals) const noexcept {
     const bool may_repeat_itself = interval_s() > 0.0 && !interval_.is_settled();
     return std::max(unchanged_for_s_, may_repeat_itself ? intervals * kUnsettledInterval_s : 0.0);

@@ -35,7 +35,7 @@ struct Calibration {
 double zero_point_m_s(const Calibration& calibration) noexcept;
 
 /// Points "measured:true" in m/s, separated by blanks: "0:0 5:5.2 12:12.9". At least two, both numbers rising from each
-/// to the next. An empty text is no curve. The failure's text says what is allowed.
+/// to the next. An empty text is no curve. The failure's text states what is allowed.
 Result<std::vector<CalibrationPoint>, Failure> parse_calibration_curve(std::string_view text);
 
 /// How much stronger the wind is at `to_m` than at `from_m` above the ground, by the logarithmic profile over ground of

@@ -79,7 +79,8 @@ Result<void, Failure> check_span(std::span<const CalibrationPoint> pairs) {
 
 Result<void, Failure> check_gain(double gain) {
   if (gain >= kLeastGain && gain <= kMostGain) return {};
-  if (gain <= 0.0) return Failure{"the sensor says less where more wind blows: are these two in the same wind?"};
+  if (gain <= 0.0)
+    return Failure{"the sensor reads less when the reference reads more: check that both stand in the same wind"};
   return Failure{"the gain would be " + figure(gain) + ", and no sensor is that wrong (" + figure(kLeastGain) + " to " +
                  figure(kMostGain) +
                  "): is it in this wind, and is its unit right (`unit` in [sensor.calibration], or the driver's own)?"};

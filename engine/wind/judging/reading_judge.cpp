@@ -22,7 +22,7 @@ constexpr double kForgotten_s = 600.0;
 constexpr double kReadingsCounted = 20.0;
 constexpr double kGiveUpShare = 0.3;
 constexpr double kTrustShare = 0.05;
-/// Below this a wind cannot be told from a calm.
+/// Below this a wind cannot be distinguished from a calm.
 constexpr double kNoWind_m_s = 0.3;
 constexpr double kStill_m_s = 0.05;
 /// The turbulence that a sensor's steps are compared with, and how much longer a coarse one may repeat itself.

@@ -9,7 +9,7 @@ namespace yuragi::wind::turbulence {
 // both. Times the component's variance and T they are one-sided spectral densities, m^2/s^2/Hz. Source: von Karman
 // 1948, Progress in the statistical theory of turbulence; the constant as in ESDU 85020. Thread-safe and realtime-safe.
 
-/// (2 pi 1.339)^2 as it is printed: where the density bends. engine/noise/von_karman_corner.hpp says what 1.339 is.
+/// (2 pi 1.339)^2 as it is printed: where the density bends. engine/noise/von_karman_corner.hpp defines 1.339.
 inline constexpr double kVonKarmanBend = 70.8;
 
 /// S / (variance T) at x = f T: 4 / (1 + 70.8 x^2)^(5/6). Its integral over x from 0 on is 1.

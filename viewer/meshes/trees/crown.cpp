@@ -20,7 +20,7 @@ constexpr float kTwigAlong = 0.3F;
 constexpr float kHardlySeen = 0.35F;
 constexpr float kLargestHidden = 1.4F;
 
-/// Meshes with so many leaves are told apart; a spray is drawn with the smallest that suffices.
+/// There are meshes with these numbers of leaves; a spray is drawn with the smallest that suffices.
 constexpr std::array<std::size_t, 9> kLeafCounts = {1, 2, 3, 4, 6, 9, 13, 18, 26};
 
 /// The number's 4 digits in base 2, mirrored: any first few numbers are spread over all 16.

@@ -39,7 +39,7 @@ layout(std140) uniform View {
   vec4 shadow;     // a texel of it, 0: there is none; how a penumbra grows in it, across and upright; its depth, metres
 };
 
-// The light of the picture (viewer/light/light.hpp says more of each).
+// The light of the picture (described in viewer/light/light.hpp).
 layout(std140) uniform Light {
   vec4 to_sun;        // toward the sun or, by night, the moon; how much of it is seen
   vec4 sun_light;     // its light

@@ -1,4 +1,4 @@
-// A window's part of the picture, as its monitor is to show it (viewer/wall/window_map.hpp says the same on paper).
+// A window's part of the picture, as its monitor is to show it (viewer/wall/window_map.hpp has the same formulas).
 uniform sampler2D picture;
 uniform vec2 monitor_px;
 uniform mat3 to_crop;  // from a place on the monitor; both 0 to 1, y down

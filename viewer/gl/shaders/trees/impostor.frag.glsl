@@ -1,5 +1,5 @@
 #include "foliage.part.glsl"
-// What the picture of a far tree says of its leaves and branches, in the light of now: the same light as leaf.vert.glsl
+// The leaves and branches in the picture of a far tree, in the light of now: the same light as leaf.vert.glsl
 // computes, by the place in a round crown instead of each leaf's own.
 uniform sampler2D looks;   // the square root of what is reflected, less the palette's factor
 uniform sampler2D facing;  // the normal; below one half: wood, above: leaves, and how much light comes to them
