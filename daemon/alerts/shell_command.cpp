@@ -98,7 +98,7 @@ Result<void, Failure> run_command(const AlertNews& news, Nanoseconds most, const
   const platform::ChildEnd end = process->wait();
   while (output.size() < kMaxCommandOutput_bytes && read_some(pipe.get(), output)) {
   }
-  if (!ended) return Failure{fmt::format("was killed, as it had not ended after {:.0f} s", seconds(most))};
+  if (!ended) return Failure{fmt::format("was killed because it had not ended after {:.0f} s", seconds(most))};
   if (!end.is_good()) return Failure{text_of(end)};
   return {};
 }

@@ -69,7 +69,7 @@ Result<void, Failure> post_to_webhook(const AlertNews& news, const std::string& 
   const std::string agent = with_version("yuragi");
   const Handle handle(curl_easy_init(), &curl_easy_cleanup);
   const Fields fields(curl_slist_append(nullptr, "Content-Type: application/json"), &curl_slist_free_all);
-  if (!handle || !fields) return Failure{"there is no memory for a request"};
+  if (!handle || !fields) return Failure{"out of memory for a request"};
   CURL* const request = handle.get();
   curl_easy_setopt(request, CURLOPT_URL, news.webhook.reveal().c_str());
   curl_easy_setopt(request, CURLOPT_PROTOCOLS_STR, "http,https");

@@ -195,16 +195,16 @@ void refuse_beside_a_daemon(const settings::Config& config) {
   tools::doctor::listen_trouble(config.stream.listen, is_in_use);
   if (!is_in_use) return;
   throw ExitError(kExitUnavailable,
-                  fmt::format("a daemon runs at {}, and has the devices: stop it first, and start it again afterwards "
+                  fmt::format("a daemon runs at {} and uses the devices: stop it first, and start it again afterwards "
                               "(sudo systemctl stop yuragi)",
                               config.stream.listen));
 }
 
 void run_accept(const AcceptOptions& options) {
   if (options.asks && options.is_simulated_only)
-    throw ExitError(kExitUsage, "--ask is about real vanes: leave out --simulated-only");
+    throw ExitError(kExitUsage, "--ask needs real vanes: remove --simulated-only");
   if (options.asks && isatty(STDIN_FILENO) == 0)
-    throw ExitError(kExitUsage, "--ask: there is nobody at a terminal to be asked");
+    throw ExitError(kExitUsage, "--ask needs a terminal, to ask the technician");
   const service::DaemonLog log(false);
   spdlog::set_level(spdlog::level::err);  // what a sensor says is on the page
   const auto file = installed_config(options.config_file);
@@ -268,7 +268,8 @@ void add_accept(CLI::App& app) {
       "its device, which station it is, and, with nmea, talker, address and xdr_id. Then the speed and direction "
       "after\n"
       "the calibration must be those of that wind: configuration and software are proved, cables and device are not.\n"
-      "A Modbus device has its factory slave ids, or those of the entry. What is not simulated says why, and is\n"
+      "A Modbus device has its factory slave ids, or those of the entry. For what is not simulated the reason is "
+      "shown; it is\n"
       "neither passed nor failed; the same where yuragi-sim is not installed.\n"
       "It asks nothing, unless --ask is given: then it also has each vane held to the north (15 degrees are allowed).\n"
       "Failed: no reading, readings that are not used at the end, no frames or poses that do not move. Remarks: "

@@ -50,7 +50,7 @@ nlohmann::json ask_page(const PageRequest& request) {
   std::string answer;
   const Handle handle(curl_easy_init(), &curl_easy_cleanup);
   const Fields fields(curl_slist_append(nullptr, "Content-Type: application/json"), &curl_slist_free_all);
-  if (!handle || !fields) throw FailureError({"there is no memory for a request"});
+  if (!handle || !fields) throw FailureError({"out of memory for a request"});
   CURL* const curl = handle.get();
   curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http");

@@ -225,10 +225,11 @@ std::vector<DescribedTable> all_tables() {
                  "a place to see the scenes from, with a name, and how it moves; viewers follow it at once, and take "
                  "the next when its time comes",
                  look::camera_parameters()});
-  all.push_back({"[[alert]]",
-                 "what somebody is told of, by a command or a webhook, once when it begins and once when it ends; with "
-                 "a name",
-                 settings::alert_parameters()});
+  all.push_back(
+      {"[[alert]]",
+       "a condition that is reported by a command or a webhook, once when it begins and once when it ends; with "
+       "a name",
+       settings::alert_parameters()});
   all.push_back(
       {"[[output]]",
        "how `yuragi-viewer --config FILE` shows its picture on a wall; with a name where there are several, for "

@@ -33,7 +33,7 @@ wire::ControlReply carry_out(const ParameterOptions& options, wire::ParameterCom
   const wire::Control control{.scene = "", .parameters = std::move(command)};
   if (control.parameters->edits.size() > wire::kMaxParameterEdits ||
       wire::encode(control).size() > wire::kMaxClientMessageBytes) {
-    throw ExitError(kExitUsage, "these are too many values at once: set them by several commands");
+    throw ExitError(kExitUsage, "too many values at once: set them with several commands");
   }
   auto reply = send_control(options.connect, options.of_scenes ? "scene" : "look", control, kParameterTimeout);
   if (!reply.parameters) {
@@ -130,7 +130,7 @@ void print_table(const wire::ParameterGroup& group) {
     };
     std::string line = fmt::format("  {:<20} {}", state.name, shown(state.value));
     if (state.value != state.configured) line += fmt::format("  (the configuration: {})", shown(state.configured));
-    if (state.change == KeyChange::kTakesRestart) line += "  (takes a restart)";
+    if (state.change == KeyChange::kTakesRestart) line += "  (needs a restart)";
     fmt::print("{}\n", line);
   }
 }

@@ -289,10 +289,11 @@ void add_sensors_probe(CLI::App& sensors) {
       "  yuragi sensors probe modbus 192.168.1.20:502 --id 1-10\n"
       "Where profiles read the same register with different scales, all of them are shown, and the device's own wind "
       "force, where\n"
-      "it has one, tells which is right. What reads nothing but zeros comes last.\n"
+      "it has one, shows which is right. Those that read only zeros come last.\n"
       "--json: an object a line for each device: line, baud, parity, stop_bits (null over TCP), slave, fits, "
       "scale_doubts (the\n"
-      "profiles among which nothing tells); of each fit profile, device, speed_m_s, direction_deg, gust_m_s, beaufort, "
+      "profiles between which it cannot decide); of each fit profile, device, speed_m_s, direction_deg, gust_m_s, "
+      "beaufort, "
       "agrees_with_beaufort\n"
       "(null where it has none), is_live (not all of it is 0), has_factory_settings.");
   auto options = std::make_shared<ProbeOptions>();

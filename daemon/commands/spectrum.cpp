@@ -26,7 +26,7 @@ constexpr const char* kSpectrumFooter =
     "variance of that component. Lines that begin with # are comments.\n"
     "\n"
     "  simiu, kaimal  n = f z / U, scaled by u*^2: Simiu and Scanlan 1996, Kaimal et al. 1972\n"
-    "  davenport      x = 1200 f / U, component u only; U is the speed at 10 m, whatever --height says\n"
+    "  davenport      x = 1200 f / U, component u only; U is the speed at 10 m for every --height\n"
     "  von-karman     scaled by sigma^2; x = f L_u / U for u, half of it for v and w\n"
     "  iec-kaimal     scaled by sigma^2; L_u = 8.1 Lambda, those of v and w a third and a twelfth of it\n"
     "\n"

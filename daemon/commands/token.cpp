@@ -81,7 +81,7 @@ void write_token(const std::filesystem::path& file, const std::filesystem::path&
   const bool is_on_disk = is_written && ::fsync(descriptor) == 0;
   if (::close(descriptor) != 0 || !is_on_disk) fail("cannot be written");
   if (const auto done = output.commit(); !done) throw FailureError(done.error());
-  fmt::print(stderr, "{}: a new token, for {}; start the daemon again\n", file.string(),
+  fmt::print(stderr, "{}: new token, readable by {}; restart the daemon\n", file.string(),
              is_given ? "its owner and the configuration's group" : "its owner alone");
 }
 
@@ -104,8 +104,10 @@ void show_sessions(const PageRequest& request, bool as_json) {
 /// Asks the running daemon for the sessions, or to end one.
 void handle_sessions(const TokenOptions& options, const std::string& listen, const Secret& token) {
   if (listen.empty()) {
-    throw ExitError(kExitConfig, options.config_file.string() +
-                                     ": has no [http] listen, so that no browser can be paired with this daemon");
+    throw ExitError(
+        kExitConfig,
+        options.config_file.string() +
+            ": [http] listen is missing, so no browser can be paired with this daemon; set it to HOST:PORT");
   }
   PageRequest request{.listen = listen, .path = std::string(web::kSessionsPath), .token = token};
   if (!options.revoked_id) return show_sessions(request, options.as_json);
@@ -119,7 +121,7 @@ void show_token(const TokenOptions& options) {
   const std::filesystem::path file = config.http.token_file;
   if (file.empty()) {
     throw ExitError(kExitConfig, options.config_file.string() +
-                                     ": has no [http] token_file: name a file in which the token is to be, such as "
+                                     ": [http] token_file is missing: name a file for the token, such as "
                                      "token_file = \"/etc/yuragi/token\"");
   }
   if (options.makes_new) write_token(file, options.config_file);

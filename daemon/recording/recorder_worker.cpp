@@ -495,7 +495,7 @@ void RecorderWorker::save_doubt() {
   }
   const bool has_changed =
       doubt.has_value() != saved_doubt_.has_value() || (doubt && doubt->since != saved_doubt_->since);
-  if (has_changed) report(doubt ? text_of(*doubt) : "the clock is no longer doubted");
+  if (has_changed) report(doubt ? text_of(*doubt) : "the clock is trusted again");
   if (!has_changed && (!doubt || doubt->running - saved_doubt_->running < kSaveDoubtEvery)) return;
   write_clock_doubt(clock_doubt_file(file_), doubt);
   saved_doubt_ = doubt;
@@ -515,13 +515,13 @@ Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
   for (const auto& part : parts_to_delete(rules, parts, size_of(file_), free_bytes.value_or(rules.least_free_bytes),
                                           now, clock_->doubt() ? 0 : may_delete_by_age_)) {
     if (!drivers::windlog::remove_recording(part.file)) continue;
-    report("deleted " + part.file.string() + ", which is not to be kept");
+    report("deleted " + part.file.string() + ": keep_days, max_size or min_free of [recording]");
     if (part.is_by_age) --may_delete_by_age_;
   }
   if (!parts.empty()) free_bytes = measure_free_space();
   if (!free_bytes || *free_bytes >= rules.least_free_bytes) return {};
   return Failure{file_.string() + ": " + megabytes(*free_bytes) + " are free on the disk, less than the " +
-                 megabytes(rules_.least_free_bytes) + " of [recording] min_free and what it grows by; free some space"};
+                 megabytes(rules_.least_free_bytes) + " of [recording] min_free and for its growth; free some space"};
 }
 
 /// Fails where the name has come to belong to another file or to none. SQLite does not report that.
@@ -540,7 +540,7 @@ Result<void, Failure> RecorderWorker::open_file() {
   drivers::windlog::finish_rename_to_part(file_);
   const auto aside = drivers::windlog::set_older_recording_aside(file_);
   if (!aside) return aside.error();
-  if (*aside) report(file_.string() + " was of an older format; it is kept as " + (*aside)->string());
+  if (*aside) report(file_.string() + " has an older format; it is kept as " + (*aside)->string());
   create_private_file(file_);
   auto opened = drivers::windlog::WindlogWriter::open(file_);
   if (!opened) return opened.error();

@@ -60,7 +60,7 @@ Result<settings::Config, Failure> configuration_of(const WindlogReader& reader, 
   const auto text = reader.configuration(session.id);
   if (!text) return of_recorded_data(text.error());
   if (text->find_first_not_of(" \t\r\n") == std::string::npos) {
-    return Failure{place + ": is empty, as of a recording that was imported; replay it with --config FILE",
+    return Failure{place + ": is empty, because the recording was imported; replay it with --config FILE",
                    FailureKind::kBadData};
   }
   try {

@@ -143,7 +143,7 @@ class Service::Io {
 
   void run() {
     if (options_.lead_s > 0.0) {
-      spdlog::info("first the scenes go through the {:g} s before the beginning", options_.lead_s);
+      spdlog::info("warming up: the scenes run through the {:g} s before the beginning", options_.lead_s);
       lead_in(
           options_.lead_s, rate_hz_, clock_, hub_, [this] { return next_wind(); }, *animation_);
     }
@@ -272,7 +272,7 @@ class Service::Io {
       return true;
     }
     token_trouble_ = "[http] token_file: " + why +
-                     "; until it can be read nobody changes anything. `yuragi token --new` makes a token";
+                     "; until it can be read, all changes are refused. `yuragi token --new` makes a token";
     return false;
   }
 
@@ -306,7 +306,7 @@ class Service::Io {
 
   void try_again() {
     if (read_token()) {
-      spdlog::info("the token in {} is used from now on", http_.token_file);
+      spdlog::info("the token in {} is valid from now on", http_.token_file);
       if (web_) web_->set_token(token_);
     }
     if (page_trouble_.empty()) return;
@@ -579,7 +579,7 @@ class Service::Io {
   /// The scenes stand still for good: whoever started the daemon starts it again.
   void end_with_failure(const std::string& why) {
     failure_ = "the animation has failed (" + why + ")";
-    spdlog::critical("{}: an error of this program, which is ended to be started again", *failure_);
+    spdlog::critical("{}: a fault of this program; it ends, so that it is started again", *failure_);
     end("the animation has failed");
   }
 

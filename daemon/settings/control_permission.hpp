@@ -18,8 +18,8 @@ inline std::optional<std::string> control_refusal(ControlPermission allowed, boo
   if (allowed == ControlPermission::kNobody) return what + ": the configuration has [stream] control = \"nobody\"";
   if (allowed == ControlPermission::kLoopback && !is_local) {
     return what +
-           " from here: [stream] control = \"loopback\" allows it to this machine or, if there is an [http] "
-           "token_file, to whoever shows the token (YURAGI_TOKEN_FILE=FILE)";
+           " from here: [stream] control = \"loopback\" allows it on the daemon's machine or, if [http] "
+           "token_file is set, with the token (YURAGI_TOKEN_FILE=FILE)";
   }
   return std::nullopt;
 }

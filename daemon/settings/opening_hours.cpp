@@ -91,7 +91,7 @@ Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours,
   result.clock_ = *clock;
   if (!has_hours) return result;
   if (hours.size() > kLongestHours) {
-    return ParameterError{"hours", fmt::format("has {} characters; allowed: at most {}", hours.size(), kLongestHours)};
+    return ParameterError{"hours", fmt::format("is too long: {} characters (maximum {})", hours.size(), kLongestHours)};
   }
 
   result.open_.reset();
@@ -100,7 +100,7 @@ Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours,
     const std::string_view text = without_spaces_around(hours.substr(0, comma));
     const std::optional<OpeningRule> rule = parse_rule(text);
     if (!rule) {
-      return ParameterError{"hours", fmt::format("has \"{}\"; allowed: FROM-TO, with days before it or without, and "
+      return ParameterError{"hours", fmt::format("has \"{}\"; allowed: FROM-TO, optionally after days, with "
                                                  "commas between: \"10:00-18:00\", \"Tue-Sun 10:00-18:00, Thu "
                                                  "18:00-21:00\"",
                                                  text)};

@@ -80,7 +80,7 @@ void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> 
 void WindShaper::restore_gains(const SiteMemory& memory) {
   if (!sensors_.gains.restore) return;
   std::string refusal = memory.gains_refusal;
-  if (refusal.empty() && !sensors_.gains.restore(memory.gains)) refusal = "has what cannot have been learnt";
+  if (refusal.empty() && !sensors_.gains.restore(memory.gains)) refusal = "has impossible values";
   if (!refusal.empty()) {
     spdlog::warn("shaping: {}: relative_gains {}; how the sensors differ is learnt anew", site_path_.string(), refusal);
   } else if (!memory.gains.empty()) {

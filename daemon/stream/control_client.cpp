@@ -38,7 +38,7 @@ std::string reload_text(const wire::ReloadReport& report) {
   std::string text;
   for (const std::string& mistake : report.mistakes) text += mistake + "\n";
   for (const std::string& change : report.applied) text += "applied: " + change + "\n";
-  for (const std::string& change : report.takes_restart) text += "takes a restart: " + change + "\n";
+  for (const std::string& change : report.takes_restart) text += "needs a restart: " + change + "\n";
   if (text.empty()) text = "nothing has changed\n";
   return text;
 }

@@ -45,7 +45,7 @@ std::optional<HttpResponse> refusal_of(const error_code& error) {
   if (error == http::error::header_limit || error == http::error::buffer_overflow)
     return plain(431, "the header is too long");
   if (error == http::error::end_of_stream) return std::nullopt;
-  if (error.category() == error_code(http::error::bad_method).category()) return plain(400, "this is no HTTP");
+  if (error.category() == error_code(http::error::bad_method).category()) return plain(400, "this is not HTTP");
   return std::nullopt;
 }
 

@@ -29,7 +29,7 @@ class VerdictBuilder {
 
 void judge_readings(VerdictBuilder& verdict, const SensorMeasured& sensor) {
   const wire::SensorStatus& status = sensor.status;
-  if (status.simulated) verdict.remark("its readings are made up: no device was measured");
+  if (status.simulated) verdict.remark("its readings are synthetic: no device was measured");
   if (status.replayed) verdict.remark("it plays a recording: no device was measured");
   if (!is_believed(status.state))
     verdict.fail(
@@ -46,7 +46,7 @@ void judge_readings(VerdictBuilder& verdict, const SensorMeasured& sensor) {
 
 void judge_change(VerdictBuilder& verdict, const SensorMeasured& sensor) {
   if (sensor.least_speed_m_s && sensor.least_speed_m_s == sensor.largest_speed_m_s) {
-    verdict.remark(fmt::format("it read {:.2f} m/s all the time: see that it turns, or ask again in a wind",
+    verdict.remark(fmt::format("it read {:.2f} m/s all the time: check that it turns, or repeat this in wind",
                                *sensor.least_speed_m_s));
   }
 }
@@ -60,7 +60,7 @@ void judge_way_to_pose(VerdictBuilder& verdict, const SensorMeasured& sensor) {
                              100.0 * sensor.largest_live_weight));
   }
   if (!sensor.median_delay_s) {
-    verdict.remark("the way from a reading to a pose could not be timed: too few readings");
+    verdict.remark("the delay from a reading to a pose could not be measured: too few readings");
   } else if (*sensor.median_delay_s > kLongestMedianDelay_s) {
     verdict.remark(fmt::format("from a reading to a pose it takes {:.0f} ms", 1e3 * *sensor.median_delay_s));
   }

@@ -273,8 +273,8 @@ class ColumnChoice {
   Result<CsvColumns, Failure> checked() {
     if (columns_.time_parts.empty()) {
       return Failure{"no column looks like a time; the columns are " + listed(header_) +
-                     "; name it with --time COLUMN (and --date COLUMN, where the date is in another), or leave lines "
-                     "out before the header with --skip N"};
+                     "; name it with --time COLUMN (and --date COLUMN, if the date is in another), or skip lines "
+                     "before the header with --skip N"};
     }
     if (!columns_.at(CsvRole::kSpeed) && (!columns_.at(CsvRole::kU) || !columns_.at(CsvRole::kV))) {
       return Failure{"no column looks like a wind speed, nor two like u and v; the columns are " + listed(header_) +

@@ -88,7 +88,7 @@ void use_unit_of_fields(CsvLayout& layout) {
     const auto number = parse_number(layout.row[column->index], dimension_of(static_cast<CsvRole>(index)));
     if (!number || !number->unit) continue;
     column->unit = number->unit;
-    column->unit_source = "as its fields say";
+    column->unit_source = "from its fields";
   }
 }
 

@@ -13,6 +13,6 @@ namespace yuragi::daemon::tools::csv {
 /// a gust, or else the dimension's own unit, as an assumption (`unit_source` is then kAssumed). Thread-safe: yes.
 void choose_units(CsvLayout& layout, const CsvImportOptions& options);
 
-inline constexpr const char* kAssumedUnit = "assumed: nothing in the file says its unit";
+inline constexpr const char* kAssumedUnit = "assumed: the file does not give its unit";
 
 }  // namespace yuragi::daemon::tools::csv

@@ -27,7 +27,7 @@ export class LogView {
       this.say(lines.length > 0 ? "" : "Nothing was logged.");
       this.show(lines);
     } catch (error) {
-      if (error instanceof Refused) this.say(error.status === 401 ? "The log is for a browser that is paired." : error.message);
+      if (error instanceof Refused) this.say(error.status === 401 ? "Only a paired browser may read the log." : error.message);
       // Otherwise the link says what is wrong.
     }
   }

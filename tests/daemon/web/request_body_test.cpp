@@ -57,8 +57,8 @@ TEST(PlayerBody, EveryAction) {
   EXPECT_EQ(player_command_of(R"({"action":"rate","rate":4})")->rate, 4.0);
 }
 TEST(PlayerBody, MistakesNameTheirKey) {
-  EXPECT_THAT(mistake_in_player("{}"), HasSubstr("action: is to be pause"));
-  EXPECT_THAT(mistake_in_player(R"({"action":"fly"})"), HasSubstr("action: is to be pause"));
+  EXPECT_THAT(mistake_in_player("{}"), HasSubstr("action: must be pause"));
+  EXPECT_THAT(mistake_in_player(R"({"action":"fly"})"), HasSubstr("action: must be pause"));
   EXPECT_THAT(mistake_in_player(R"({"action":"step","count":0})"), HasSubstr("count: is to be a number from 1"));
   EXPECT_THAT(mistake_in_player(R"({"action":"rate","rate":1e9})"), HasSubstr("rate: is to be a number"));
 }

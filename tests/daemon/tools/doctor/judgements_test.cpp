@@ -106,7 +106,7 @@ TEST(JudgeDisk, NeedsTheFolderTheRightAndTheRoom) {
   EXPECT_THAT(judge(disk), is(Verdict::kError, "may not write", "sudo chown yuragi /var/lib/yuragi"));
   disk = roomy();
   disk.free_bytes.reset();
-  EXPECT_THAT(judge(disk), is(Verdict::kWarning, "cannot be asked", "df -h"));
+  EXPECT_THAT(judge(disk), is(Verdict::kWarning, "cannot be determined", "df -h"));
   disk = roomy();
   disk.free_bytes = 199e6;
   EXPECT_THAT(judge(disk), is(Verdict::kError, "less than the 200 MB", "du -xsh"));
@@ -154,8 +154,8 @@ TEST(JudgeDisplay, NeedsGraphicsAViewerAndAPlaceToDraw) {
   display.has_display = false;
   EXPECT_THAT(judge(display),
               ElementsAre(is(Verdict::kWarning, "group video", "sudo adduser anna video"),
-                          is(Verdict::kWarning, "nowhere to draw", "systemctl enable --now yuragi-viewer")));
-  EXPECT_THAT(judge(DisplayFacts{}), ElementsAre(is(Verdict::kWarning, "by the CPU", "lspci"),
+                          is(Verdict::kWarning, "the viewer cannot draw", "systemctl enable --now yuragi-viewer")));
+  EXPECT_THAT(judge(DisplayFacts{}), ElementsAre(is(Verdict::kWarning, "on the CPU", "lspci"),
                                                  is(Verdict::kWarning, "not installed", "apt install")));
 }
 
@@ -196,7 +196,7 @@ TEST(Findings, ArePrintedWithTheirRemediesAndCounted) {
   EXPECT_EQ(gravest(findings), Verdict::kError);
   EXPECT_EQ(gravest({}), Verdict::kOk);
   const std::string text = findings_text(findings);
-  EXPECT_THAT(text, HasSubstr("error    disk           full\n                        mend it: df -h\n"));
+  EXPECT_THAT(text, HasSubstr("error    disk           full\n                        fix: df -h\n"));
   EXPECT_THAT(text, testing::EndsWith("1 error, 1 warning\n"));
   const auto json = nlohmann::ordered_json::parse(findings_json(findings).dump());
   EXPECT_EQ(json["verdict"], "error");
