@@ -25,7 +25,7 @@ namespace {
 
 using platform::Descriptor;
 
-/// This program's environment and what the command is told. A name may hold anything but a zero byte.
+/// Returns this program's environment and the command's own variables. A name can hold any byte except zero.
 std::vector<std::string> environment_for(const AlertNews& news) {
   std::vector<std::string> all;
   for (char** entry = environ; *entry != nullptr; ++entry) {

@@ -22,7 +22,7 @@ struct SceneChange {
   struct Start {
     StagedScene* scene = nullptr;
     double wind_gain = 1.0;
-    const StagedScene* shown_like = nullptr;  ///< shown or hidden as this one was; null: as `shown` says
+    const StagedScene* shown_like = nullptr;  ///< shown or hidden as this one was; null: by `shown`
     bool shown = true;
   };
   /// The Scenes message that clients need before the first frame of a list.

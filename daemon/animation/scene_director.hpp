@@ -27,7 +27,7 @@ class SceneDirector {
   /// Changes who may switch scenes.
   void allow(settings::ControlPermission allowed) { allowed_ = allowed; }
 
-  /// Carries out a client's request; the reply says why not. `is_local`: the client is on this machine.
+  /// Carries out a client's request; the reply has the reason for a refusal. `is_local`: the client is on this machine.
   wire::ControlReply handle(const wire::Control& control, bool is_local);
 
  private:

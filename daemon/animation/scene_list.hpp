@@ -94,9 +94,9 @@ class SceneList {
   std::array<wire::Bytes, 3> rooms_;
 };
 
-/// The Scenes message, or nothing where the scenes are larger than the stream allows, so that clients would refuse it.
+/// Returns the Scenes message; nullopt if the scenes exceed the limits of the stream, so that clients would refuse it.
 std::optional<wire::Bytes> scenes_message(const wire::Scenes& scenes);
-/// The same; throws settings::ConfigError, which says what is allowed.
+/// The same; throws settings::ConfigError, which names what is allowed.
 wire::Bytes checked_scenes_message(const wire::Scenes& scenes);
 
 }  // namespace yuragi::daemon::animation

@@ -149,7 +149,7 @@ void measure_sensor(tools::acceptance::Acceptance& acceptance, const settings::C
   if (const auto check = check_north(daemon, measurement, name)) acceptance.north_checks.push_back(*check);
 }
 
-/// Measures a sensor whose device is simulated, or says why it is not.
+/// Measures a sensor with a simulated device, or returns the reason why it cannot be simulated.
 tools::acceptance::SimulatedPart measure_simulated(const settings::Config& config, std::size_t index,
                                                    const AcceptOptions& options) {
   const sensing::SystemClock clock;
@@ -206,7 +206,7 @@ void run_accept(const AcceptOptions& options) {
   if (options.asks && isatty(STDIN_FILENO) == 0)
     throw ExitError(kExitUsage, "--ask needs a terminal, to ask the technician");
   const service::DaemonLog log(false);
-  spdlog::set_level(spdlog::level::err);  // what a sensor says is on the page
+  spdlog::set_level(spdlog::level::err);  // the messages of sensors are on the page
   const auto file = installed_config(options.config_file);
   const settings::Config config = file ? settings::load_config(*file) : settings::default_config();
   service::check(config);

@@ -71,7 +71,7 @@ struct FieldOptions {
   std::optional<double> stress;
   tools::offline::FieldFrames frames;
   bool is_frozen = false;
-  bool is_evolving = false;  ///< by default not, unless a configuration says otherwise
+  bool is_evolving = false;  ///< false by default, unless a configuration sets it
   std::optional<std::uint64_t> seed;
   std::optional<std::filesystem::path> recording;
   drivers::windlog::PlaybackOptions playback;

@@ -231,7 +231,7 @@ void print_report(const ImportOptions& options, const tools::csv::CsvImportRepor
 }
 
 void run_import(const ImportOptions& options) {
-  csv_options(options);  // a mistake in them is told before anything is opened
+  csv_options(options);  // a mistake in them is reported before anything is opened
   std::ifstream file;
   const bool is_standard_input = options.input == "-";
   if (!is_standard_input) {

@@ -29,7 +29,7 @@ struct ListOptions {
   bool as_json = false;
 };
 
-/// How to reach the broker; and the same as a sensor's table says it. Throws FailureError.
+/// Returns how to reach the broker, and the same as keys of a sensor's table. Throws FailureError.
 drivers::mqtt::BrokerSearch broker_search_of(const ListOptions& options) {
   constexpr std::uint16_t kPort = 1883;
   constexpr std::uint16_t kTlsPort = 8883;

@@ -59,7 +59,7 @@ class Screen {
  public:
   virtual ~Screen() = default;
   virtual wire::Subscribe subscription() const = 0;
-  /// Called with the sensors at once, and then about twice a second; `source` says where they come from.
+  /// Called with the sensors at once, and then about twice a second; `source` names their origin.
   virtual bool show_sensors(const wire::Sensors& sensors, const std::string& source) = 0;
   virtual bool show_message(const wire::RawTrace& /*trace*/) { return true; }
 };

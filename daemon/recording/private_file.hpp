@@ -9,7 +9,7 @@ namespace yuragi::daemon::recording {
 /// files beside it (-wal, -shm) the mode of the file. One that exists is not touched: neither opened nor its mode
 /// changed. A symbolic link to a file that is not there yet is followed.
 ///
-/// Where the file cannot be created nothing happens: whoever opens it next says why. Thread-safe: yes.
+/// Does nothing if the file cannot be created: opening it next reports the reason. Thread-safe: yes.
 void create_private_file(std::filesystem::path file);
 
 }  // namespace yuragi::daemon::recording

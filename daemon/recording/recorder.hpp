@@ -19,7 +19,7 @@ namespace yuragi::daemon::recording {
 /// reopens the file and continues in a new session. Where the file is moved away or another one takes its name, it
 /// completes the one that it wrote and continues in the one of that name. Where the name can no longer be looked up
 /// (permissions, a loop of links, a network that is gone) it continues to write to the file that is open. An exception
-/// on its thread counts as a failure to write. A disk that hangs delays its thread alone; the status says so.
+/// on its thread counts as a failure to write. A disk that hangs delays only its thread, and is shown in the status.
 class Recorder {
  public:
   /// How many readings it keeps while it cannot write: over an hour of one sensor at 10 Hz.
@@ -27,9 +27,9 @@ class Recorder {
 
   /// Opens the recording, or creates it so that others cannot read it (mode 0640), and begins its session; a recording
   /// of an older format is renamed first (set_older_recording_aside). `report` is called on the recorder's thread, in
-  /// the constructor, or in close(). If it cannot, it throws FailureError (kCannotCreate) or, as `start` says, retries;
-  /// a damaged or foreign file is never overwritten. If another program records to it (SeriesLock) it retries, and
-  /// takes over when that program has ended; readings that the other program recorded are not written again
+  /// the constructor, or in close(). If it cannot, it throws FailureError (kCannotCreate) or, depending on `start`,
+  /// retries; a damaged or foreign file is never overwritten. If another program records to it (SeriesLock) it retries,
+  /// and takes over when that program has ended; readings that the other program recorded are not written again
   /// (RecorderStatus::recorded_elsewhere). `rules`: when a new file is begun, and what is deleted; its `file` is not
   /// looked at. `synchronized_file`: for is_synchronized(). While the date of what is pushed is doubted (ClockJudge)
   /// age deletes nothing, and FILE-clock exists.
@@ -46,7 +46,7 @@ class Recorder {
   /// wait-free.
   bool push(std::size_t sensor, const wind::WindReading& reading) noexcept { return worker_->push(sensor, reading); }
 
-  /// Takes what the station of `info.sensors[sensor]` says besides the wind; false if it is dropped (and counted)
+  /// Takes what the station of `info.sensors[sensor]` reports besides the wind; false if it is dropped (and counted)
   /// because too much waits. At most one row a sensor and second is written (drivers/windlog/format.hpp). As push()
   /// otherwise.
   bool push(std::size_t sensor, const wind::StationQuantities& quantities) noexcept {

@@ -35,7 +35,7 @@ struct RecordedSensor {
   std::string options;  ///< TOML
 };
 
-/// What a recording says of the run that made it.
+/// What a recording holds about the run that made it.
 struct RecordingInfo {
   Instant started;
   std::string software;       ///< "yuragi 0.1.0"

@@ -29,7 +29,7 @@ class FallbackRecording {
   /// Checks the recording, if one is configured. Throws ConfigError where it cannot be played.
   FallbackRecording(const settings::Config& config, const drivers::sensor::Clock& clock);
 
-  /// Calibrates and judges from now on as a configuration with the same recording says.
+  /// Calibrates and judges from now on by a configuration with the same recording.
   void change(const settings::Config& config);
 
   /// Starts or stops playing, and passes readings that are due to `use`.

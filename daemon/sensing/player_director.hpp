@@ -32,7 +32,7 @@ class PlayerDirector {
   /// Changes who may give orders.
   void allow(settings::ControlPermission allowed) { allowed_ = allowed; }
 
-  /// Carries out a client's command; the reply says why not. `is_local`: the client is on this machine.
+  /// Carries out a client's command; the reply has the reason for a refusal. `is_local`: the client is on this machine.
   wire::ControlReply handle(const wire::PlayerCommand& command, bool is_local);
 
   /// What the clock of the recording machine showed at the place that is played now: by the newest reading, and the

@@ -244,7 +244,7 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
           .is_levelled_at_most = jury_.is_levelled_at_most(index)};
 }
 
-/// Logs changes of the link's state, and what a connected sensor says anew of it, but not each failed attempt.
+/// Logs changes of the link's state, and new details of a connected sensor, but not each failed attempt.
 void SensorHub::log_link(Channel& channel, MonoTime now) const {
   if (const std::uint64_t reports = channel.runner->link_reports(); reports != channel.link_reports) {
     channel.link = channel.runner->link();

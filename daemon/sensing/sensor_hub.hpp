@@ -34,7 +34,7 @@ class SensorHub {
  public:
   /// Gets each plausible reading, before calibration; for the recorder.
   using Listener = std::function<void(std::size_t sensor, const wind::WindReading&)>;
-  /// Gets what a station says besides the wind; for the recorder.
+  /// Receives what a station reports besides the wind; for the recorder.
   using QuantitiesListener = std::function<void(std::size_t sensor, const wind::StationQuantities&)>;
 
   /// Opens and starts every sensor. `noise`: of the gusts; `reach_m`: as make_estimator() takes it; `thread`: the

@@ -31,8 +31,8 @@ struct ReloadParts {
   std::function<std::vector<std::string>(const settings::Config& running, const settings::Config& next)> rehearse = {};
 
   /// Makes the scenes of a configuration, on the reload's thread. What it returns brings them to the animation, on the
-  /// I/O thread, and cannot fail. Throws ConfigError or FailureError where they cannot be made; `is_given_up` tells it
-  /// to return early, with anything. Empty: other scenes take a restart.
+  /// I/O thread, and cannot fail. Throws ConfigError or FailureError if they cannot be made; if `is_given_up`
+  /// returns true, it should return early, with any result. Empty: other scenes need a restart.
   using Adopt = std::function<void()>;
   std::function<Adopt(const settings::Config& next, const std::function<bool()>& is_given_up)> make_scenes;
 
@@ -49,10 +49,10 @@ struct ReloadParts {
 
 /// Reads the configuration again while the daemon runs, and applies what can change: file, check and scenes on a thread
 /// of its own, and then, when nothing can fail any more, everything at once on the I/O thread. A mistake changes
-/// nothing. What was done is logged and told to the clients who asked.
+/// nothing. What was done is logged and sent to the clients who asked.
 ///
 /// Single values of [look] and of scenes are set in the same way, without the file; the next reload puts them back to
-/// what the file says.
+/// the values of the file.
 ///
 /// The file has kMaxRead to be read; then the reload has failed, and the next one begins. Its thread is left behind, at
 /// most kMaxLeftBehind of them.
@@ -63,7 +63,7 @@ class Reload {
  public:
   using Reply = std::function<void(const wire::ReloadReport&)>;
 
-  /// At most so many clients wait for a reload; further ones are told to try again.
+  /// At most so many clients wait for a reload; further ones are refused with "try again".
   static constexpr std::size_t kMostWaiting = 64;
 
   static constexpr Nanoseconds kMaxRead = std::chrono::seconds(20);
@@ -81,9 +81,9 @@ class Reload {
   /// once, with what came of it; not where the daemon ends before.
   void request(const std::string& expected_file = {}, Reply reply = {});
 
-  /// Sets values. A mistake, of which `reply` is told at once, changes nothing.
+  /// Sets values. A mistake changes nothing, and `reply` gets it at once.
   void set(const std::vector<settings::ParameterEdit>& edits, Reply reply = {});
-  /// What is wrong with such edits, if anything.
+  /// Returns what is wrong with such edits; nullopt if nothing is.
   std::optional<std::string> mistake_in(const std::vector<settings::ParameterEdit>& edits) const;
 
   /// What runs, with the values that were set, and what the file said when it was read last, as far as it is applied.

@@ -60,7 +60,7 @@ constexpr auto kTryAgainAfter = std::chrono::seconds(2);
 static_assert(settings::kMostSensors + 1 <= wire::kMaxSensors && settings::kMostScenes <= wire::kMaxScenes);
 
 /// Signals that would end the program without closing the recording. SIGPIPE: nobody reads the log any more. SIGXFSZ: a
-/// file has reached its limit, which the recorder is told of, too. The others have no meaning here.
+/// file has reached its limit, which the recorder also gets as an error. The others have no meaning here.
 void ignore_what_need_not_end_it() {
   for (const int signal : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2}) std::signal(signal, SIG_IGN);
 }
@@ -640,9 +640,9 @@ class Service::Io {
   std::unique_ptr<animation::SceneExchange> scenes_;
   std::unique_ptr<animation::SceneChange> next_scenes_;  ///< of a reload, not yet the animation's
   std::unique_ptr<recording::Recorder> recorder_;
-  std::unique_ptr<history::HistoryReader> history_;  ///< nothing: not recorded
-  std::unique_ptr<web::WebServer> web_;              ///< nothing: not asked for
-  std::optional<alerts::Alerts> alerts_;             ///< nothing: nobody is told
+  std::unique_ptr<history::HistoryReader> history_;  ///< null: not recorded
+  std::unique_ptr<web::WebServer> web_;              ///< null: no [http] listen
+  std::optional<alerts::Alerts> alerts_;             ///< nullopt: no alerts
   ServiceManager manager_{options_.with_scenes};
   bool is_up_ = false;  ///< it has begun, with its first frame where it has scenes
 

@@ -10,9 +10,9 @@
 
 namespace yuragi::daemon::service {
 
-/// What systemd is told of the daemon: that it is ready, a line on how it does, that it ends, and that it is alive.
-/// Where nothing listens (NOTIFY_SOCKET is not set) every call does nothing. Never waits: what a service manager that
-/// hangs does not take is said again later. For the I/O thread.
+/// Reports to systemd that the daemon is ready, a line on its state, that it ends, and that it is alive.
+/// If nothing listens (NOTIFY_SOCKET is not set), every call does nothing. Never waits: what a service manager that
+/// hangs does not take is sent again later. For the I/O thread.
 class ServiceManager {
  public:
   /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. `with_animation`: the watchdog watches the animation, too.

@@ -8,7 +8,7 @@ namespace yuragi::daemon::service {
 
 /// Decides when a service manager's watchdog is fed: at most every quarter of its time-out, and only when both the I/O
 /// thread and the animation have gone round since it was fed last. What else may hang (a disk, a device) is a state
-/// that the stream tells, and does not keep the watchdog from being fed. Pure; for one thread.
+/// that the stream shows, and does not stop the feeding of the watchdog. Pure; for one thread.
 class WatchdogFeed {
  public:
   /// `timeout`: the service manager restarts a program that has not fed its watchdog for so long. Without an animation

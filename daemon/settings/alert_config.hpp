@@ -27,7 +27,7 @@ enum class AlertCondition : std::uint8_t {
 inline constexpr std::array<std::string_view, 5> kAlertConditionNames = {"sensor_silent", "wind_above", "disk_below",
                                                                          "no_frame", "not_recording"};
 
-/// An [[alert]]: what somebody is told of, when, and how. Its beginning is told once and its end once.
+/// An [[alert]]: what is reported, when, and how. Its beginning is reported once and its end once.
 struct AlertConfig {
   std::string name;
   ParameterValues values{};  ///< of alert_parameters(), from which the members below were made

@@ -15,7 +15,7 @@ namespace yuragi::daemon::settings {
 /// Weekly opening hours in the local time of a time zone, to the minute.
 ///
 /// Written as rules with commas between them: "10:00-18:00" (every day), "Tue-Sun 10:00-18:00, Thu 18:00-21:00",
-/// "Fri 20:00-02:00" (into the next day), "00:00-24:00". Open whenever any rule says so; days without a
+/// "Fri 20:00-02:00" (into the next day), "00:00-24:00". Open if any rule applies; days without a
 /// rule are closed. Local time follows the zone's daylight saving time.
 ///
 /// Thread-safe: reading, yes. Only the functions that return text allocate.

@@ -16,8 +16,8 @@ namespace {
 using drivers::sensor::Endpoint;
 using drivers::sensor::ValueSelection;
 
-/// What one sensor needs of its device; nothing if that cannot be told: open_sensor() reports the reason, unless the
-/// sensor has been running since before its profile was lost.
+/// Returns what one sensor needs of its device; nothing if that is not known: open_sensor() reports the reason, unless
+/// the sensor has been running since before its profile was lost.
 struct DeviceUse {
   const SensorConfig* sensor;
   std::optional<ValueSelection> selection;

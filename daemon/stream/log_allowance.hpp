@@ -32,7 +32,7 @@ class LogAllowance {
     return true;
   }
 
-  /// How many lines were left out since it was last told; 0 where none, or where it was told less than told_every ago.
+  /// Returns how many lines were omitted since the last report; 0 if none, or if that was less than told_every ago.
   std::uint64_t tell_left_out(MonoTime now) noexcept {
     if (left_out_ == 0 || now - told_ < settings_.told_every) return 0;
     told_ = now;

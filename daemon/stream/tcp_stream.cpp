@@ -31,7 +31,7 @@ using boost::system::error_code;
 constexpr std::size_t kMinSendBufferBytes = 256u << 10;
 constexpr auto kAcceptBackOff = std::chrono::milliseconds(100);
 
-// Of what a client says, the log shows so many characters.
+// The log shows this many characters of a text from a client.
 constexpr std::size_t kShownNameCharacters = 64;
 constexpr std::size_t kShownReplyCharacters = 200;
 
@@ -465,7 +465,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
     connections_.back()->start();
   }
 
-  /// Sends a Hello that says why, in one write that fits into an empty socket buffer, and closes.
+  /// Sends a Hello with the reason, in one write that fits into an empty socket buffer, and closes.
   void refuse(tcp::socket socket, std::string why) const {
     error_code ignored;
     socket.non_blocking(true, ignored);

@@ -20,7 +20,7 @@ namespace yuragi::daemon::stream {
 struct TcpStreamSettings {
   wire::Hello hello;    ///< the first message to every client
   wire::Scenes scenes;  ///< the second message to clients that subscribe to poses, until others are published
-  AdmissionLimits admission = {};  ///< further clients are refused with a Hello that says why
+  AdmissionLimits admission = {};  ///< further clients are refused with a Hello that has the reason
   /// Carries out a client's request about scenes or recordings and returns the reply; `is_local`: the client is on this
   /// machine, or has shown the token. Empty: every request is refused.
   std::function<wire::ControlReply(const wire::Control& control, bool is_local)> on_control = {};
@@ -66,8 +66,8 @@ struct ClientCounts {
 /// out as it asked for (PoseViews, FramePace). Where
 /// the scenes change, a client that takes new ones gets them before the first frame of them; another one is let go.
 /// After that it may send Controls, each of which gets a reply, and Displays. A client that sends anything else, does
-/// not subscribe, asks for nothing, or stops reading is disconnected, and that is logged (ClientLog); where it can
-/// still read, it is told why by a second Hello. Who gets a place is decided by admission_refusal(). The kernel asks
+/// not subscribe, asks for nothing, or stops reading is disconnected, and that is logged (ClientLog); if it can
+/// still read, a second Hello gives it the reason. Who gets a place is decided by admission_refusal(). The kernel asks
 /// every 10 s whether a silent client is still there, so that one that vanished without a word is forgotten within a
 /// minute. Send buffers are kept small, so that a slow client gets new frames.
 ///

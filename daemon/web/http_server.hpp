@@ -31,8 +31,8 @@ struct HttpRequest {
   std::string if_none_match = {};
   std::string body = {};
   std::string forwarded_for = {};  ///< X-Forwarded-For: for whom a proxy sends it
-  bool is_forwarded = false;       ///< a proxy says that it sends it for another
-  bool is_https = false;           ///< a proxy says that it came to it by HTTPS
+  bool is_forwarded = false;       ///< a proxy states that it sends it for another client
+  bool is_https = false;           ///< a proxy states that it received it by HTTPS
   stream::Peer client = {};
 };
 

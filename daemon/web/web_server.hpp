@@ -45,7 +45,7 @@ struct WebSettings {
   LogTail log = {};
   /// How many exceptions were contained. Called on the web server's own thread; must not wait. Empty: not counted.
   FaultCounter faults = {};
-  /// After so long without news of the daemon the page says that it hangs, and a question is given up.
+  /// After this time without news from the daemon the page shows that it hangs, and a request is given up.
   Nanoseconds patience = std::chrono::seconds(5);
 };
 
@@ -70,7 +70,7 @@ class WebServer final : public stream::Transport {
   void publish_scenes(stream::SharedBytes scenes) override;
   void publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) override;
   std::size_t client_count() const override;
-  /// Those who ask from elsewhere are told less, and may ask at any time.
+  /// Clients on other machines get less, and can ask at any time.
   bool has_untrusted_clients() const override;
   void close() override;
 

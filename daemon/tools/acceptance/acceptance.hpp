@@ -51,7 +51,7 @@ SensorVerdict judge(const SensorMeasured& sensor, std::span<const double> mean_s
 /// What the calibrated readings of a simulated sensor are to be.
 struct ExpectedWind {
   double speed_m_s = 0.0;
-  double speed_tolerance_m_s = 0.0;  ///< from the resolution of what the device says
+  double speed_tolerance_m_s = 0.0;  ///< from the resolution of the device's messages
   double direction_deg = 0.0;        ///< for a sensor that measures it
   double direction_tolerance_deg = 0.0;
 };

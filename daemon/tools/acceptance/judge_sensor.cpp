@@ -34,7 +34,8 @@ void judge_readings(VerdictBuilder& verdict, const SensorMeasured& sensor) {
   if (!is_believed(status.state))
     verdict.fail(
         fmt::format("its readings are not used at the end: {}: {}", name_of(status.state), status.state_reason));
-  // What others say, or the sensor of other things, is no fault: a hub tells its own state between two winds.
+  // Messages of others, or of this sensor about other things, are not faults: a hub sends its own state between two
+  // winds.
   const std::string_view not_mine = name_of(drivers::decode::Refusal::kNotMine);
   const double refused = std::accumulate(
       status.refused.begin(), status.refused.end(), 0.0,

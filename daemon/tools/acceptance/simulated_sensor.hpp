@@ -32,7 +32,8 @@ Result<SimulationPlan, Failure> plan_simulation(const settings::SensorConfig& se
 /// The plan's sensor with its device at this port.
 settings::SensorConfig at_port(const SimulationPlan& plan, std::uint16_t port);
 
-/// The port in the first line of a simulator ("listening on 127.0.0.1:4001"). None: it says none, or not yet whole.
+/// The port in the first line of a simulator ("listening on 127.0.0.1:4001"). Nullopt: there is none, or the line is
+/// not complete yet.
 std::optional<std::uint16_t> simulator_port(std::string_view output);
 
 }  // namespace yuragi::daemon::tools::acceptance

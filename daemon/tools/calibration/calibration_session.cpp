@@ -214,7 +214,7 @@ void CalibrationSession::finish(std::vector<settings::ConfigChange> wanted, cons
   }
 }
 
-/// Has the daemon that was started with this file, if it runs, read it again; says what came of it.
+/// Has the daemon that was started with this file, if it runs, read it again; prints the result.
 void CalibrationSession::apply_in_daemon() {
   const std::string address = request_.connect.value_or(config_.stream.listen);
   const auto report = stream::ask_to_reload(address, settings::absolute_path(request_.config_file),

@@ -38,7 +38,7 @@ std::string time_stem(std::string_view name) {
   return stem;
 }
 
-/// The zone that the name of a time's column says: "GMT-07:00", "UTC"; or that of American standard times.
+/// Returns the zone in the name of a time's column: "GMT-07:00", "UTC"; or that of American standard times.
 std::optional<std::string> zone_in_name(std::string_view name) {
   const std::string text = lower(name);
   for (const std::string_view word : {"utc", "gmt"}) {
@@ -147,7 +147,7 @@ class ColumnChoice {
     }
   }
 
-  /// One that says that it is in UTC, before one that may be in local time.
+  /// Prefers a column that is marked as UTC to one that may be in local time.
   std::optional<std::size_t> find_time_column(CsvRole role) const {
     for (const bool is_utc_wanted : {true, false}) {
       for (const std::string_view usual : usual_names(role)) {

@@ -24,7 +24,7 @@ struct CsvColumn {
   std::string name;             ///< as in the header
   std::size_t index = 0;        ///< in the header, from 0
   std::optional<CsvUnit> unit;  ///< of its numbers; empty: not known
-  std::string unit_source;      ///< what says so: "by its name"
+  std::string unit_source;      ///< where that is from: "by its name"
 };
 
 /// The columns of a file.

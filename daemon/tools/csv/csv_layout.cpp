@@ -61,7 +61,7 @@ void read_key(Preamble& preamble, std::string_view key, std::string_view value) 
   }
 }
 
-/// "FH : hourly mean wind speed (in 0.1 m/s)" says the unit of a column.
+/// "FH : hourly mean wind speed (in 0.1 m/s)" gives the unit of a column.
 void read_legend(CsvColumns& columns, std::string_view key, std::string_view text) {
   for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
     auto& column = columns.by_role[role];

@@ -29,7 +29,8 @@ inline constexpr std::size_t kMostResampledRows = 10'000'000;
 ///
 /// The means of speed and direction are those of WMO-No. 8, Guide to Instruments and Methods of Observation, Volume I,
 /// chapter 5 (measurement of surface wind): scalar for the speed, vectorial for the direction. Its gust is the largest
-/// mean of 3 s; here it is what the device tells, or its largest reading, whatever the device averages over.
+/// mean of 3 s; here it is the gust that the device reports, or its largest reading, with the averaging time of the
+/// device.
 ///
 /// Memory does not depend on the recording's length. Fails as export_csv() does, and (kUsage) where there would be more
 /// than kMostResampledRows.

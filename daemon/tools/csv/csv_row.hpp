@@ -16,7 +16,7 @@
 
 namespace yuragi::daemon::tools::csv {
 
-/// What a row says.
+/// The content of a row.
 struct CsvRow {
   wind::WindReading reading;
   std::optional<wind::StationQuantities> quantities;  ///< at the reading's time, as far as they are plausible

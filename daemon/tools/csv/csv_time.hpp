@@ -35,7 +35,7 @@ constexpr bool is_calendar(CsvTimeFormat format) {
 /// A time as it is written.
 struct CsvTime {
   UtcTime clock;                          ///< what the clock showed, as if it were UTC
-  std::optional<Nanoseconds> utc_offset;  ///< how far it was ahead of UTC, where the text says so
+  std::optional<Nanoseconds> utc_offset;  ///< how far it was ahead of UTC, if the text states it
   bool operator==(const CsvTime&) const = default;
 };
 

@@ -41,7 +41,7 @@ void set_where_unknown(CsvLayout& layout, CsvRole role, std::string_view unit, c
   if (column->unit) column->unit_source = source;
 }
 
-/// What weewx writes says which system of units it is in: 1 US, 16 metric, 17 metric with m/s (weewx, "Units").
+/// Takes the units from the system of units that weewx writes: 1 US, 16 metric, 17 metric with m/s (weewx, "Units").
 void use_weewx_system(CsvLayout& layout) {
   for (std::size_t i = 0; i < std::min(layout.header.size(), layout.row.size()); ++i) {
     if (joined(words_of(layout.header[i])) != "usunits") continue;

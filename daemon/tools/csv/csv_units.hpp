@@ -37,7 +37,7 @@ inline std::optional<CsvUnit> find_speed_unit(std::string_view text) {
   return find_unit(CsvDimension::kSpeed, text);
 }
 
-/// The unit that is taken where nothing says one: the dimension's own.
+/// Returns the unit that is assumed if none is given: the dimension's own.
 CsvUnit base_unit(CsvDimension dimension);
 
 }  // namespace yuragi::daemon::tools::csv

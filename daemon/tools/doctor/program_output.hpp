@@ -18,7 +18,7 @@ struct ProgramOutput {
 };
 
 /// Runs a program of the system, found in the system's own folders or beside this program, without a shell's
-/// expansion of its arguments, and returns what it says, at most `most_bytes` of it; nothing where there is no such
+/// expansion of its arguments, and returns its output, at most `most_bytes` of it; nullopt if there is no such
 /// program. Waits for `timeout` at most.
 std::optional<ProgramOutput> program_output(std::vector<std::string> command, Nanoseconds timeout,
                                             std::size_t most_bytes = 4'000'000);

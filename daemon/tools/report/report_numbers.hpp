@@ -11,9 +11,9 @@
 #include "engine/base/compass.hpp"
 #include "engine/base/time.hpp"
 
-// All that a report says of a recording, as numbers: plain values, without drawing or text. Times `..._s` are log time
-// (windlog_reader.hpp) since the recording's first reading. Speeds are as recorded, before calibration. All statistics
-// but counts are of the readings that ReadingJudge believes.
+// The content of a report about a recording, as numbers: plain values, without drawing or text. Times `..._s` are log
+// time (windlog_reader.hpp) since the recording's first reading. Speeds are as recorded, before calibration. All
+// statistics but counts are of the readings that ReadingJudge believes.
 
 namespace yuragi::daemon::tools::report {
 

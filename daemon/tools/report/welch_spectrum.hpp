@@ -16,8 +16,8 @@ struct EvenSample {
   std::optional<wind::WindVector> wind;  ///< nothing: its direction is not known
 };
 
-/// Estimates a spectrum (SpectrumNumbers says how) from a series of any length, segment by segment, in bounded memory.
-/// Thread-safe: no.
+/// Estimates a spectrum (SpectrumNumbers describes how) from a series of any length, segment by segment, in bounded
+/// memory. Thread-safe: no.
 class WelchSpectrum {
  public:
   /// `segment`: samples of a segment, a power of two. `is_of_speed`: of the speed, even where samples have a direction.

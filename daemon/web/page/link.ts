@@ -8,7 +8,7 @@ const SILENCE_MS = 2500; // of a WebSocket that speaks ten times a second
 
 export interface Listener {
   news(status: Status): void;
-  /** The daemon answers, but says nothing of its state. */
+  /** The daemon replies, but without its state. */
   refused(refusal: Refused): void;
   /** It does not answer. */
   lost(): void;
@@ -46,7 +46,7 @@ function hear(listener: Listener): Promise<void> {
   });
 }
 
-/** Never ends. Each failure is told at once. */
+/** Never ends. Each failure is reported at once. */
 export async function listen(listener: Listener): Promise<never> {
   for (;;) {
     try {

@@ -28,7 +28,7 @@ export class LogView {
       this.show(lines);
     } catch (error) {
       if (error instanceof Refused) this.say(error.status === 401 ? "Only a paired browser may read the log." : error.message);
-      // Otherwise the link says what is wrong.
+      // Otherwise the link shows what is wrong.
     }
   }
 

@@ -34,7 +34,7 @@ async function detail_of(answer: Response): Promise<string> {
     const problem = (await answer.clone().json()) as { detail?: unknown };
     if (typeof problem.detail === "string") return problem.detail;
   } catch {
-    // It is no JSON: a server in front of the daemon says so.
+    // Not JSON: it is from a server in front of the daemon.
   }
   return `${answer.status} ${answer.statusText}`.trim();
 }
