@@ -31,7 +31,7 @@ struct SceneCue {
 /// (StagedScene::step_time), and decides only whether threads share the next steps.
 ///
 /// Thread-safe: no. What is noexcept, and encode(), are realtime-safe; with [animation] threads above 1 a step
-/// waits for the pool's threads (WorkerPool), where that takes less time (SharingChoice). Poses do not depend on the
+/// waits for the pool's threads (WorkerPool), if that takes less time (SharingChoice). Poses do not depend on the
 /// number of threads.
 class Animation {
  public:
@@ -48,7 +48,7 @@ class Animation {
 
   /// Begins to exchange the scenes, of which the change was made. Not while another change is carried out.
   void begin_change(std::unique_ptr<SceneChange> change) noexcept;
-  /// The change that is over, with what is to be freed; null where there is none.
+  /// The change that is over, with what is to be freed; null if there is none.
   std::unique_ptr<SceneChange> take_finished_change() noexcept;
 
   /// The frame of the present poses, size prefix included; valid until the next call.

@@ -15,7 +15,7 @@ namespace yuragi::daemon::animation {
 /// Thread-safe: no.
 class SceneDirector {
  public:
-  /// Sends a cue to the animation; false where its queue is full.
+  /// Sends a cue to the animation; false if its queue is full.
   using SendCue = std::function<bool(const SceneCue&)>;
 
   SceneDirector(const settings::Config& config, SendCue send_cue);

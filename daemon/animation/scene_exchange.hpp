@@ -31,7 +31,7 @@ class SceneExchange {
   /// carried out, or too many cues wait: try again at the next tick.
   bool begin(std::unique_ptr<SceneChange>& change);
 
-  /// The Scenes message for the clients, where a frame of this generation is the first that needs it; otherwise null.
+  /// The Scenes message for the clients, if a frame of this generation is the first that needs it; otherwise null.
   std::shared_ptr<const wire::Bytes> new_scenes(std::uint64_t generation);
 
   /// The change that is over, once: to be freed, which takes a moment, on any thread. Null otherwise.

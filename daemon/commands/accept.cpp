@@ -109,7 +109,7 @@ class OwnDaemon {
   bool is_running_ = false;
 };
 
-/// Asks the technician to hold the vane, and reads it; nothing where there is no vane, or it is left out.
+/// Asks the technician to hold the vane, and reads it; nullopt if there is no vane, or it is left out.
 std::optional<tools::acceptance::NorthCheck> check_north(OwnDaemon& daemon,
                                                          tools::acceptance::SensorMeasurement& measurement,
                                                          const std::string& sensor) {

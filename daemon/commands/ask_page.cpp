@@ -33,7 +33,7 @@ std::size_t append(char* part, std::size_t size, std::size_t count, void* answer
   }
 }
 
-/// Where a daemon that listens so is reached from this machine.
+/// Returns the address at which a daemon that listens there is reached from this machine.
 Address address_of(const std::string& listen) {
   Address address = parse_address(listen).value();
   if (address.host == "0.0.0.0") address.host = "127.0.0.1";

@@ -61,7 +61,7 @@ class Input {
   std::array<std::uint8_t, 16384> block_{};
 };
 
-/// `text` for JSON: where it is not valid UTF-8, each byte beyond ASCII as \xNN.
+/// `text` for JSON: if it is not valid UTF-8, each byte beyond ASCII as \xNN.
 std::string as_utf8(std::string_view text) {
   if (is_utf8(text)) return std::string(text);
   std::string escaped;

@@ -7,7 +7,7 @@
 
 namespace yuragi::daemon::commands {
 
-// How commands end: 0, or one of sysexits.h, so that a service manager can tell what went wrong; or, where a command
+// How commands end: 0, or one of sysexits.h, so that a service manager can tell what went wrong; or, if a command
 // judges something, one of the first two.
 inline constexpr int kExitAttention = 1;      ///< `status`, `doctor`, `accept`, `verify`: something needs attention
 inline constexpr int kExitNoDaemon = 2;       ///< `status`: no daemon answers

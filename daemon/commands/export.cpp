@@ -68,7 +68,7 @@ struct ExportOptions {
   TakeOptions take;
 };
 
-/// The log time of --from or --to; nothing if it is after the end.
+/// The log time of --from or --to; nullopt if it is after the end.
 std::optional<Nanoseconds> resolve(drivers::windlog::WindlogReader& reader, const std::string& option,
                                    const std::string& text) {
   const auto moment = drivers::windlog::parse_log_moment(text);
@@ -78,7 +78,7 @@ std::optional<Nanoseconds> resolve(drivers::windlog::WindlogReader& reader, cons
   return *log_time;
 }
 
-/// The log time of --since or --until: a moment, or a duration back from the end; nothing if it is after the end.
+/// The log time of --since or --until: a moment, or a duration back from the end; nullopt if it is after the end.
 std::optional<Nanoseconds> resolve_back(drivers::windlog::WindlogReader& reader, const std::string& option,
                                         const std::string& text) {
   if (const auto back_s = parse_duration_s(text)) {

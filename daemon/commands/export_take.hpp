@@ -15,7 +15,7 @@ struct TakeOptions {
   std::string scene = {};  ///< its name; empty: the only one besides the ground
   double fps = 30.0;
   std::optional<double> duration_s = {};
-  std::optional<std::size_t> every = {};  ///< of strands and leaves; nothing: as few are left out as possible
+  std::optional<std::size_t> every = {};  ///< of strands and leaves; nullopt: as few as possible are left out
 
   void add_to(CLI::App& command);
 };

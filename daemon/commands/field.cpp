@@ -137,7 +137,7 @@ std::size_t tile_of(const FieldOptions& options, const wind::field::FieldGrid& g
   return std::min(largest, std::bit_ceil(std::max<std::size_t>(2 * edge, is_space ? 64 : 256)));
 }
 
-/// Writes values as they are computed. Throws where the disk does not take them.
+/// Writes values as they are computed. Throws if the disk does not take them.
 class FieldFile {
  public:
   FieldFile(std::string name, const std::filesystem::path& path, const std::vector<std::size_t>& shape)

@@ -17,7 +17,7 @@ void add_installation_config(CLI::App& command, std::optional<std::filesystem::p
 /// Adds --connect.
 void add_daemon_address(CLI::App& command, std::optional<std::string>& address);
 
-/// The configuration that a command for the technician is about: the given one, else that of the service where this
+/// The configuration that a command for the technician is about: the given one, else that of the service if this
 /// user can read it, else none (the built-in one).
 std::optional<std::filesystem::path> installed_config(const std::optional<std::filesystem::path>& given);
 

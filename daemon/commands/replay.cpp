@@ -36,7 +36,7 @@ struct ReplayOptions {
   bool is_to_stdout = false;
 };
 
-/// Whoever begins to watch sees scenes that have lived in the wind for so long.
+/// The scenes have already moved in the wind for this long when a client first sees them.
 constexpr double kLead_s = 15.0;
 constexpr double kMinRate = 0.01;
 constexpr double kMaxRate = 1000.0;
@@ -114,7 +114,7 @@ tools::offline::LockstepResult replay_in_lockstep(const ReplayOptions& options,
       .value();
 }
 
-/// Whoever reads is waited for; once nobody does, SIGPIPE ends this program.
+/// Waits for its reader; when there is none any more, SIGPIPE ends this program.
 void write_to_stdout(const ReplayOptions& options) {
   if (isatty(STDOUT_FILENO) != 0) {
     throw ExitError(kExitUsage, "--to-stdout writes messages for a program: send them through a pipe or into a file");

@@ -85,7 +85,7 @@ std::vector<std::uint8_t> ids_of(const std::string& text) {
   return ids;
 }
 
-/// Where none are given: those that people choose, and those that devices have from the factory.
+/// The default, if none are given: those that people choose, and those that devices have from the factory.
 std::vector<std::uint8_t> usual_ids(const std::vector<drivers::modbus::NamedModbusProfile>& profiles) {
   std::vector<std::uint8_t> ids = ids_of("1-16");
   for (const drivers::modbus::NamedModbusProfile& named : profiles) {
@@ -100,7 +100,7 @@ std::string settings_of(const drivers::bus::ModbusLine& line) {
   return fmt::format(", {} 8{}{}", line.baud, line.parity, line.stop_bits);
 }
 
-/// HOST:PORT, or nothing if it is not an address.
+/// HOST:PORT, or nullopt if it is not an address.
 std::optional<drivers::bus::ModbusLine> tcp_line_of(const std::string& where) {
   const std::size_t colon = where.rfind(':');
   if (where.starts_with('/') || colon == std::string::npos || colon == 0) return std::nullopt;
@@ -113,7 +113,7 @@ std::optional<drivers::bus::ModbusLine> tcp_line_of(const std::string& where) {
   return line;
 }
 
-/// The persistent name of a serial port, where the system has one.
+/// The persistent name of a serial port, if the system has one.
 std::string stable_name(const std::string& device) {
   std::error_code ignored;
   for (const drivers::bus::SerialPortInfo& port : drivers::bus::find_serial_ports()) {

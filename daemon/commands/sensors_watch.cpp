@@ -1,4 +1,4 @@
-// `yuragi sensors watch`: shows the sensors of the running daemon, or the devices themselves where none runs.
+// `yuragi sensors watch`: shows the sensors of the running daemon, or the devices themselves if none runs.
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -101,7 +101,7 @@ class RawScreen final : public Screen {
         .poses = false, .sensors = true, .client = "sensors watch --raw", .raw = true, .raw_sensor = options_.sensor};
   }
 
-  /// Prints once where they come from, and whether there is such a sensor.
+  /// Prints their origin once, and whether there is such a sensor.
   bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
     if (std::exchange(is_begun_, true)) return true;
     std::string known;

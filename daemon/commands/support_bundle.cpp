@@ -1,4 +1,4 @@
-// `yuragi support-bundle`: packs what whoever helps needs to know, without secrets.
+// `yuragi support-bundle`: packs what a helper needs to know, without secrets.
 #include "daemon/tools/support/support_bundle.hpp"
 
 #include <chrono>

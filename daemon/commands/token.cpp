@@ -74,7 +74,7 @@ void write_token(const std::filesystem::path& file, const std::filesystem::path&
   const std::string line = web::Access::new_token().reveal() + "\n";
   struct stat config {};
   const bool is_written = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
-  // The daemon's group, where it may be given away to it.
+  // The daemon's group, if this process may give the file to it.
   const bool is_given = ::stat(config_file.c_str(), &config) == 0 &&
                         ::fchown(descriptor, static_cast<uid_t>(-1), config.st_gid) == 0 &&
                         ::fchmod(descriptor, S_IRUSR | S_IWUSR | S_IRGRP) == 0;

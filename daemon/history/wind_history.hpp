@@ -35,7 +35,7 @@ struct WindHistory {
   std::vector<SensorHistory> sensors = {};  ///< in the order of their first readings
 };
 
-/// More steps than these are not made, but for the one that has only begun.
+/// More steps than these are not made, except for the one that has only begun.
 inline constexpr std::int64_t kMostSteps = 500;
 /// Further sensors of a recording are left out.
 inline constexpr std::size_t kMostSensors = 16;

@@ -14,10 +14,10 @@ namespace yuragi::daemon::recording {
 
 /// Writes readings to a recording (.windlog) on a thread of its own, so that a slow disk delays nobody.
 ///
-/// Commits once a second: a crash or a power cut loses no more than that. Where the disk is full or gone it keeps
+/// Commits once a second: a crash or a power cut loses no more than that. If the disk is full or gone, it keeps
 /// up to kMaxPending readings, retries at growing intervals, and counts the readings that it had to drop; it then
-/// reopens the file and continues in a new session. Where the file is moved away or another one takes its name, it
-/// completes the one that it wrote and continues in the one of that name. Where the name can no longer be looked up
+/// reopens the file and continues in a new session. If the file is moved away or another one takes its name, it
+/// completes the one that it wrote and continues in the one of that name. If the name can no longer be looked up
 /// (permissions, a loop of links, a network that is gone) it continues to write to the file that is open. An exception
 /// on its thread counts as a failure to write. A disk that hangs delays only its thread, and is shown in the status.
 class Recorder {
@@ -61,7 +61,7 @@ class Recorder {
   }
 
   /// Writes what is pending, closes the file without side files, and waits for that: well under a second on a working
-  /// disk. Where the disk does not answer within RecorderLimits::most_at_end it reports how many readings were not
+  /// disk. If the disk does not respond within RecorderLimits::most_at_end, it reports how many readings were not
   /// written, and leaves its thread and the file to the end of the process. Nothing may be pushed after it; a second
   /// call does nothing.
   void close();

@@ -28,7 +28,7 @@ constexpr std::size_t kQuantitiesCapacity = 1024;
 /// Parts that began in the same second have the names of the seconds that follow.
 constexpr int kMostPartNames = 1000;
 
-/// 0 where it cannot be known.
+/// 0 if it cannot be known.
 std::uint64_t size_of(const std::filesystem::path& file) {
   std::error_code error;
   const auto bytes = std::filesystem::file_size(file, error);
@@ -129,7 +129,7 @@ Result<void, Failure> RecorderWorker::leave_what_is_recorded() {
   auto recorded = writer_->last_time();
   writer_.reset();
   const auto parts = drivers::windlog::completed_parts(file_);
-  if (recorded && !*recorded && !parts.empty()) {  // it ended where it had completed a file and not yet begun the next
+  if (recorded && !*recorded && !parts.empty()) {  // it ended after completing a file and before beginning the next
     auto part = drivers::windlog::WindlogWriter::open(parts.back().file);
     if (!part) return part.error();
     recorded = part->last_time();
@@ -173,7 +173,7 @@ void RecorderWorker::begin_session(RecordingInfo info, const settings::Recording
   push_marks();
 }
 
-/// Where the ring is full they follow with the next reading that is taken: what is dropped meanwhile is in no session.
+/// If the ring is full, they follow with the next reading that is taken: what is dropped meanwhile is in no session.
 void RecorderWorker::push_marks() noexcept {
   while (marks_due_ > 0 && ring_.push({kNextSession, {}})) --marks_due_;
 }
@@ -349,7 +349,7 @@ Result<void, Failure> RecorderWorker::write_pending() {
   return write_quantities();
 }
 
-/// Writes what stations said besides the wind, where no readings took it with them.
+/// Writes what stations reported besides the wind, if no readings took it with them.
 Result<void, Failure> RecorderWorker::write_quantities() {
   if (pending_quantities_.empty()) return {};
   const Instant first = earliest_of(pending_quantities_);
@@ -501,7 +501,7 @@ void RecorderWorker::save_doubt() {
   saved_doubt_ = doubt;
 }
 
-/// Deletes what is not to be kept. Fails where there is less space all the same than is to be left free.
+/// Deletes what is not to be kept. Fails if there is less space all the same than is to be left free.
 Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
   const settings::RecordingConfig rules = with_room_to_grow(rules_);
   auto free_bytes = measure_free_space();
@@ -524,7 +524,7 @@ Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
                  megabytes(rules_.least_free_bytes) + " of [recording] min_free and for its growth; free some space"};
 }
 
-/// Fails where the name has come to belong to another file or to none. SQLite does not report that.
+/// Fails if the name has come to belong to another file or to none. SQLite does not report that.
 Result<void, Failure> RecorderWorker::check_name() const {
   const auto named = drivers::windlog::identity_of(file_);
   if (named && *named != identity_) return Failure{file_.string() + ": was replaced by another file"};

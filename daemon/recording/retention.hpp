@@ -32,7 +32,7 @@ struct KeptPart {
   std::uint64_t bytes = 0;
 };
 
-/// Age deletes at most so many completed files for each one that is completed, whatever the date is.
+/// Age deletes at most so many completed files for each one that is completed, at any date.
 inline constexpr std::size_t kMaxDeletedByAge = 2;
 
 /// A completed file that is to be deleted.

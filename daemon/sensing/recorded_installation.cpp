@@ -36,7 +36,7 @@ class SilentSensor final : public drivers::sensor::Sensor {
   bool has_told_ = false;
 };
 
-/// A failure to read a recording is one of its data, whatever SQLite calls it.
+/// Returns a failure to read a recording as a failure of its data, with any error code of SQLite.
 Failure of_recorded_data(const Failure& failure) {
   return {failure.message, failure.kind == FailureKind::kOther ? FailureKind::kBadData : failure.kind};
 }

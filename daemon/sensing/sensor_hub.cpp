@@ -95,7 +95,7 @@ wind::blend::BlendSettings blend_settings_of(const settings::Config& config) {
                                       .rate_hz = config.animation.rate_hz,
                                       .site = make_site_spectrum(wind)};
   for (const settings::SensorConfig& sensor : config.sensors) settings.sources.push_back(sensor.blend);
-  // After all sensors, whatever their priorities.
+  // After all sensors, independent of their priorities.
   if (wind.fallback) {
     settings.sources.push_back({.priority = std::numeric_limits<int>::max(),
                                 .value = wind.fallback->value.value,
@@ -197,7 +197,7 @@ const wind::WindState& SensorHub::advance() {
   return wind_;
 }
 
-/// Calibrates a raw reading, judges it, and passes it to the estimator where it is believed.
+/// Calibrates a raw reading, judges it, and passes it to the estimator if it is believed.
 void SensorHub::take(std::size_t index, const wind::WindReading& raw) {
   Channel& channel = channels_[index];
   wind::WindReading reading = channel.config.calibration.applied_to(raw);

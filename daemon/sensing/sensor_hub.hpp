@@ -38,7 +38,7 @@ class SensorHub {
   using QuantitiesListener = std::function<void(std::size_t sensor, const wind::StationQuantities&)>;
 
   /// Opens and starts every sensor. `noise`: of the gusts; `reach_m`: as make_estimator() takes it; `thread`: the
-  /// sensors'. Throws ConfigError where a sensor cannot be constructed from its values.
+  /// sensors'. Throws ConfigError if a sensor cannot be constructed from its values.
   SensorHub(const settings::Config& config, const drivers::sensor::Clock& clock,
             std::shared_ptr<const wind::turbulence::GustNoise> noise, Listener listener = {}, double reach_m = 0.0,
             SensorThread thread = SensorThread::kOwn);

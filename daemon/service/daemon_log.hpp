@@ -25,7 +25,7 @@ namespace yuragi::daemon::service {
 class BoundedLogSink final : public spdlog::sinks::ansicolor_sink<spdlog::details::console_mutex> {
  public:
   static constexpr int kPatience_ms = 200;
-  /// What a pipe takes at once where it takes anything (POSIX: PIPE_BUF is 512 at least, 4096 on Linux), less what
+  /// What a pipe takes at once if it takes anything (POSIX: PIPE_BUF is 512 at least, 4096 on Linux), less what
   /// stands before the text.
   static constexpr std::size_t kMaxTextBytes = 3800;
 

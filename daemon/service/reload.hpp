@@ -36,7 +36,7 @@ struct ReloadParts {
   using Adopt = std::function<void()>;
   std::function<Adopt(const settings::Config& next, const std::function<bool()>& is_given_up)> make_scenes;
 
-  /// Applies all but the scenes, on the I/O thread. Cannot fail.
+  /// Applies all except the scenes, on the I/O thread. Cannot fail.
   std::function<void(const settings::ReloadPlan& plan)> apply;
 
   /// The same for values that are set: of [look] alone, if anything is to be applied besides scenes.
@@ -78,7 +78,7 @@ class Reload {
   Reload& operator=(const Reload&) = delete;
 
   /// Reads the configuration again. `expected_file`: the client's, as wire::ReloadCommand::file. `reply` is called
-  /// once, with what came of it; not where the daemon ends before.
+  /// once, with what came of it; not if the daemon ends before.
   void request(const std::string& expected_file = {}, Reply reply = {});
 
   /// Sets values. A mistake changes nothing, and `reply` gets it at once.

@@ -576,7 +576,7 @@ class Service::Io {
 
   void log_summary() const;
 
-  /// The scenes stand still for good: whoever started the daemon starts it again.
+  /// The scenes stand still for good: the service manager starts the daemon again.
   void end_with_failure(const std::string& why) {
     failure_ = "the animation has failed (" + why + ")";
     spdlog::critical("{}: a fault of this program; it ends, so that it is started again", *failure_);
@@ -611,7 +611,7 @@ class Service::Io {
   asio::steady_timer::time_point next_wind_;
   animation::DurationHistogram io_lateness_;  ///< of each step of the wind
   animation::RecentLateness recent_io_lateness_{io_lateness_};
-  std::optional<animation::RecentLateness> recent_tick_lateness_;  ///< nothing: no scenes
+  std::optional<animation::RecentLateness> recent_tick_lateness_;  ///< nullopt: no scenes
   animation::RecentWindow<std::uint64_t> skipped_before_;
   asio::posix::stream_descriptor frame_ready_{io_};
   std::uint64_t frames_made_ = 0;
@@ -644,7 +644,7 @@ class Service::Io {
   std::unique_ptr<web::WebServer> web_;              ///< null: no [http] listen
   std::optional<alerts::Alerts> alerts_;             ///< nullopt: no alerts
   ServiceManager manager_{options_.with_scenes};
-  bool is_up_ = false;  ///< it has begun, with its first frame where it has scenes
+  bool is_up_ = false;  ///< it has begun, with its first frame if it has scenes
 
   settings::ControlPermission control_;
   Reload reload_;  ///< it uses all of the above

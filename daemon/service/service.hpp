@@ -17,9 +17,9 @@ struct ServiceOptions {
   std::optional<double> duration_s;             ///< end after this long
   bool end_with_recordings = false;             ///< end when every sensor is a recording that has ended
   bool with_scenes = true;                      ///< false: sensors, recording and their stream only
-  /// Opening hours by the clock of the recordings that play, from this moment on; nothing: by this machine's clock.
+  /// Opening hours by the clock of the recordings that play, from this moment on; nullopt: by this machine's clock.
   std::optional<UtcTime> recorded_from{};
-  /// Only where every sensor plays a recording: before the first frame wind and scenes go through so many seconds
+  /// Only if every sensor plays a recording: before the first frame wind and scenes go through so many seconds
   /// before the place at which the recordings begin, as fast as they can.
   double lead_s = 0.0;
 

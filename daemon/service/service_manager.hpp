@@ -23,13 +23,13 @@ class ServiceManager {
   /// RELOADING=1, which the next READY=1 ends.
   void say_reloading();
 
-  /// STATUS=: one plain line, of the status that clients get. Sent where it is not the line sent last.
+  /// STATUS=: one plain line, of the status that clients get. Sent if it differs from the last line.
   void say_status(const wire::Sensors& status);
 
   /// STOPPING=1.
   void say_stopping(const std::string& why);
 
-  /// The I/O thread has gone round, and the animation has made so many ticks. Feeds the watchdog where that is due.
+  /// The I/O thread has gone round, and the animation has made so many ticks. Feeds the watchdog if that is due.
   void went_round(MonoTime now, std::uint64_t animation_ticks);
 
  private:

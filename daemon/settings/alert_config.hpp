@@ -18,7 +18,7 @@ inline constexpr std::size_t kMostAlerts = 64;
 
 /// What an [[alert]] is about.
 enum class AlertCondition : std::uint8_t {
-  kSensorSilent,  ///< a sensor's readings are not used, for whatever reason
+  kSensorSilent,  ///< a sensor's readings are not used, for any reason
   kWindAbove,     ///< the wind that the sensors make together, before it is shaped for the scenes
   kDiskBelow,     ///< the free space on the disk of the recording
   kNoFrame,       ///< the animation has made no frame
@@ -41,7 +41,7 @@ struct AlertConfig {
   Secret webhook = {};       ///< http or https; empty: none
 };
 
-/// The keys of an [[alert]], but for its name.
+/// The keys of an [[alert]], except for its name.
 std::span<const Parameter> alert_parameters();
 
 /// From values of alert_parameters(). An error names the key.

@@ -211,7 +211,7 @@ Result<std::string, Failure> edit_sensor(std::string_view toml_text, std::string
     for (const ConfigChange& change : changes) editor.set(change);
     std::string text = editor.text();
 
-    // Verify: the new text must equal the old one but for the changes.
+    // Verify: the new text must equal the old one except for the changes.
     if (!apply(*entry, changes)) return by_hand(sensor, "it has a value in the place of a table", changes);
     if (tables::parse_toml(text) != root) return by_hand(sensor, "its layout is unusual", changes);
     return {boost::system::in_place_value, std::move(text)};

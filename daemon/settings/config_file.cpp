@@ -45,7 +45,7 @@ bool can_be_opened(const SensorConfig& sensor) {
   }
 }
 
-/// Fails where the daemon would refuse the file, or a sensor that it accepted before.
+/// Fails if the daemon would refuse the file, or a sensor that it accepted before.
 Result<void, Failure> prove(const std::filesystem::path& file, const Config& before) {
   try {
     const Config config = load_config(file);

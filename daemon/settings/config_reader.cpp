@@ -136,7 +136,7 @@ class ConfigReader {
 
   std::string place(const toml::source_region& where) const { return mistakes_.place(where); }
 
-  /// At a key of a table, or at the table where the key is not given.
+  /// At a key of a table, or at the table if the key is not given.
   void mistake_in(const toml::table& table, const std::string& prefix, const ParameterError& error) {
     const toml::node* node = table.get(error.name);
     mistake(node != nullptr ? node->source() : table.source(), prefix + error.name, error.message);

@@ -12,7 +12,7 @@ namespace yuragi::daemon::settings {
 enum class ControlPermission : std::uint8_t { kLoopback, kAnywhere, kNobody };
 inline constexpr std::array<std::string_view, 3> kControlPermissionNames = {"loopback", "anywhere", "nobody"};
 
-/// The reason for refusing a client, which begins with `what` ("scenes cannot be switched"); nothing where `allowed`
+/// The reason for refusing a client, which begins with `what` ("scenes cannot be switched"); nullopt if `allowed`
 /// permits it. `is_local`: the client is on this machine.
 inline std::optional<std::string> control_refusal(ControlPermission allowed, bool is_local, const std::string& what) {
   if (allowed == ControlPermission::kNobody) return what + ": the configuration has [stream] control = \"nobody\"";

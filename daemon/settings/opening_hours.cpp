@@ -65,7 +65,7 @@ struct OpeningRule {
 
 std::optional<OpeningRule> parse_rule(std::string_view text) {
   OpeningRule rule;
-  // Days, where the rule begins with a letter: up to the first digit.
+  // Days, if the rule begins with a letter: up to the first digit.
   if (const auto digit = text.find_first_of("0123456789"); digit != 0 && digit != std::string_view::npos) {
     const auto days = parse_range(without_spaces_around(text.substr(0, digit)), parse_weekday);
     if (!days) return std::nullopt;

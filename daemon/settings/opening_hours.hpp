@@ -25,7 +25,7 @@ class OpeningHours {
   OpeningHours() noexcept { open_.set(); }
 
   /// An empty text: open at all hours. `zone`: a name of the IANA database ("Europe/Berlin"); empty: this machine's
-  /// own, or UTC where it has none. The error names "hours" or "zone".
+  /// own, or UTC if it has none. The error names "hours" or "zone".
   static Result<OpeningHours, ParameterError> parse(std::string_view hours, const std::string& zone);
 
   bool is_always_open() const noexcept { return open_.all(); }
@@ -35,8 +35,8 @@ class OpeningHours {
   /// The time zone: "Europe/Berlin"; "UTC" on a machine without one.
   std::string zone_name() const { return clock_.zone_name(); }
 
-  /// The local time of the next change, for a person: "until 18:00", "until Tue 10:00" where that is more than a
-  /// day away; empty where there is none.
+  /// The local time of the next change, for a person: "until 18:00", "until Tue 10:00" if that is more than a
+  /// day away; empty if there is none.
   std::string until_text(UtcTime now) const;
 
  private:

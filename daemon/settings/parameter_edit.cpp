@@ -31,7 +31,7 @@ Result<ParameterValues, ParameterError> with_edit(std::span<const Parameter> tab
   return ParameterValues::resolve(table, given);
 }
 
-/// Why a key is not changed while the daemon runs; nothing: it is, or it is not known.
+/// Why a key is not changed while the daemon runs; nullopt: it is, or it is not known.
 std::optional<ParameterError> refusal(std::string_view table, std::span<const Parameter> parameters,
                                       KeyChange otherwise, const ParameterEdit& edit) {
   const auto parameter = std::ranges::find(parameters, edit.key, &Parameter::name);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLongestShownValue = 60;
 
-/// A value for a person; "left out" where there is none.
+/// A value for a person; "left out" if there is none.
 std::string shown(const ParameterValues::Map& values, std::string_view key) {
   const auto found = values.find(key);
   if (found == values.end()) return "left out";

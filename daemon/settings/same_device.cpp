@@ -16,7 +16,7 @@ namespace {
 using drivers::sensor::Endpoint;
 using drivers::sensor::ValueSelection;
 
-/// Returns what one sensor needs of its device; nothing if that is not known: open_sensor() reports the reason, unless
+/// What one sensor needs of its device; empty if that is not known: open_sensor() reports the reason, unless
 /// the sensor has been running since before its profile was lost.
 struct DeviceUse {
   const SensorConfig* sensor;

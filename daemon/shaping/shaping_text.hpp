@@ -18,7 +18,7 @@ bool is_raised(const wind::shaping::WindShapingReport& report, double share = 0.
 
 /// What is shaping the wind at present, in one line: "site gain 1.80 (in 5 days 3 h
 /// median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; gusts 2.00 times the real ones; closed until 10:00".
-/// Empty where nothing is.
+/// Empty if nothing is.
 std::string shaping_text(const wind::shaping::WindShapingReport& report,
                          const wind::shaping::WindShapingSettings& settings, const OpeningNews& opening);
 

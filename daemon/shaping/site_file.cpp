@@ -48,7 +48,7 @@ nlohmann::json json_of_reach(const wind::blend::GustReach& reach) {
           {kAlongDeviationKey, std::sqrt(reach.along_variance)}};
 }
 
-/// The failure has an empty text where there was none.
+/// The failure has an empty text if there was none.
 Failure write_site_file(const std::filesystem::path& file, const SiteMemory& memory) {
   try {
     nlohmann::json json = {
@@ -62,7 +62,7 @@ Failure write_site_file(const std::filesystem::path& file, const SiteMemory& mem
   }
 }
 
-/// The numbers of a key, none where it is missing; false where it has another type.
+/// The numbers of a key, none if it is missing; false if it has another type.
 bool read_numbers(const nlohmann::json& json, const char* key, std::vector<double>& numbers) {
   if (!json.contains(key)) return true;
   const nlohmann::json& row = json[key];
@@ -157,7 +157,7 @@ Result<std::filesystem::path, Failure> SiteFile::set_aside() const {
 }
 
 void SiteFile::save(SiteMemory memory) {
-  // Where no thread can be created, wait() writes the file.
+  // If no thread can be created, wait() writes the file.
   writing_ = std::async(std::launch::async | std::launch::deferred, write_site_file, file_, std::move(memory));
 }
 

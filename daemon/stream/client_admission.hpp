@@ -28,10 +28,10 @@ inline constexpr std::size_t kPlacesForQuestions = 4;
 inline constexpr auto kQuestionsFor = std::chrono::seconds(60);
 
 /// The number of places that only clients of this machine get, so that a technician on it can always see what is wrong:
-/// the last 4, or half of them where there are fewer than 8.
+/// the last 4, or half of them if there are fewer than 8.
 std::size_t places_kept_for_this_machine(const AdmissionLimits& limits);
 
-/// Why `newcomer` may not connect besides those who are connected; nothing where it may. Those with a place for
+/// Why `newcomer` may not connect besides those who are connected; nullopt if it may. Those with a place for
 /// questions do not count. Pure.
 std::optional<std::string> admission_refusal(const AdmissionLimits& limits, std::span<const Peer> connected,
                                              const Peer& newcomer);

@@ -12,7 +12,7 @@
 
 namespace yuragi::daemon::stream {
 
-/// The log of what clients do, within a LogAllowance: however often they connect and whatever they request, the log
+/// The log of what clients do, within a LogAllowance: even if they connect and request very often, the log
 /// does not fill up. Thread-safe: no.
 class ClientLog {
  public:

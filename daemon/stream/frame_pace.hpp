@@ -6,7 +6,7 @@
 
 namespace yuragi::daemon::stream {
 
-/// Which frames a client gets that wants at most so many a second. The rate holds in the long run also where it does
+/// Which frames a client gets that wants at most so many a second. The rate holds in the long run also if it does
 /// not divide that of the frames; after a pause no more than one frame is made up for. Pure: time is a parameter.
 /// Thread-safe: no.
 class FramePace {

@@ -12,7 +12,7 @@ namespace yuragi::daemon::stream {
 /// Opens the listening socket at HOST:PORT. Throws FailureError (kUnavailable) with what to do.
 boost::asio::ip::tcp::acceptor open_acceptor(boost::asio::io_context& io, std::string_view listen);
 
-/// The address as IPv4 where an IPv4 client is on an IPv6 socket.
+/// The address as IPv4 if an IPv4 client is on an IPv6 socket.
 boost::asio::ip::address unmapped(const boost::asio::ip::address& address);
 
 /// Lets the kernel ask whether the other side is still there: who vanished without a word is noticed within a minute.

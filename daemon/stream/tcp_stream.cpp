@@ -141,7 +141,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// Disconnects the client if it has exceeded a time limit, which is returned.
   std::optional<Overdue> check(MonoTime now) {
-    offer_frame();  // the last one, where no other comes to be offered in its stead
+    offer_frame();  // the last one, if no other one replaces it
     const auto overdue = is_open() ? queue_.overdue(now) : std::nullopt;
     if (!overdue) return overdue;
     const std::string why = reason_text(*overdue, limits_);

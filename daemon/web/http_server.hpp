@@ -55,7 +55,7 @@ struct HttpLimits {
 };
 
 /// A server of HTTP/1.1 (R. Fielding and others, RFC 9110 and 9112, 2022) with connections that stay open. What is not
-/// HTTP, too long or too slow is refused or closed here; the handler gets whole requests alone. Where it throws a
+/// HTTP, too long or too slow is refused or closed here; the handler gets whole requests only. If it throws, a
 /// std::exception the client is answered with 500.
 ///
 /// All work is done on the thread that runs `io`, which must outlive this object. Thread-safe: no.
@@ -63,7 +63,7 @@ class HttpServer {
  public:
   using Handler = std::function<void(const HttpRequest& request, HttpReply reply)>;
 
-  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) where that is not
+  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) if that is not
   /// possible.
   HttpServer(boost::asio::io_context& io, std::string_view listen, const HttpLimits& limits, Handler handler);
   ~HttpServer();

@@ -17,7 +17,7 @@ constexpr std::string_view kBearer = "Bearer ";
 /// Of an IPv6 address with its zone; what is longer is no address.
 constexpr std::size_t kMaxAddressCharacters = 64;
 
-/// The value of a cookie (A. Barth, RFC 6265, 2011, 5.4); empty where it is not there.
+/// The value of a cookie (A. Barth, RFC 6265, 2011, 5.4); empty if it is missing.
 std::string_view cookie_named(std::string_view name, std::string_view cookies) {
   while (!cookies.empty()) {
     const std::size_t end = std::min(cookies.find(';'), cookies.size());

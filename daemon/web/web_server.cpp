@@ -45,7 +45,7 @@ double mono_s() {
   return seconds(steady_clock::now().time_since_epoch());
 }
 
-/// A question that the daemon is carrying out: answered by its reply, or, where that does not come, when it is given
+/// A question that the daemon is carrying out: answered by its reply, or, if that does not come, when it is given
 /// up.
 struct Pending {
   Pending(asio::io_context& io, HttpReply to_client) : given_up(io), reply(std::move(to_client)) {}
@@ -286,7 +286,7 @@ class WebServer::Thread {
     });
   }
 
-  /// What is waited for, with the answer where it does not come in time.
+  /// What is waited for, with the answer if it does not come in time.
   std::shared_ptr<Pending> wait_for_reply(HttpReply reply, HttpResponse otherwise) {
     const auto pending = std::make_shared<Pending>(*io_, std::move(reply));
     pending->given_up.expires_after(settings_.patience);

@@ -37,7 +37,7 @@ struct WebSettings {
   std::function<void(const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply)> ask =
       {};
   /// Reads the wind of the last hours as JSON and calls `reply` once, on any thread. Called on the web server's own;
-  /// must not wait. Fails with kNoInput where there is none, with kUnavailable where it is to be asked again. Empty:
+  /// must not wait. Fails with kNoInput if there is none, with kUnavailable if it is to be asked again. Empty:
   /// nothing is recorded.
   std::function<void(unsigned hours, std::function<void(Result<std::string, Failure>)> reply)> history = {};
   /// The last lines of the log, oldest first. Called on the web server's own thread; must not wait. Empty: there is
@@ -55,14 +55,14 @@ struct WebSettings {
 /// Thread-safe: everything but construction, close() and destruction.
 class WebServer final : public stream::Transport {
  public:
-  /// Listens and begins to answer. Throws FailureError (kUnavailable) where that is not possible.
+  /// Listens and begins to answer. Throws FailureError (kUnavailable) if that is not possible.
   explicit WebServer(WebSettings settings);
   ~WebServer() override;
 
   /// Where it listens: "127.0.0.1:7480".
   std::string local_endpoint() const;
 
-  /// Trusts whoever shows this token from now on.
+  /// Trusts clients with this token from now on.
   void set_token(const Secret& token);
 
   std::string name() const override { return "http " + local_endpoint(); }

@@ -16,7 +16,7 @@ namespace yuragi::daemon::tools::acceptance {
 /// What was measured of one sensor that alone made the wind.
 struct SensorMeasured {
   wire::SensorStatus status{};              ///< at the end
-  double measured_s = 0.0;                  ///< since its first reading, or in all where it had none
+  double measured_s = 0.0;                  ///< since its first reading, or in all if it had none
   std::optional<double> first_reading_s{};  ///< after it was opened
   std::optional<double> least_speed_m_s{};  ///< of the readings that were seen, two a second
   std::optional<double> mean_speed_m_s{};
@@ -94,7 +94,7 @@ struct Acceptance {
 /// Were only simulated devices measured? Then it proves configuration and software, and is no hand-over.
 bool is_rehearsal(const Acceptance& acceptance);
 
-/// The gravest of all verdicts and checks; what was not simulated has none. A remark where nothing was measured.
+/// The gravest of all verdicts and checks; what was not simulated has none. A remark if nothing was measured.
 Outcome outcome_of(const Acceptance& acceptance);
 
 /// A table for a terminal, with remarks below each sensor.

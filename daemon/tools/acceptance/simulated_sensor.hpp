@@ -20,7 +20,7 @@ inline constexpr double kSimulatedDirection_deg = 225.0;
 /// How a configured sensor is simulated.
 struct SimulationPlan {
   std::vector<std::string> arguments;  ///< of yuragi-sim, which listens at a free port of 127.0.0.1, or sends there
-  settings::SensorConfig sensor;       ///< the configured one, but for the way to its device; without its port
+  settings::SensorConfig sensor;       ///< the configured one, except for the way to its device; without its port
   std::string_view port_key;           ///< which of its driver's values that is
   ExpectedWind expected;               ///< of its calibrated readings
 };

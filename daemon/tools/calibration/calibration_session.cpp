@@ -238,7 +238,7 @@ std::vector<double> indicated_speeds_m_s(const SensorReadings& collected,
 
 ReferencePairs pair_with_reference(const CalibrationSession& session, const CollectedReadings& collected,
                                    double least_block_s) {
-  // Only where both heights are known; else the sensors are assumed to be side by side.
+  // Only if both heights are known; else the sensors are assumed to be side by side.
   const wind::judging::Calibration& calibration = session.calibration();
   wind::judging::Calibration reference = session.reference()->calibration;
   const bool has_heights =

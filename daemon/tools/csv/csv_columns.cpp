@@ -246,7 +246,7 @@ class ColumnChoice {
     }
   }
 
-  /// Components are searched for only where there is no speed, and vice versa.
+  /// Components are searched for only if there is no speed, and vice versa.
   void choose_wind() {
     guess(CsvRole::kGust);
     const bool wants_components = is_given(CsvRole::kU) || is_given(CsvRole::kV);

@@ -37,7 +37,7 @@ class CsvInput {
   std::unique_ptr<std::istream> stream_;         ///< over one of them
 };
 
-/// The first lines of an input, comments and empty ones too, as many as a header is looked for in. Fails where one of
+/// The first lines of an input, comments and empty ones too, as many as a header is looked for in. Fails if one of
 /// them is too long.
 Result<std::vector<std::string>, Failure> first_lines(CsvInput& input, const std::string& name);
 

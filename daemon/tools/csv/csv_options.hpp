@@ -20,7 +20,7 @@ enum class CsvDirectionUnit : std::uint8_t {
   kPoint16,  ///< 0 to 15, clockwise from north, 22.5 degrees each; names (NNE) are always understood
 };
 
-/// Rows are taken where this column has this text.
+/// Rows are taken if this column has this text.
 struct CsvCondition {
   std::string column;
   std::string value;

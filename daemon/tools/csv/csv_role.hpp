@@ -13,7 +13,7 @@ namespace yuragi::daemon::tools::csv {
 /// The meanings that a column of a CSV file can have.
 enum class CsvRole : std::uint8_t {
   kTime,
-  kDate,  ///< the day, where the time stands in another column
+  kDate,  ///< the day, if the time stands in another column
   kElapsed,
   kSpeed,
   kDirection,

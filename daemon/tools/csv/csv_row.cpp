@@ -202,7 +202,7 @@ CsvDirectionUnit CsvRowReader::direction_unit() const {
                                                                    : CsvDirectionUnit::kDegrees;
 }
 
-/// Nothing where the field is none, which does not make the speed beside it wrong.
+/// Nullopt if the field is not a direction; the speed beside it is still valid.
 std::optional<double> CsvRowReader::read_direction(std::string_view text) {
   if (is_missing(CsvRole::kDirection, text)) {
     if (!text.empty()) ++missing_[static_cast<std::size_t>(CsvRole::kDirection)];

@@ -25,7 +25,7 @@ struct CsvRow {
 /// Converts the rows of one CSV file to readings. Thread-safe: no.
 class CsvRowReader {
  public:
-  /// Fails where the file names a zone that is none.
+  /// Fails if the file names an unknown zone.
   static Result<CsvRowReader, Failure> make(const CsvLayout& layout, const CsvSurvey& survey,
                                             const CsvImportOptions& options);
 

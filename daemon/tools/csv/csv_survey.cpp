@@ -56,7 +56,7 @@ struct NumberTally {
 
 /// Above this median a wind in m/s is a storm all the time.
 constexpr double kStrangeMedian_m_s = 12.0;
-/// A single value above this, far above all others, is none.
+/// A single value above this, far above all others, is not a value.
 constexpr double kStrangeSpeed_m_s = 60.0;
 
 class Survey {

@@ -39,14 +39,14 @@ struct CsvTime {
   bool operator==(const CsvTime&) const = default;
 };
 
-/// The format of a number of seconds, milliseconds ... by its size; nothing if it is no number.
+/// The format of a number of seconds, milliseconds ... by its size; nullopt if it is not a number.
 std::optional<CsvTimeFormat> guess_count_format(std::string_view text);
 
 /// A decimal number times 10^decimals, exactly: ("1.25", 9) and ("1,25", 9) are 1250000000. Further digits are cut off.
-/// Nothing if the text is not a number, or does not fit into 64 bits.
+/// Nullopt if the text is not a number, or does not fit into 64 bits.
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);
 
-/// Nothing if the text is not a time of this format (not kAuto), or outside the range of a recording. Zones: Z, UTC,
+/// Nullopt if the text is not a time of this format (not kAuto), or outside the range of a recording. Zones: Z, UTC,
 /// GMT, +02:00, +0200, UTC+2. An hour of 24 is the next day's first. Years of two digits are 1970 to 2069.
 std::optional<CsvTime> parse_time(std::string_view text, CsvTimeFormat format);
 

@@ -14,8 +14,8 @@ namespace yuragi::daemon::tools::csv {
 struct LineLogOptions {
   CsvTimeFormat time_format = CsvTimeFormat::kAuto;
   std::optional<CsvZone> zone;          ///< of times that name none; empty: UTC
-  std::optional<UtcTime> start;         ///< of the first reading, where the log has no times
-  std::optional<Nanoseconds> interval;  ///< from one reading to the next, where the log has no times
+  std::optional<UtcTime> start;         ///< of the first reading, if the log has no times
+  std::optional<Nanoseconds> interval;  ///< from one reading to the next, if the log has no times
   std::string sentence;                 ///< take this one ("MWD"); empty: the best that the log has
   std::string sensor = "imported";
   bool strict = false;

@@ -49,7 +49,7 @@ std::string_view title_of(const std::optional<EndpointKind>& kind) {
   return "";
 }
 
-/// Where a device is not there, or cannot be reached: what shows why.
+/// Returns the command that shows why a device is missing or cannot be reached.
 std::string remedy_for_absent(const DeviceFacts& device) {
   switch (device.kind.value_or(EndpointKind::kFile)) {
     case EndpointKind::kSerialPort:

@@ -8,7 +8,7 @@
 
 namespace yuragi::daemon::tools::doctor {
 
-/// The path of a program beside this one, or in the system's own folders, or an absolute path; nothing where there is
+/// The path of a program beside this one, or in the system's own folders, or an absolute path; nullopt if there is
 /// none.
 std::optional<std::string> find_program(const std::string& name);
 

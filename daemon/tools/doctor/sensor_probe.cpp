@@ -19,7 +19,7 @@
 namespace yuragi::daemon::tools::doctor {
 namespace {
 
-/// Empty where the driver has no such key, or it is not given.
+/// Empty if the driver has no such key, or it is not given.
 std::string text_or_empty(const ParameterValues& values, std::string_view name) {
   const auto found = values.all().find(name);
   if (found == values.all().end()) return {};

@@ -81,7 +81,7 @@ std::string move_away(const PathFacts& path, const ServiceUnit& unit) {
   return fmt::format("sudo cp {} {}/, and write that path into the configuration", path.node.path, place);
 }
 
-/// Nothing if the service sees the path.
+/// Nullopt if the service sees the path.
 std::optional<Finding> hidden(const PathFacts& path, const ServiceUnit& unit) {
   constexpr std::array<std::string_view, 3> kHomes = {"/home", "/root", "/run/user"};
   constexpr std::array<std::string_view, 2> kTmps = {"/tmp", "/var/tmp"};
@@ -143,7 +143,7 @@ std::string remedy_for_rights(const PathFacts& path, const ServiceUnit& unit) {
                      path.use == PathUse::kList ? "rx" : "r", node.path);
 }
 
-/// Nothing if the service may write there, as far as its unit and the disk decide.
+/// Nullopt if the service may write there, as far as its unit and the disk decide.
 std::optional<Finding> write_protected(const PathFacts& path, const ServiceUnit& unit) {
   const Node& node = path.node;
   const std::string named = fmt::format("{}: {}: ", path.what, node.path);

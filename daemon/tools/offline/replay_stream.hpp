@@ -25,7 +25,7 @@ class ReplayStream {
   /// `config`: what is replayed.
   ReplayStream(const settings::Config& config, Write write);
 
-  /// Throws ConfigError where the scenes are larger than a client takes.
+  /// Throws ConfigError if the scenes are larger than a client takes.
   void write(const ReplayTick& tick);
 
  private:

@@ -29,7 +29,7 @@ struct SensorSurvey {
   std::uint64_t directed = 0;     ///< with a direction
   std::uint64_t gusts = 0;        ///< with a gust of the sensor's own
   double interval_s = 0.0;        ///< the median of the first 100 000; 0 for fewer than two readings
-  double step_s = 0.0;            ///< the mean interval within runs; 0 where there is no run
+  double step_s = 0.0;            ///< the mean interval within runs; 0 if there is no run
   std::uint64_t longest_run = 0;  ///< samples of `step_s` in the longest run
 };
 

@@ -14,7 +14,7 @@ namespace yuragi::daemon::tools::report {
 inline constexpr std::array<std::string_view, kRecordedStates> kRecordedStateColors = {"#3fa66b", "#9a9a9a", "#e0a100",
                                                                                        "#d9662b", "#3d7edb", "#c2453d"};
 
-/// The figures of one sensor, each an SVG element for a page; empty where there is nothing to draw.
+/// The figures of one sensor, each an SVG element for a page; empty if there is nothing to draw.
 struct SensorFigures {
   std::string series;  ///< speed, gust, direction and state over time
   std::string rose;

@@ -95,7 +95,7 @@ struct SpeedDistribution {
   double class_m_s = 0.5;     ///< width of a class; the first begins at 0
   std::vector<double> share;  ///< up to the last class that is not empty
   /// Weibull's shape k and scale c by the method of moments, k = (sd / mean)^-1.086 (Justus, Hargraves, Mikhail and
-  /// Graber 1978, Methods for estimating wind speed frequency distributions). Nothing where the wind did not vary.
+  /// Graber 1978, Methods for estimating wind speed frequency distributions). Nullopt if the wind did not vary.
   std::optional<double> weibull_shape;
   std::optional<double> weibull_scale_m_s;
   double p10_m_s = 0.0, p50_m_s = 0.0, p90_m_s = 0.0, p99_m_s = 0.0;  ///< to within 0.05 m/s
@@ -121,7 +121,7 @@ struct VonKarmanFit {
   double speed_m_s = 0.0;     ///< U: root mean square of the segments' mean speeds
   double intensity = 0.0;     ///< TI = sigma / U
   double time_scale_s = 0.0;  ///< T = L / U
-  /// L. Nothing where the octaves do not contain the bend of the spectrum, so that L is not determined.
+  /// L. Nullopt if the octaves do not contain the bend of the spectrum, so that L is not determined.
   std::optional<double> length_m;
   double rms_db = 0.0;  ///< residual of the octaves
   double from_hz = 0.0, to_hz = 0.0;
@@ -136,7 +136,7 @@ struct PowerLawFit {
   double from_hz = 0.0, to_hz = 0.0;
 };
 
-/// The spectrum of the wind along its mean direction, or of the speed where a reading has no direction. Welch's method:
+/// The spectrum of the wind along its mean direction, or of the speed if a reading has no direction. Welch's method:
 /// Hann windows overlapping by half, each turned into its own mean wind and detrended (Welch 1967, The use of fast
 /// Fourier transform for the estimation of power spectra). One-sided; its integral is the variance.
 struct SpectrumNumbers {
@@ -197,7 +197,7 @@ struct SensorNumbers {
   std::vector<DirectionPoint> directions;
   WindRose rose;
   SpeedDistribution distribution;
-  std::optional<std::array<HourOfDay, 24>> diurnal;  ///< where there is more than a day
+  std::optional<std::array<HourOfDay, 24>> diurnal;  ///< if there is more than a day
   BlockNumbers blocks;
   std::optional<SpectrumNumbers> spectrum;
   std::string why_no_spectrum;    ///< for a person

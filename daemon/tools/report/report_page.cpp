@@ -39,7 +39,7 @@ void add_warnings(PageWriter& page, const RecordingNumbers& recording) {
   }
 }
 
-/// UTC, and local time where it differs.
+/// UTC, and local time if it differs.
 std::string both_times(UtcTime moment) {
   if (local_offset(moment) == Nanoseconds{0}) return utc_text(moment) + " (local time is the same)";
   return fmt::format("{}<br>{}", utc_text(moment), local_text(moment));

@@ -13,7 +13,7 @@ namespace yuragi::daemon::tools::report {
 /// A sample of an evenly spaced series.
 struct EvenSample {
   double speed_m_s = 0.0;
-  std::optional<wind::WindVector> wind;  ///< nothing: its direction is not known
+  std::optional<wind::WindVector> wind;  ///< nullopt: its direction is not known
 };
 
 /// Estimates a spectrum (SpectrumNumbers describes how) from a series of any length, segment by segment, in bounded
@@ -55,7 +55,7 @@ class IntegralTime {
   void interrupt() { samples_.clear(); }
 
   /// The autocorrelation about the blocks' means, summed by the trapezium rule up to its first zero; nothing without a
-  /// whole block, or where the wind did not vary.
+  /// whole block, or if the wind did not vary.
   std::optional<double> seconds() const;
 
  private:

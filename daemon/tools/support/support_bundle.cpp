@@ -70,7 +70,7 @@ std::string file_text(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The text of the configuration without its secrets. One that is no TOML is left out: where its secrets stand is not
+/// The text of the configuration without its secrets. One that is not TOML is left out: where its secrets stand is not
 /// known.
 std::string configuration_text(const fs::path& file) {
   try {
@@ -169,7 +169,7 @@ Result<void, Failure> pack(const std::map<std::string, std::string>& files, cons
   }
   const int descriptor = open(archive.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerAndGroup);
   if (descriptor < 0) return failure(std::generic_category().message(errno));
-  fchmod(descriptor, kOwnerAndGroup);  // whatever the umask
+  fchmod(descriptor, kOwnerAndGroup);  // independent of the umask
   close(descriptor);
   const auto said = doctor::program_output({"tar", "--create", "--gzip", "--file", fs::absolute(archive), "--directory",
                                             place, "--owner=0", "--group=0", folder},

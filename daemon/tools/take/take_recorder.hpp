@@ -30,13 +30,13 @@ class TakeRecorder {
   /// `skeleton` must outlive this, and have at most kMostJoints with that `every` (every_within()).
   TakeRecorder(const pose::Skeleton& skeleton, std::string name, std::size_t every, double fps);
 
-  /// The next picture. False where the pose does not fit the skeleton.
+  /// The next picture. False if the pose does not fit the skeleton.
   bool add(const pose::Pose& pose);
 
   std::size_t frames() const noexcept { return frames_; }
   std::size_t joints() const noexcept { return mesh_.joints.size(); }
 
-  /// Fails where there is no picture, or the stream does not take it all.
+  /// Fails if there is no picture, or the stream does not take it all.
   Result<void, Failure> write_glb(std::ostream& out) const;
 
  private:
