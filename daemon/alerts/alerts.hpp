@@ -31,7 +31,7 @@ class Alerts {
 
   void change(const std::vector<settings::AlertConfig>& alerts);
 
-  /// To be called about twice a second. Does not wait. See AlertJudge::judge().
+  /// Call it about twice a second. Does not wait. See AlertJudge::judge().
   void judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now);
 
  private:

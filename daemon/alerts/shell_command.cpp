@@ -93,7 +93,7 @@ Result<void, Failure> run_command(const AlertNews& news, Nanoseconds most, const
   }
   print_end.reset();
   const bool ended = has_ended(*process, pipe.get(), most, stop, output);
-  // Before it is waited for: until then no other process group has its number.
+  // Before waiting for it: until then no other process group can have its number.
   process->signal(SIGKILL);
   const platform::ChildEnd end = process->wait();
   while (output.size() < kMaxCommandOutput_bytes && read_some(pipe.get(), output)) {

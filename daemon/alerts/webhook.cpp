@@ -80,7 +80,7 @@ Result<void, Failure> post_to_webhook(const AlertNews& news, const std::string& 
   curl_easy_setopt(request, CURLOPT_CONNECTTIMEOUT, kConnect_s);
   curl_easy_setopt(request, CURLOPT_TIMEOUT, kWhole_s);
   curl_easy_setopt(request, CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(request, CURLOPT_QUICK_EXIT, 1L);  // waits for no look-up of a name that was given up
+  curl_easy_setopt(request, CURLOPT_QUICK_EXIT, 1L);  // does not wait for an abandoned look-up of a name
   curl_easy_setopt(request, CURLOPT_WRITEFUNCTION, &ignore_answer);
   curl_easy_setopt(request, CURLOPT_SOCKOPTFUNCTION, &keep_from_children);
   curl_easy_setopt(request, CURLOPT_NOPROGRESS, 0L);

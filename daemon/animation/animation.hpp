@@ -61,7 +61,7 @@ class Animation {
   double view_wind_from_deg() const noexcept { return view_wind_.from_deg(); }
   /// The number of the list of scenes that the frame is of.
   std::uint64_t generation() const noexcept { return scenes_->generation(); }
-  /// Sees to it that `buffer` has room for any frame of the present scenes.
+  /// Ensures that `buffer` has room for any frame of the present scenes.
   void make_room_in(wire::Bytes& buffer) noexcept { scenes_->make_room_in(buffer); }
 
   /// The size of a frame in which every scene is visible, which is the largest.

@@ -73,7 +73,7 @@ class AnimationLoop {
   /// this meets no scenes of before. False, and `change` stays as it is, if a change is being carried out or the
   /// ring is full.
   bool begin_change(std::unique_ptr<SceneChange>& change);
-  /// Was a change handed over that take_finished_change() has not returned?
+  /// Returns true if a change was handed over that take_finished_change() has not returned yet.
   bool is_changing() const noexcept { return is_changing_; }
   /// For the I/O thread: the change that is over, once the animation has done with it; null while there is none.
   std::unique_ptr<SceneChange> take_finished_change() noexcept;

@@ -24,7 +24,7 @@ class SceneExchange {
   /// What the next change is made from, by any thread. Not while is_changing().
   const std::shared_ptr<const SceneRoster>& present() const noexcept { return present_; }
 
-  /// Is a change being carried out: until what leaves has faded out?
+  /// Returns true while a change is carried out: until the leaving scenes have faded out.
   bool is_changing() const noexcept { return loop_.is_changing(); }
 
   /// Hands over a change that was made from present(). False, and `change` stays as it is, where another one is being

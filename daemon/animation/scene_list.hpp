@@ -75,7 +75,7 @@ class SceneList {
   }
   /// The size of a frame in which every scene is visible, which is the largest.
   std::size_t largest_frame_bytes() const noexcept { return largest_frame_bytes_; }
-  /// Sees to it that `buffer` has room for any frame of this list, by exchanging it for one that was made with the
+  /// Ensures that `buffer` has room for any frame of this list, by exchanging it for one that was made with the
   /// list. There are as many of these as a triple buffer has places.
   void make_room_in(wire::Bytes& buffer) noexcept;
 

@@ -147,7 +147,7 @@ void export_as_csv(drivers::windlog::WindlogReader& reader, const ExportOptions&
              options.resample_s ? fmt::format("{} from {}", count_text(report->rows, "row"), readings) : readings);
 }
 
-/// Says which option is for another kind of output.
+/// Names the option that is for another kind of output.
 void refuse_others(const ExportOptions& options) {
   if (!options.to.empty() || !options.since.empty() || !options.until.empty() || options.resample_s ||
       options.quantities)

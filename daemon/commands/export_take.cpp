@@ -19,7 +19,7 @@
 namespace yuragi::daemon::commands {
 namespace {
 
-/// What 3D programs open without effort.
+/// The number of joints that 3D programs open without effort.
 constexpr std::size_t kUsualJoints = 12'000;
 
 std::string scene_of(const TakeOptions& options, const wire::Scenes& scenes) {

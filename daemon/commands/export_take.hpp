@@ -9,7 +9,7 @@
 
 namespace yuragi::daemon::commands {
 
-/// What of a recording becomes a take: one scene's motion as a file for 3D programs.
+/// The options of a take: one scene's motion as a file for 3D programs.
 struct TakeOptions {
   std::optional<std::filesystem::path> config_file = {};
   std::string scene = {};  ///< its name; empty: the only one besides the ground

@@ -141,7 +141,7 @@ tools::csv::LineLogOptions log_options(const ImportOptions& options, const tools
   return log;
 }
 
-/// As a table or as a log, whichever it looks like.
+/// Imports it as a table or as a log, by its first lines.
 Result<tools::csv::CsvImportReport, Failure> import_any(const ImportOptions& options, std::istream& in,
                                                         const tools::csv::CsvSinks& sinks) {
   const tools::csv::CsvImportOptions csv = csv_options(options);

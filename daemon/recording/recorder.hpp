@@ -42,7 +42,7 @@ class Recorder {
   Recorder& operator=(const Recorder&) = delete;
 
   /// Takes a reading of `info.sensors[sensor]`; false if it is dropped (and counted) because it cannot be recorded (no
-  /// such sensor, values that are not finite) or too many wait. To be called by one thread. Realtime-safe: yes;
+  /// such sensor, values that are not finite) or too many wait. Call it from one thread. Realtime-safe: yes;
   /// wait-free.
   bool push(std::size_t sensor, const wind::WindReading& reading) noexcept { return worker_->push(sensor, reading); }
 
@@ -54,7 +54,7 @@ class Recorder {
   }
 
   /// What is pushed from now on belongs to a new session, with another configuration; the rules take effect at once.
-  /// Nothing is lost by it. `info` has the same sensors in the same order. To be called by the thread that pushes.
+  /// Nothing is lost by it. `info` has the same sensors in the same order. Call it on the thread that pushes.
   /// Thread-safe: as push(). Realtime-safe: no; waits for no disk.
   void begin_session(RecordingInfo info, const settings::RecordingConfig& rules) {
     worker_->begin_session(std::move(info), rules);

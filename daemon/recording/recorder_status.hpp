@@ -9,7 +9,7 @@
 namespace yuragi::daemon::recording {
 
 enum class RecorderState : std::uint8_t {
-  kWriting,   ///< all is well
+  kWriting,   ///< no fault
   kRetrying,  ///< writing failed, and is tried again at growing intervals
   kHanging,   ///< the disk has not answered for RecorderLimits::hang_after
 };

@@ -83,7 +83,7 @@ class RecorderWorker {
   bool wait_until(const std::function<bool(const RecorderStatus&)>& is_so, Nanoseconds at_most) const;
   /// Waits until run() has come to its end; false if it does not within `at_most`.
   bool wait_for_end(Nanoseconds at_most) const;
-  /// Nothing is reported any more, except for `sentence`, which is the last.
+  /// Reports `sentence` as the last one; nothing more is reported.
   void report_at_last(std::string_view sentence);
 
  private:

@@ -86,7 +86,7 @@ void leave_out_what_acts_outside(settings::Config& config, std::vector<std::stri
   config.alerts.clear();
 }
 
-/// Has this sensor a reading from a log time on?
+/// Returns true if this sensor has a reading from a log time on.
 Result<bool, Failure> speaks_after(WindlogReader& reader, const std::string& sensor, Nanoseconds begin) {
   std::vector<bool> is_it;
   for (const auto& candidate : reader.sensors()) is_it.push_back(candidate.name == sensor);

@@ -19,7 +19,7 @@ namespace {
 using wind::judging::Quantity;
 using wind::judging::QuantityWatch;
 
-/// Is it used although others differ?
+/// Returns true if it is used although others differ.
 bool is_disputed(wind::judging::SensorState state, wind::judging::Vote vote) {
   return is_believed(state) && vote == wind::judging::Vote::kDisputed;
 }

@@ -51,7 +51,7 @@ class SensorHub {
   /// known of each sensor stay; a new calibration is neither a spike nor a contradiction to the other sensors.
   void change(const settings::Config& config);
 
-  /// Passes what stations say besides the wind to `listener` from now on; without one it is dropped.
+  /// Passes what stations report besides the wind to `listener` from now on; without one it is dropped.
   void listen_to_quantities(QuantitiesListener listener) { quantities_listener_ = std::move(listener); }
 
   /// The scenes reach as far as this from now on, as make_estimator() takes it. The wind does not jump.
@@ -60,7 +60,7 @@ class SensorHub {
   /// Takes the readings that have arrived, and returns the wind now. Logs each change of a sensor's state once.
   const wind::WindState& advance();
 
-  /// Is any sensor live and believed? The fall-back recording does not count. As of the last advance().
+  /// Returns true if any sensor is live and believed. The fall-back recording does not count. As of the last advance().
   bool is_any_live() const;
 
   /// The wind as of the last advance().

@@ -18,7 +18,7 @@ namespace yuragi::daemon::service {
 
 /// What a Reload needs of the daemon.
 struct ReloadParts {
-  /// Carries out a function on the I/O thread, soon. To be called on any thread.
+  /// Carries out a function on the I/O thread, soon. Call it on any thread.
   std::function<void(std::function<void()>)> post;
 
   /// The absolute path of the configuration, and how it is read: on the reload's thread, which a disk may hold up for
@@ -26,8 +26,8 @@ struct ReloadParts {
   std::string file;
   std::function<settings::Config()> read;
 
-  /// What the next start would meet with the configuration that was read, as texts for people; it is applied all the
-  /// same. On the reload's thread, and so it owns all that it uses. Empty: nothing is tried.
+  /// Returns the problems of the next start with the configuration that was read, as texts for people; it is applied
+  /// all the same. On the reload's thread, and so it owns all that it uses. Empty: nothing is tried.
   std::function<std::vector<std::string>(const settings::Config& running, const settings::Config& next)> rehearse = {};
 
   /// Makes the scenes of a configuration, on the reload's thread. What it returns brings them to the animation, on the
@@ -42,8 +42,7 @@ struct ReloadParts {
   /// The same for values that are set: of [look] alone, if anything is to be applied besides scenes.
   std::function<void(const settings::ReloadPlan& plan)> apply_edits = {};
 
-  /// Is the last reload still being carried out, by scenes that fade? The next begins after that (go_on()). Empty:
-  /// never.
+  /// Returns true while scenes still fade for the last reload. The next begins after that (go_on()). Empty: never.
   std::function<bool()> is_settling = {};
 };
 
@@ -78,7 +77,7 @@ class Reload {
   Reload& operator=(const Reload&) = delete;
 
   /// Reads the configuration again. `expected_file`: the client's, as wire::ReloadCommand::file. `reply` is called
-  /// once, with what came of it; not if the daemon ends before.
+  /// once with the result, unless the daemon ends before.
   void request(const std::string& expected_file = {}, Reply reply = {});
 
   /// Sets values. A mistake changes nothing, and `reply` gets it at once.
@@ -86,18 +85,19 @@ class Reload {
   /// Returns what is wrong with such edits; nullopt if nothing is.
   std::optional<std::string> mistake_in(const std::vector<settings::ParameterEdit>& edits) const;
 
-  /// What runs, with the values that were set, and what the file said when it was read last, as far as it is applied.
+  /// What runs, with the values that were set, and the values of the file when it was read last, as far as they are
+  /// applied.
   const settings::Config& running() const noexcept { return *running_; }
   const settings::Config& configured() const noexcept { return *configured_; }
 
-  /// Begins the reload that waits, if one does. To be called whenever the last one may have been carried out.
+  /// Begins the reload that waits, if one does. Call it whenever the last one may have been carried out.
   void go_on();
 
-  /// Gives up a file that has been read for longer than kMaxRead, as far as the calls show: to be called about every
-  /// second, with the time.
+  /// Gives up a file that has been read for longer than kMaxRead, as far as the calls show: call it about every second,
+  /// with the time.
   void give_up_late(MonoTime now);
 
-  /// Is the file to be read, or being read, or not been dealt with yet?
+  /// Returns true while the file is waiting to be read, being read, or not yet applied.
   bool is_under_way() const noexcept;
 
  private:

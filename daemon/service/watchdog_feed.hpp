@@ -24,7 +24,7 @@ class WatchdogFeed {
     ticks_ = ticks;
   }
 
-  /// Is it to be fed at `now`? If so, all have to go round again.
+  /// Returns true if it is to be fed at `now`; then both have to go round again.
   bool take(MonoTime now) {
     if (!io_has_ || (with_animation_ && !animation_has_)) return false;
     if (has_fed_ && now - fed_ < interval_) return false;

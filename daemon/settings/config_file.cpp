@@ -36,7 +36,8 @@ Result<void, Failure> write_like(const std::filesystem::path& model, const std::
   return {};
 }
 
-/// Can a sensor be constructed from its values? Not necessarily: this may be another machine than the daemon's.
+/// Returns true if a sensor can be constructed from its values. That may fail here: this may be another machine than
+/// the daemon's.
 bool can_be_opened(const SensorConfig& sensor) {
   try {
     return open_sensor(sensor) != nullptr;

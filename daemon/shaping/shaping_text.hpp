@@ -13,7 +13,7 @@ struct OpeningNews {
   std::string until;  ///< OpeningHours::until_text
 };
 
-/// Does the floor raise the mean by more than this share of the result?
+/// Returns true if the floor raises the mean by more than this share of the result.
 bool is_raised(const wind::shaping::WindShapingReport& report, double share = 0.02);
 
 /// What is shaping the wind at present, in one line: "site gain 1.80 (in 5 days 3 h

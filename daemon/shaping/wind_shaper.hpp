@@ -38,7 +38,7 @@ class WindShaper {
   WindShaper(const WindShaper&) = delete;
   WindShaper& operator=(const WindShaper&) = delete;
 
-  /// Reads [shaping] site_file, and writes it from now on, once an hour and at the end. To be called before the first
+  /// Reads [shaping] site_file, and writes it from now on, once an hour and at the end. Call it before the first
   /// shape(). Does nothing if no file is configured, or if a sensor plays a recording, which may be of another
   /// site. `gusts`: the spectrum that is kept in the file too; null: not kept. What `sensors` calls must live as long
   /// as this.

@@ -36,7 +36,7 @@ std::size_t places_kept_for_this_machine(const AdmissionLimits& limits);
 std::optional<std::string> admission_refusal(const AdmissionLimits& limits, std::span<const Peer> connected,
                                              const Peer& newcomer);
 
-/// Is one of the places for questions free for `newcomer`, whom admission_refusal() refuses? Pure.
+/// Returns true if one of the places for questions is free for `newcomer`, whom admission_refusal() refuses. Pure.
 bool may_ask(std::span<const Peer> connected, const Peer& newcomer);
 
 }  // namespace yuragi::daemon::stream

@@ -65,7 +65,7 @@ class ClientQueue {
   /// Behind the message in flight only `last` is sent, and nothing that is offered later.
   void dismiss(SharedBytes last);
   bool is_dismissed() const noexcept { return dismissed_; }
-  /// Has all been written to a dismissed client? Then it should be disconnected.
+  /// Returns true if all has been written to a dismissed client; then it should be disconnected.
   bool is_done() const noexcept { return dismissed_ && setup_.empty() && !in_flight_; }
 
   /// Replaces a waiting message of the same kind; one in flight is finished. Ignored unless subscribed to.

@@ -14,7 +14,7 @@ class FramePace {
   /// `rate_hz`: above 0.
   FramePace(double rate_hz, MonoTime now) : every_(from_seconds(std::min(1.0 / rate_hz, kLongest_s))), due_(now) {}
 
-  /// Is it time for a frame at `now`? Then the next one has to wait.
+  /// Returns true if a frame is due at `now`; then the next one has to wait.
   bool take(MonoTime now) noexcept {
     if (now < due_) return false;
     due_ = std::max(due_ + every_, now);

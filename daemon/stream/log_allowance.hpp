@@ -20,7 +20,7 @@ class LogAllowance {
   LogAllowance(const Settings& settings, MonoTime now)
       : settings_(settings), tokens_(settings.burst), filled_(now), told_(now) {}
 
-  /// May a line be written at `now`? If not, it is counted.
+  /// Returns true if a line may be written at `now`; otherwise counts it.
   bool take(MonoTime now) noexcept {
     tokens_ = std::min(settings_.burst, tokens_ + settings_.per_s * seconds(now - filled_));
     filled_ = now;

@@ -35,17 +35,17 @@ struct TcpStreamSettings {
       on_parameters = {};
   /// Why a client may not have raw messages, if so; then the connection ends with that reason. Empty: everybody may.
   std::function<std::optional<std::string>(bool is_local)> raw_refusal = {};
-  /// Is this the installation's token? A client that shows it in its Subscribe is trusted, wherever `is_local` is asked
-  /// about above; one that shows a wrong token is disconnected. Empty: there is no token.
+  /// Returns true for the token of the installation. A client that sends it in its Subscribe is trusted, for every
+  /// `is_local` above; one that sends a wrong token is disconnected. Empty: there is no token.
   std::function<bool(const std::string& token)> is_token = {};
-  /// Are clients of this machine trusted without a token?
+  /// Clients of this machine are trusted without a token.
   bool trusts_this_machine = true;
   ClientLimits limits = {};
   LogAllowance::Settings log = {};                           ///< how many lines clients may cause in the log
   Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are checked
   std::function<MonoTime()> now = steady_now;                ///< the clock of the limits
 
-  /// Is a client at this numeric address, without the port, on this machine?
+  /// Returns true if a client at this numeric address, without the port, is on this machine.
   std::function<bool(const std::string& address)> is_of_this_machine = is_loopback;
 
   /// Loopback, also of an IPv4 client on an IPv6 socket.
@@ -91,7 +91,7 @@ class TcpStream final : public Transport {
   /// The most of all clients' wire::Display.
   std::uint8_t given_up() const;
 
-  /// Has any client subscribed to the raw messages of this sensor's device?
+  /// Returns true if any client has subscribed to the raw messages of this sensor's device.
   bool wants_trace(std::string_view sensor) const;
   /// Sends one to these clients. A client that reads too slowly misses some; the next one counts them.
   void publish_trace(const wire::RawTrace& trace);

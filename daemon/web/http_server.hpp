@@ -43,7 +43,7 @@ struct HttpResponse {
   std::vector<std::pair<std::string, std::string>> fields = {};  ///< further fields of the header
 };
 
-/// To be called once, on the thread of the server's context, at once or later.
+/// Call it once, on the thread of the server's context, at once or later.
 using HttpReply = std::function<void(HttpResponse)>;
 
 struct HttpLimits {

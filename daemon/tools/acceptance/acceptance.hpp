@@ -91,7 +91,8 @@ struct Acceptance {
   std::vector<NorthCheck> north_checks{};
 };
 
-/// Were only simulated devices measured? Then it proves configuration and software, and is no hand-over.
+/// Returns true if only simulated devices were measured: that proves configuration and software, but is not a
+/// hand-over.
 bool is_rehearsal(const Acceptance& acceptance);
 
 /// The gravest of all verdicts and checks; what was not simulated has none. A remark if nothing was measured.

@@ -11,7 +11,7 @@ class CalibrationDialog {
   /// `takes_yes`: every confirm() is true, and wait_until_prepared() does not wait.
   explicit CalibrationDialog(bool takes_yes);
 
-  /// Is there a person at the terminal?
+  /// Returns true if there is a person at the terminal.
   bool has_person() const noexcept { return has_person_; }
 
   /// Prints a paragraph.

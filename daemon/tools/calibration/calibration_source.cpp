@@ -46,7 +46,7 @@ class LiveStretch {
     collected_[sensor].readings.push_back({seconds(clock_.now().mono - begun_), reading});
   }
 
-  /// Is it over? Fails if a sensor stays silent; `link_of`: the last report of its link.
+  /// Returns true if it is over. Fails if a sensor stays silent; `link_of`: the last report of its link.
   template <class LinkOf>
   Result<bool, Failure> is_over(const LinkOf& link_of) {
     const double now_s = seconds(clock_.now().mono - begun_);

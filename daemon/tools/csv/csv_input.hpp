@@ -24,7 +24,7 @@ class CsvInput {
   std::istream& first_pass();
   /// The whole stream from its beginning.
   std::istream& second_pass();
-  /// Has the first pass all of it?
+  /// Returns true if the first pass has all of it.
   bool is_whole() const { return is_whole_; }
 
  private:

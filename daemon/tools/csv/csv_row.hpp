@@ -29,7 +29,7 @@ class CsvRowReader {
   static Result<CsvRowReader, Failure> make(const CsvLayout& layout, const CsvSurvey& survey,
                                             const CsvImportOptions& options);
 
-  /// The reading in a row, or why it is refused. To be called in the order of time.
+  /// The reading in a row, or why it is refused. Call it in the order of time.
   Result<CsvRow, Failure> read(const CsvFields& fields);
 
   /// How each column was understood, a line each; complete after the last row.

@@ -26,7 +26,7 @@ inline constexpr std::size_t kCsvTimeFormatCount = 10;
 
 std::string_view name_of(CsvTimeFormat format);
 
-/// Does a format say a date and a time of day, and so a moment only together with a zone?
+/// Returns true for a format of date and time of day, which gives a moment only together with a zone.
 constexpr bool is_calendar(CsvTimeFormat format) {
   return format == CsvTimeFormat::kIso || format == CsvTimeFormat::kDayFirst || format == CsvTimeFormat::kMonthFirst ||
          format == CsvTimeFormat::kCompact;
@@ -50,7 +50,7 @@ std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);
 /// GMT, +02:00, +0200, UTC+2. An hour of 24 is the next day's first. Years of two digits are 1970 to 2069.
 std::optional<CsvTime> parse_time(std::string_view text, CsvTimeFormat format);
 
-/// Does the text say a day, be it as a calendar's or as seconds since 1970? A time of day alone does not.
+/// Returns true if the text has a day, as a date or as seconds since 1970; a time of day alone has none.
 bool has_date(std::string_view text);
 
 }  // namespace yuragi::daemon::tools::csv

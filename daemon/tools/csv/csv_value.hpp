@@ -27,7 +27,7 @@ bool is_missing_word(std::string_view text);
 /// mark (-99 in tenths of a degree Celsius, 999 in cm/s).
 bool is_missing_number(CsvRole role, double value, double base);
 
-/// Could the number stand for no value, if it is far above all others and comes repeatedly: 99, 99.9, 327.67?
+/// Returns true if the number can stand for no value when it is far above all others and repeated: 99, 99.9, 327.67.
 bool is_possible_mark(CsvRole role, double value);
 
 }  // namespace yuragi::daemon::tools::csv

@@ -21,7 +21,7 @@ struct LineLogOptions {
   bool strict = false;
 };
 
-/// Do the first lines of a file look like a log of messages (NMEA 0183, Gill, FT, UMB, keys), and not like a table?
+/// Returns true if the first lines of a file look like a log of messages (NMEA 0183, Gill, FT, UMB, keys), not a table.
 bool looks_like_line_log(const std::vector<std::string>& lines);
 
 /// Reads a log of an anemometer's messages, one a line: each reading has the time that the logger wrote before it, or

@@ -27,7 +27,7 @@ bool is_in_any(const std::string& path, const auto& folders) {
   return std::ranges::any_of(folders, [&](std::string_view folder) { return is_in(path, folder); });
 }
 
-/// May the unit's user do that with a node, by its mode?
+/// Returns true if the unit's user may do that with a node, by its mode.
 bool may(const ServiceUnit& unit, const Node& node, std::uint32_t rights) {
   if (unit.user_id == 0U || node.has_acl) return true;
   // systemd gives it to the user when the service starts.

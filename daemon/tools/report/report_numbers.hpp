@@ -180,7 +180,7 @@ struct SensorNumbers {
   double first_s = 0.0, last_s = 0.0;
   UtcTime first{}, last{};
   double interval_s = 0.0;       ///< the median; 0 for fewer than two readings
-  double unchanged_for_s = 0.0;  ///< it spoke on change only: a silence of up to so long is none; 0: it did not
+  double unchanged_for_s = 0.0;  ///< it spoke on change only: a silence of up to this is not a gap; 0: it did not
   double mean_m_s = 0.0, deviation_m_s = 0.0, min_m_s = 0.0, max_m_s = 0.0;
   double max_at_s = 0.0;
   std::optional<double> reported_gust_m_s;  ///< the strongest gust reported by the sensor itself

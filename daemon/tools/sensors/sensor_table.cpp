@@ -13,7 +13,7 @@
 namespace yuragi::daemon::tools::sensors {
 namespace {
 
-/// Are recordings the only live sensors?
+/// Returns true if recordings are the only live sensors.
 bool is_replayed(const std::vector<wire::SensorStatus>& sensors) {
   const auto speaks = [](const wire::SensorStatus& sensor) { return is_believed(sensor.state); };
   return std::ranges::any_of(sensors, speaks) &&
