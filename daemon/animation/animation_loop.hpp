@@ -80,7 +80,7 @@ class AnimationLoop {
 
   const LoopCounters& counters() const noexcept { return counters_; }
 
-  /// Why the loop has ended by itself: an exception, which is an error of this program. Nothing while it runs. The
+  /// Why the loop has ended by itself: an exception, which is an error of this program. Nullopt while it runs. The
   /// frames until then have been published, and frame_ready_fd() wakes the I/O thread to look.
   std::optional<std::string> failure() const;
 

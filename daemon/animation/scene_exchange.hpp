@@ -27,7 +27,7 @@ class SceneExchange {
   /// Returns true while a change is carried out: until the leaving scenes have faded out.
   bool is_changing() const noexcept { return loop_.is_changing(); }
 
-  /// Hands over a change that was made from present(). False, and `change` stays as it is, where another one is being
+  /// Hands over a change that was made from present(). False, and `change` stays as it is, if another one is being
   /// carried out, or too many cues wait: try again at the next tick.
   bool begin(std::unique_ptr<SceneChange>& change);
 

@@ -13,7 +13,7 @@
 
 namespace yuragi::daemon::history {
 
-/// What a sensor said in one step of time, before calibration.
+/// What a sensor reported in one step of time, before calibration.
 struct HistoryStep {
   std::uint64_t readings = 0;  ///< 0: a gap, in which nothing else is known
   double sum_m_s = 0.0, min_m_s = 0.0, max_m_s = 0.0;

@@ -35,7 +35,7 @@ class FallbackRecording {
   /// Starts or stops playing, and passes readings that are due to `use`.
   void advance(bool is_any_sensor_live, const Use& use);
 
-  /// Its status for the stream; nothing while it does not play. `report`: of its source.
+  /// Its status for the stream; nullopt while it does not play. `report`: of its source.
   std::optional<wire::SensorStatus> status(const wind::SourceReport& report) const;
 
  private:

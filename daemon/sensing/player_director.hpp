@@ -36,7 +36,7 @@ class PlayerDirector {
   wire::ControlReply handle(const wire::PlayerCommand& command, bool is_local);
 
   /// What the clock of the recording machine showed at the place that is played now: by the newest reading, and the
-  /// time for which it has held. Nothing until a recording plays.
+  /// time for which it has held. Nullopt until a recording plays.
   std::optional<UtcTime> recorded_clock() const;
 
  private:

@@ -42,7 +42,7 @@ struct ServiceOptions {
 ///   sensors -> SensorHub -> WindShaper -> Latest<DrivingWind> -> AnimationLoop -> Latest<frame> -> TcpStream
 ///                 `-> Recorder
 ///
-/// Everything but the sensors' threads, the animation's and the recorder's runs on the one I/O thread, which is the
+/// Everything except the threads of sensors, animation and recorder runs on the one I/O thread, which is the
 /// caller of run().
 class Service {
  public:
@@ -53,7 +53,7 @@ class Service {
   ~Service();
 
   /// Runs until SIGINT, SIGTERM, a terminal that is closed, or until the options end it; SIGHUP reads the configuration
-  /// again (Reload). Returns in under a second after that. Throws std::runtime_error, with the recording closed, where
+  /// again (Reload). Returns in under a second after that. Throws std::runtime_error, with the recording closed, if
   /// the animation has failed by an error of this program.
   void run();
 

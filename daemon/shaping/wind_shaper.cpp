@@ -149,7 +149,7 @@ void WindShaper::log_changes() {
   }
 }
 
-/// A storm is logged once, however many gusts it has.
+/// A storm is logged once, with any number of gusts.
 void WindShaper::log_ceiling(const wind::shaping::WindShapingReport& report, MonoTime now) {
   if (report.ceiling_gain < 1.0 - kCeilingBegins) {
     held_back_ = now;

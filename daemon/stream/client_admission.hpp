@@ -22,8 +22,8 @@ struct Peer {
   std::optional<std::string> only_asks_because = std::nullopt;
 };
 
-/// Places besides `max_clients`, so that `yuragi status` on this machine has an answer however many clients there are.
-/// Who has one gets neither poses nor raw messages, and is let go after kQuestionsFor.
+/// Places besides `max_clients`, so that `yuragi status` on this machine gets a reply with any number of clients.
+/// A client in one gets neither poses nor raw messages, and is disconnected after kQuestionsFor.
 inline constexpr std::size_t kPlacesForQuestions = 4;
 inline constexpr auto kQuestionsFor = std::chrono::seconds(60);
 

@@ -72,11 +72,11 @@ class ClientQueue {
   void offer_frame(SharedBytes frame);
   void offer_sensors(SharedBytes sensors);
 
-  /// A reply to the client's request: sent before frames and sensors, and never replaced. False where too many wait:
+  /// A reply to the client's request: sent before frames and sensors, and never replaced. False if too many wait:
   /// the client sends requests faster than it reads.
   bool offer_reply(SharedBytes reply);
 
-  /// A raw trace: sent in order, never replaced. False where too many wait: it is dropped.
+  /// A raw trace: sent in order, never replaced. False if too many wait: it is dropped.
   bool offer_trace(SharedBytes trace);
 
   /// The rest of the message in flight, or else the next message, which is in flight from `now`. Empty: nothing to

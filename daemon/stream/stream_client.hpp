@@ -20,7 +20,7 @@ enum class StreamEnd : std::uint8_t {
 };
 std::string_view name_of(StreamEnd end);
 
-/// The failure where `message` is a Hello by which the daemon at `address` refuses the connection or shows that it
+/// Returns the failure if `message` is a Hello by which the daemon at `address` refuses the connection or shows that it
 /// speaks another protocol version; nullopt for any other message.
 std::optional<Failure> refusal_in(const wire::Message& message, std::string_view address);
 

@@ -176,7 +176,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     return limits;
   }
 
-  /// Tells the client why, and disconnects it once that has been sent.
+  /// Sends the reason to the client, and disconnects it once that has been sent.
   void dismiss(std::string why) {
     queue_.dismiss(share(feed_->goodbye(why)));
     dismissed_because_ = std::move(why);

@@ -63,18 +63,18 @@ struct ClientCounts {
 /// The stream of engine/wire/pose.fbs over TCP: size-prefixed messages to any number of clients.
 ///
 /// Each client gets a Hello, subscribes once, and is then sent the newest messages of that kind (ClientQueue), thinned
-/// out as it asked for (PoseViews, FramePace). Where
-/// the scenes change, a client that takes new ones gets them before the first frame of them; another one is let go.
-/// After that it may send Controls, each of which gets a reply, and Displays. A client that sends anything else, does
-/// not subscribe, asks for nothing, or stops reading is disconnected, and that is logged (ClientLog); if it can
-/// still read, a second Hello gives it the reason. Who gets a place is decided by admission_refusal(). The kernel asks
-/// every 10 s whether a silent client is still there, so that one that vanished without a word is forgotten within a
-/// minute. Send buffers are kept small, so that a slow client gets new frames.
+/// out as it asked for (PoseViews, FramePace). When the scenes change, a client that takes new ones gets them before
+/// their first frame; another one is disconnected. After that it may send Controls, each of which gets a reply, and
+/// Displays. A client that sends anything else, does not subscribe, asks for nothing, or stops reading is disconnected,
+/// and that is logged (ClientLog); if it can still read, a second Hello gives it the reason. Who gets a place is
+/// decided by admission_refusal(). The kernel asks every 10 s whether a silent client is still there, so that one that
+/// vanished without a word is forgotten within a minute. Send buffers are kept small, so that a slow client gets new
+/// frames.
 ///
 /// All work is done in callbacks on the thread that runs `io`, which must outlive this object. Thread-safe: no.
 class TcpStream final : public Transport {
  public:
-  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) where
+  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) if
   /// that is not possible.
   TcpStream(boost::asio::io_context& io, std::string_view listen, TcpStreamSettings settings);
   ~TcpStream() override;

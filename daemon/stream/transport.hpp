@@ -28,7 +28,7 @@ class Transport {
   virtual void publish(SharedBytes frame) = 0;
 
   /// The scenes have changed (an encoded wire::Scenes): all frames published from now on are of these. A client that
-  /// has not said that it takes new scenes is let go with that reason.
+  /// has not announced that it takes new scenes is disconnected with that reason.
   virtual void publish_scenes(SharedBytes scenes) = 0;
 
   /// The newest state of the sensors (an encoded wire::Sensors): one message for clients of this machine, and one for
