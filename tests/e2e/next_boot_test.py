@@ -112,7 +112,7 @@ monitor = "{v["monitor"]}"
         faults = [  # what is prepared, what is configured, the beginning of the finding, a part of it and of the remedy
             ("token missing", None, {"token": self.path("none")}, "[http] token_file", "is missing", "yuragi token"),
             ("token of others", ("token", 0o600, 0o640), {}, "[http] token_file", "may not read it", "sudo chgrp nogroup"),
-            ("token at home", None, {"token": "/home/nobody-there/token"}, "[http] token_file", "sees /home", "sudo cp"),
+            ("token at home", None, {"token": "/home/nobody-there/token"}, "[http] token_file", "cannot see /home", "sudo cp"),
             ("stream port taken", None, {"stream": taken}, "[stream] listen", "cannot listen here", "ss -lntup"),
             ("page port taken", None, {"page": taken}, "[http] listen", "cannot listen here", "ss -lntup"),
             ("recording's folder missing", None, {"recording": self.path("none/a.windlog")}, "[recording] file", "is missing",

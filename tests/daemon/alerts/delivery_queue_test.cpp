@@ -127,7 +127,7 @@ TEST(DeliveryQueue, HoldsOnlySoMany) {
   may_go_on.set_value();
   const auto lines = log.wait_for(7);
   EXPECT_EQ(lines[3], "first");
-  EXPECT_THAT(lines[5], HasSubstr("3 messages not told"));
+  EXPECT_THAT(lines[5], HasSubstr("3 messages not sent"));
   EXPECT_EQ(lines[6], "3");
 }
 

@@ -275,8 +275,8 @@ TEST(CsvImport, AMissingDirectionLeavesTheSpeedIn) {
   EXPECT_TRUE(std::all_of(directions.begin(), directions.end() - 1, [](const auto& each) { return !each; }));
   EXPECT_EQ(directions.back(), 45.0);
   EXPECT_THAT(imported.report.notes,
-              testing::IsSupersetOf({HasSubstr("direction: 7 values left empty"), HasSubstr("\"400\" is none"),
-                                     HasSubstr("\"up\" is none")}));
+              testing::IsSupersetOf({HasSubstr("direction: 7 values left empty"),
+                                     HasSubstr("\"400\" is not a direction"), HasSubstr("\"up\" is not a direction")}));
 }
 
 TEST(CsvImport, AMarkForNoValueIsNoStorm) {

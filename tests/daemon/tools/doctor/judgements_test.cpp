@@ -45,11 +45,11 @@ TEST(JudgeDevice, SaysOfEachKindHowToFindOneThatIsNotThere) {
     return judge(DeviceFacts{.sensor = "roof", .kind = kind, .name = name});
   };
   EXPECT_THAT(absent(EndpointKind::kSerialPort, "/dev/ttyUSB0"),
-              is(Verdict::kError, "/dev/ttyUSB0: is not there", "yuragi sensors list"));
-  EXPECT_THAT(absent(EndpointKind::kUsb, "hid (station wmr300)"), is(Verdict::kError, "is not there", "lsusb"));
-  EXPECT_THAT(absent(EndpointKind::kSoundCard, "microphone"), is(Verdict::kError, "is not there", "arecord -l"));
+              is(Verdict::kError, "/dev/ttyUSB0: was not found", "yuragi sensors list"));
+  EXPECT_THAT(absent(EndpointKind::kUsb, "hid (station wmr300)"), is(Verdict::kError, "was not found", "lsusb"));
+  EXPECT_THAT(absent(EndpointKind::kSoundCard, "microphone"), is(Verdict::kError, "was not found", "arecord -l"));
   EXPECT_THAT(absent(EndpointKind::kServer, "[fd00::5]:502"),
-              is(Verdict::kError, "is not there", "ping -c 3 fd00::5;"));
+              is(Verdict::kError, "was not found", "ping -c 3 fd00::5;"));
   EXPECT_THAT(absent(EndpointKind::kBroker, "broker.lan:1883"),
               is(Verdict::kError, "MQTT broker", "ping -c 3 broker.lan;"));
   EXPECT_THAT(absent(EndpointKind::kUdpPort, ":9000"),
@@ -100,7 +100,7 @@ TEST(JudgeDisk, NeedsTheFolderTheRightAndTheRoom) {
   EXPECT_THAT(judge(roomy()), is(Verdict::kOk, "20.0 GB free, about 4.0 MB a day", ""));
   DiskFacts disk = roomy();
   disk.is_there = false;
-  EXPECT_THAT(judge(disk), is(Verdict::kError, "no such folder", "sudo install -d -o yuragi"));
+  EXPECT_THAT(judge(disk), is(Verdict::kError, "does not exist", "sudo install -d -o yuragi"));
   disk = roomy();
   disk.is_writable = false;
   EXPECT_THAT(judge(disk), is(Verdict::kError, "may not write", "sudo chown yuragi /var/lib/yuragi"));
