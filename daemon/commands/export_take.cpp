@@ -93,9 +93,7 @@ void TakeOptions::add_to(CLI::App& command) {
   command.add_option("--config,-c", config_file, "the configuration with the scene; default: one meadow")
       ->type_name("FILE")
       ->group(kGroup);
-  command.add_option("--scene", scene, "the scene; not needed where there is only one")
-      ->type_name("NAME")
-      ->group(kGroup);
+  command.add_option("--scene", scene, "the scene; not needed if there is only one")->type_name("NAME")->group(kGroup);
   command.add_option("--fps", fps, "pictures a second (default 30)")->check(CLI::Range(1.0, 240.0))->group(kGroup);
   command.add_option("--duration", duration_s, "how long: 20 (seconds), 5min; default: to the end")
       ->type_name("TIME")

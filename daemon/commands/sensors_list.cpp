@@ -118,7 +118,7 @@ void add_sensors_list(CLI::App& sensors) {
       "  sends    multicast DNS, 224.0.0.251 port 5353: who is _signalk-ws._tcp, _signalk-tcp._tcp (signalk), "
       "_weatherlinklive._tcp\n           (weatherlink)?\n"
       "Without it nothing is sent.\n"
-      "--json: a list with driver, device, settings (TOML to paste), trouble and remedy (null where it can be "
+      "--json: a list with driver, device, settings (TOML to paste), trouble and remedy (null if it can be "
       "opened).");
   auto options = std::make_shared<ListOptions>();
   CLI::Option* const broker = command->add_option("--broker", options->broker,
@@ -140,9 +140,7 @@ void add_sensors_list(CLI::App& sensors) {
           ->default_str("12")
           ->check(CLI::Range(0.1, 3600.0))
           ->excludes(broker);
-  command->add_option("--ask", options->ask, "ask this IPv4 address, and nobody else")
-      ->needs(network)
-      ->check(CLI::ValidIPV4);
+  command->add_option("--ask", options->ask, "ask only this IPv4 address")->needs(network)->check(CLI::ValidIPV4);
   add_json(*command, options->as_json);
   command->callback([options] {
     if (options->network_s) return list_network(*options);

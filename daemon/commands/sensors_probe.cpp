@@ -295,7 +295,7 @@ void add_sensors_probe(CLI::App& sensors) {
       "profiles between which it cannot decide); of each fit profile, device, speed_m_s, direction_deg, gust_m_s, "
       "beaufort, "
       "agrees_with_beaufort\n"
-      "(null where it has none), is_live (not all of it is 0), has_factory_settings.");
+      "(null if it has none), is_live (not all of it is 0), has_factory_settings.");
   auto options = std::make_shared<ProbeOptions>();
   command->add_option("where", options->where, "serial port, or HOST:PORT of a device or gateway")
       ->required()

@@ -30,7 +30,7 @@ constexpr const char* kSpectrumFooter =
     "  von-karman     scaled by sigma^2; x = f L_u / U for u, half of it for v and w\n"
     "  iec-kaimal     scaled by sigma^2; L_u = 8.1 Lambda, those of v and w a third and a twelfth of it\n"
     "\n"
-    "--sigma is the standard deviation of the component that is asked for. Without --sigma and --ustar, u* follows "
+    "--sigma is the standard deviation of the requested component. Without --sigma and --ustar, u* follows "
     "from\n"
     "the logarithmic profile over open country (roughness 0.03 m), and sigma from IEC 61400-1's normal turbulence, "
     "class\n"

@@ -47,7 +47,7 @@ void make_bundle(const BundleOptions& options) {
 
 void add_support_bundle(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("support-bundle", "pack what whoever helps needs to know of an installation, without secrets");
+      app.add_subcommand("support-bundle", "pack what a helper needs to know of an installation, without secrets");
   command->footer(
       "Packs the configuration, the output of `yuragi doctor` and `yuragi status`, the last 5000 lines of the log of "
       "each\n"

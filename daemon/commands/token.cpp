@@ -32,7 +32,7 @@ constexpr const char* kTokenFooter =
     "year by the code, which is another one every ten minutes; scripts send the token itself: Authorization: Bearer "
     "TOKEN.\n"
     "  yuragi token --config wall.toml            the code of now\n"
-    "  yuragi token --config wall.toml --new      makes the file of the token; where there was one, it is replaced, "
+    "  yuragi token --config wall.toml --new      makes the file of the token; an existing one is replaced, "
     "and\n"
     "                                             all who knew it are out once the daemon has been started again\n"
     "  yuragi token --config wall.toml --sessions        lists the browsers that were paired and are still let in\n"

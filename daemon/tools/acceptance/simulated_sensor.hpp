@@ -26,7 +26,7 @@ struct SimulationPlan {
 };
 
 /// Plans the simulation of a sensor, as its driver describes it (DriverDescription::simulated). Fails, in words for the
-/// technician, where yuragi-sim cannot play it without special rights. Pure.
+/// technician, if yuragi-sim cannot play it without special rights. Pure.
 Result<SimulationPlan, Failure> plan_simulation(const settings::SensorConfig& sensor);
 
 /// The plan's sensor with its device at this port.

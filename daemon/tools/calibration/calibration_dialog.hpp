@@ -4,8 +4,8 @@
 
 namespace yuragi::daemon::tools::calibration {
 
-/// Leads a person through a calibration: steps and results on standard output, live values on standard error. Where
-/// there is no person (no terminal, or --yes) it never waits.
+/// Leads a person through a calibration: steps and results on standard output, live values on standard error. If
+/// there is no person (no terminal, or --yes), it never waits.
 class CalibrationDialog {
  public:
   /// `takes_yes`: every confirm() is true, and wait_until_prepared() does not wait.

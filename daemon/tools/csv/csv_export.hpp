@@ -26,7 +26,7 @@ struct CsvExportReport {
 /// digits as give the same number when read, always with a decimal point; empty if there is no value. `yuragi
 /// import` reads the same readings from it.
 ///
-/// `out` is not closed. `progress` is called now and then with the number of rows. Fails as the reader does, or where
+/// `out` is not closed. `progress` is called now and then with the number of rows. Fails as the reader does, or if
 /// `out` cannot be written to. Thread-safe: yes, with separate readers.
 Result<CsvExportReport, Failure> export_csv(drivers::windlog::WindlogReader& reader, const CsvExportRange& range,
                                             std::FILE* out, const std::function<void(std::size_t)>& progress = {});

@@ -20,7 +20,7 @@ struct CsvImportReport {
   std::vector<std::string> notes;    ///< what was settled, guessed or left out besides, a line each
   std::size_t rows = 0;              ///< below the header, without those that a condition leaves out
   std::size_t taken = 0;
-  std::size_t quantities = 0;               ///< rows that said something besides the wind
+  std::size_t quantities = 0;               ///< rows with something besides the wind
   std::vector<std::string> first_refusals;  ///< "FILE:LINE: what is wrong", at most kMaxRefusalsListed
 
   std::size_t refused() const { return rows - taken; }

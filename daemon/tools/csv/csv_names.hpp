@@ -9,7 +9,7 @@ namespace yuragi::daemon::tools::csv {
 
 /// Which statistic of an interval a column is, by its name.
 enum class CsvStatistic : std::uint8_t {
-  kMean,   ///< or nothing is said
+  kMean,   ///< or not stated
   kMax,    ///< the greatest
   kOther,  ///< the least, a standard deviation: not used
 };

@@ -28,8 +28,8 @@ struct CsvUnit {
   double offset = 0.0;
 };
 
-/// Returns the unit that a text names, in any case and punctuation ("km/h", "[m s-1]", "degC", "0.1 m/s"); nothing
-/// where it is no unit of this dimension. Thread-safe: yes.
+/// Returns the unit that a text names, in any case and punctuation ("km/h", "[m s-1]", "degC", "0.1 m/s"); nullopt
+/// if it is not a unit of this dimension. Thread-safe: yes.
 std::optional<CsvUnit> find_unit(CsvDimension dimension, std::string_view text);
 
 /// The unit of speed that a text is.

@@ -22,9 +22,9 @@ std::optional<CsvNumber> parse_number(std::string_view text, CsvDimension dimens
 /// Usual words for a missing value: nothing, "NaN", "NA", "null", "-", "---", "M", "MM", "VRB", "unavailable" ...
 bool is_missing_word(std::string_view text);
 
-/// Does the number stand for no value by convention: -99, -999, -9999 (and with decimals of 9), 999 and more nines,
-/// Campbell's 7999 and 6999, 990 for a direction? `base`: the same in the base unit of the column; what can be is no
-/// mark (-99 in tenths of a degree Celsius, 999 in cm/s).
+/// Returns true if the number stands for no value by convention: -99, -999, -9999 (and with decimals of 9), 999 and
+/// more nines, Campbell's 7999 and 6999, 990 for a direction. `base`: the same in the base unit of the column; what can
+/// be is no mark (-99 in tenths of a degree Celsius, 999 in cm/s).
 bool is_missing_number(CsvRole role, double value, double base);
 
 /// Returns true if the number can stand for no value when it is far above all others and repeated: 99, 99.9, 327.67.

@@ -19,7 +19,7 @@ struct LineLogMessage {
   std::optional<wind::StationQuantities> quantities;  ///< without its time
 };
 
-/// Finds and decodes the message in a line: NMEA 0183, FT, UMB, Gill, or keys ("speed=4.2 direction=270"). Nothing
+/// Finds and decodes the message in a line: NMEA 0183, FT, UMB, Gill, or keys ("speed=4.2 direction=270"). Nullopt
 /// if there is none. The views point into the line.
 std::optional<LineLogMessage> find_message(std::string_view line);
 

@@ -8,13 +8,13 @@
 
 namespace yuragi::daemon::tools::csv {
 
-/// The clock that a log of NMEA 0183 has in itself: RMC and ZDA say date and time, GLL and GGA the time of the day of
+/// The clock that a log of NMEA 0183 has in itself: RMC and ZDA have date and time, GLL and GGA the time of the day of
 /// the last date. Source: gpsd www/NMEA.adoc. Thread-safe: no.
 class NmeaClock {
  public:
   /// Takes any line; true if it set the clock.
   bool take(std::string_view line);
-  /// The last time that was said; nothing before the first date.
+  /// The last received time; nullopt before the first date.
   std::optional<UtcTime> now() const { return now_; }
 
  private:

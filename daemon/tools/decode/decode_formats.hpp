@@ -27,8 +27,8 @@ struct RawUnit {
   drivers::decode::ByteSpan request;  ///< what it replies to; empty if that is not known
 };
 
-/// The content of a message. Of a counter: its count and its analogue input; the wind is empty unless the options say
-/// how to convert them.
+/// The content of a message. Of a counter: its count and its analogue input; the wind is empty unless the options
+/// define the conversion.
 struct UnitReading {
   drivers::decode::DecodedWind wind;
   std::optional<std::uint32_t> count;

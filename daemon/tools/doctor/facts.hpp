@@ -40,7 +40,7 @@ struct GroupFacts {
 
 struct ClockFacts {
   UtcTime now{};
-  std::optional<bool> is_synchronised{};  ///< by the kernel; none: it does not tell
+  std::optional<bool> is_synchronised{};  ///< by the kernel; nullopt: not known
 };
 
 /// The folder of a recording.

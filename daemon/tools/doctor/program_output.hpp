@@ -14,7 +14,7 @@ std::optional<std::string> find_program(const std::string& name);
 
 struct ProgramOutput {
   std::string text;    ///< standard output and error
-  int exit_code = -1;  ///< -1: it was ended because it took too long or said too much
+  int exit_code = -1;  ///< -1: it was ended because it took too long or printed too much
 };
 
 /// Runs a program of the system, found in the system's own folders or beside this program, without a shell's

@@ -13,7 +13,7 @@
 
 namespace yuragi::daemon::tools::doctor {
 
-/// The devices that a sensor's configuration names, as nobody has looked at them yet: two for a vane on a line of its
+/// The devices that a sensor's configuration names, not yet inspected: two for a vane on a line of its
 /// own. Pure.
 std::vector<DeviceFacts> named_devices(const settings::SensorConfig& sensor);
 

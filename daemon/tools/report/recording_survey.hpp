@@ -24,7 +24,7 @@ inline constexpr double kBridgedIntervals = 3.0;
 struct SensorSurvey {
   std::string name;
   std::string driver;
-  double unchanged_for_s = 0.0;  ///< it spoke on change only: a silence of up to this is not a gap; 0: it did not
+  double unchanged_for_s = 0.0;  ///< it sent only changes: a silence of up to this is not a gap; 0: it did not
   std::uint64_t readings = 0;
   std::uint64_t directed = 0;     ///< with a direction
   std::uint64_t gusts = 0;        ///< with a gust of the sensor's own

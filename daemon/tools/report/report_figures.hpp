@@ -24,7 +24,7 @@ struct SensorFigures {
 };
 
 /// Draws them with gnuplot, except the rose. `scratch`: an unused file name in a writable folder.
-/// Fails where gnuplot is not installed or cannot draw. Realtime-safe: no.
+/// Fails if gnuplot is not installed or cannot draw. Realtime-safe: no.
 Result<SensorFigures, Failure> draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
                                             const std::filesystem::path& scratch);
 

@@ -159,7 +159,7 @@ struct SpectrumNumbers {
 struct BlockNumbers {
   std::uint64_t blocks = 0;                    ///< whole ones in a wind of at least 1 m/s
   std::optional<double> turbulence_intensity;  ///< mean of sd / mean
-  std::optional<double> gust_factor;           ///< mean of highest 3 s mean / mean; where the interval is at most 1.5 s
+  std::optional<double> gust_factor;           ///< mean of highest 3 s mean / mean; if the interval is at most 1.5 s
 };
 
 /// The SiteSpectrum that the daemon would fit to a fast sensor.
@@ -180,11 +180,11 @@ struct SensorNumbers {
   double first_s = 0.0, last_s = 0.0;
   UtcTime first{}, last{};
   double interval_s = 0.0;       ///< the median; 0 for fewer than two readings
-  double unchanged_for_s = 0.0;  ///< it spoke on change only: a silence of up to this is not a gap; 0: it did not
+  double unchanged_for_s = 0.0;  ///< it sent only changes: a silence of up to this is not a gap; 0: it did not
   double mean_m_s = 0.0, deviation_m_s = 0.0, min_m_s = 0.0, max_m_s = 0.0;
   double max_at_s = 0.0;
   std::optional<double> reported_gust_m_s;  ///< the strongest gust reported by the sensor itself
-  std::optional<double> gust_3s_m_s;        ///< the highest mean over 3 s, where the interval is at most 1.5 s
+  std::optional<double> gust_3s_m_s;        ///< the highest mean over 3 s, if the interval is at most 1.5 s
   std::optional<double> direction_deg;      ///< of the mean vector
   std::optional<double> steadiness;         ///< length of the mean vector over the mean speed, 0 to 1
   std::optional<double> integral_time_s;    ///< of the speed: its autocorrelation, integrated to its first zero
@@ -201,7 +201,7 @@ struct SensorNumbers {
   BlockNumbers blocks;
   std::optional<SpectrumNumbers> spectrum;
   std::string why_no_spectrum;    ///< for a person
-  double assumed_length_m = 0.0;  ///< integral length of the gusts where the spectrum does not determine it
+  double assumed_length_m = 0.0;  ///< integral length of the gusts if the spectrum does not determine it
   std::optional<SiteNumbers> site;
 };
 

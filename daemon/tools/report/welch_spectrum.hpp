@@ -20,7 +20,7 @@ struct EvenSample {
 /// memory. Thread-safe: no.
 class WelchSpectrum {
  public:
-  /// `segment`: samples of a segment, a power of two. `is_of_speed`: of the speed, even where samples have a direction.
+  /// `segment`: samples of a segment, a power of two. `is_of_speed`: of the speed, even if samples have a direction.
   WelchSpectrum(std::size_t segment, double step_s, bool is_of_speed);
 
   /// The next sample of the series.
@@ -29,7 +29,7 @@ class WelchSpectrum {
   /// The series is interrupted: the next sample begins a new run.
   void interrupt() { samples_.clear(); }
 
-  /// The spectrum with its fits; nothing without a whole segment.
+  /// The spectrum with its fits; nullopt without a whole segment.
   std::optional<SpectrumNumbers> numbers() const;
 
  private:
@@ -54,7 +54,7 @@ class IntegralTime {
   void add(double speed_m_s);
   void interrupt() { samples_.clear(); }
 
-  /// The autocorrelation about the blocks' means, summed by the trapezium rule up to its first zero; nothing without a
+  /// The autocorrelation about the blocks' means, summed by the trapezium rule up to its first zero; nullopt without a
   /// whole block, or if the wind did not vary.
   std::optional<double> seconds() const;
 

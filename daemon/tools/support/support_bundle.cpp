@@ -82,7 +82,7 @@ std::string configuration_text(const fs::path& file) {
 }
 
 constexpr const char* kReadme =
-    "What whoever helps needs to know of a Yuragi installation, made by `yuragi support-bundle` at {}.\n"
+    "What a helper needs to know of a Yuragi installation, made by `yuragi support-bundle` at {}.\n"
     "Passwords and other secrets are replaced by \"(secret)\". Read it before you send it.\n"
     "\n"
     "configuration.toml       the configuration as it is written\n"

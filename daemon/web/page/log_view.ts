@@ -1,4 +1,4 @@
-// The last lines of the daemon's log, while somebody looks at them.
+// The last lines of the daemon's log, while they are visible.
 import { element, set_text } from "./element";
 import { ask, Refused } from "./request";
 import { LogLine } from "./status";

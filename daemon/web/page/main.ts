@@ -54,7 +54,7 @@ function show_verdict(): void {
   if (document.title !== `${title} – Yuragi`) document.title = `${title} – Yuragi`;
 }
 
-/** What was said before is true no longer. */
+/** The previous state is no longer valid. */
 function forget(what: Knowledge): void {
   if (knowledge.kind === "news") {
     wind.clear();
