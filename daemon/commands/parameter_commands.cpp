@@ -100,7 +100,7 @@ std::string toml_text(const wire::ParameterState& state, const std::string& valu
   return state.kind == wire::ParameterKind::kText ? settings::toml_value(value) : value;
 }
 
-/// The lines that the configuration would need to say what is so now.
+/// Prints the lines that the configuration needs for the present values.
 void print_toml(const wire::ParameterGroup& group) {
   const bool is_changed =
       std::ranges::any_of(group.parameters, [](const auto& state) { return state.value != state.configured; });

@@ -23,7 +23,7 @@ namespace {
 
 // Room for the readings between two commits, at tens of thousands a second.
 constexpr std::size_t kRingCapacity = 16'384;
-// What stations say besides the wind waits in the ring, and as much again behind it: minutes of a sensor.
+// What stations report besides the wind waits in the ring, and as much again behind it: minutes of a sensor.
 constexpr std::size_t kQuantitiesCapacity = 1024;
 /// Parts that began in the same second have the names of the seconds that follow.
 constexpr int kMostPartNames = 1000;
@@ -39,7 +39,7 @@ std::string megabytes(std::uint64_t bytes) {
   return std::to_string(bytes / 1'000'000) + " MB";
 }
 
-/// The earliest time of what stations said besides the wind; there is some.
+/// The earliest time of what stations reported besides the wind; precondition: there is some.
 template <class Entries>
 Instant earliest_of(const Entries& entries) {
   return std::ranges::min_element(entries, {}, [](const auto& entry) { return entry.quantities.time.mono; })
@@ -360,8 +360,8 @@ Result<void, Failure> RecorderWorker::write_quantities() {
   return learn_begin();
 }
 
-/// Appends what stations said before a time; it stays pending until it is committed. What the file has no place for is
-/// counted; the readings do not suffer from it.
+/// Appends what stations reported before a time; it stays pending until it is committed. What the file has no place for
+/// is counted; readings are not affected.
 Result<void, Failure> RecorderWorker::append_quantities(MonoTime before) {
   for (auto entry = pending_quantities_.begin(); entry != pending_quantities_.end();) {
     if (entry->quantities.time.mono >= before) {
@@ -410,7 +410,7 @@ Result<void, Failure> RecorderWorker::learn_begin() {
 }
 
 /// Makes the file ready for what arrived at `first`: completes one, opens one, begins the session that is due at
-/// `earliest`. What stations said before that goes into the session that ends: a session has no place for what was
+/// `earliest`. What stations reported before that goes into the session that ends: a session has no place for what was
 /// before it.
 Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earliest) {
   if (!clock_) {
@@ -437,7 +437,7 @@ Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earlie
   return open_session(begin_of_pending(first));
 }
 
-/// `first`, or what stations said before it.
+/// `first`, or the earlier time of what stations reported before it.
 Instant RecorderWorker::begin_of_pending(Instant first) const {
   const bool have_said = !pending_quantities_.empty();
   const Instant said = have_said ? earliest_of(pending_quantities_) : first;

@@ -96,8 +96,8 @@ Result<bool, Failure> speaks_after(WindlogReader& reader, const std::string& sen
   return *last && **last >= begin;
 }
 
-/// A sentence where the recording comes to a configuration that is neither that of the first session nor the last one
-/// named.
+/// Returns a sentence for each time at which the recording comes to a configuration that is neither that of the first
+/// session nor the last one named.
 Result<std::vector<std::string>, Failure> changes_after(const WindlogReader& reader, const LoggedSession& first) {
   const auto replayed = reader.configuration(first.id);
   if (!replayed) return of_recorded_data(replayed.error());

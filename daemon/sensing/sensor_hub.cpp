@@ -29,7 +29,7 @@ std::uint32_t key_of(wind::judging::SensorState state, wind::judging::Vote vote)
   constexpr std::uint32_t kDisputedBit = 1U << 8U;
   return static_cast<std::uint32_t>(state) | (is_disputed(state, vote) ? kDisputedBit : 0U);
 }
-/// The key of a link for the ChangeGate: the state; while it is connected, what is said of it, too.
+/// The key of a link for the ChangeGate: the state; while it is connected, its details, too.
 std::uint32_t key_of(const LinkReport& link) {
   const auto state = static_cast<std::uint32_t>(link.state);
   if (link.state != wind::LinkState::kConnected) return state;

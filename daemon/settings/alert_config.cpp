@@ -103,7 +103,7 @@ Result<AlertConfig, ParameterError> alert_config_of(std::string name, const Para
     return ParameterError{"sensor", "applies only if when = \"sensor_silent\"; remove it"};
   if (table.command.is_empty() && alert.webhook.is_empty())
     return ParameterError{"command", "is missing, and webhook too, so nobody would be notified; set one of them"};
-  // What was recorded or printed has only a word in its place, and can tell nobody.
+  // A configuration that was recorded or printed has only a placeholder here, and cannot notify anybody.
   if (!table.command.is_withheld()) alert.command = table.command.reveal();
   if (alert.webhook.is_withheld()) alert.webhook = Secret();
   const std::string& url = alert.webhook.reveal();

@@ -63,7 +63,7 @@ class Comparison {
     return next;
   }
 
-  /// Does the same with all tables of an owner, which it makes anew where values change.
+  /// Does the same with all tables of an owner, which it makes anew if values change.
   template <class Owner>
   void merge_tables(const std::string& who, const std::string& prefix, std::span<const TableOf<Owner>> tables,
                     Owner& next, const Owner& wanted) {

@@ -26,7 +26,7 @@ HttpResponse json_response(const ordered_json& content) {
   return {.body = json_text(content, 2) + "\n"};
 }
 
-/// Why nothing that the daemon said is true any more.
+/// Returns why the last state of the daemon is no longer valid; nullopt if it is.
 std::optional<std::string> silence_of(const Facts& facts) {
   if (facts.sensors == nullptr) return "the daemon has only just begun";
   if (facts.age_s <= facts.patience_s) return std::nullopt;

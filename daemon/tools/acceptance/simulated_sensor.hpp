@@ -12,7 +12,7 @@
 
 namespace yuragi::daemon::tools::acceptance {
 
-// The wind that is simulated, without turbulence: values that every device can say exactly, also one that knows eight
+// The wind that is simulated, without turbulence: values that every device can send exactly, also one that knows eight
 // points of the compass.
 inline constexpr double kSimulatedSpeed_m_s = 8.0;
 inline constexpr double kSimulatedDirection_deg = 225.0;

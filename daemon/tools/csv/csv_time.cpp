@@ -98,7 +98,7 @@ class CalendarText {
     return clock;
   }
 
-  /// Z, UTC, GMT, +02:00, +0200, +02, UTC+2; false where something else stands there.
+  /// Z, UTC, GMT, +02:00, +0200, +02, UTC+2; false if something else stands there.
   bool take_zone(std::optional<Nanoseconds>& offset) {
     skip_blanks();
     if (rest_.empty()) return true;

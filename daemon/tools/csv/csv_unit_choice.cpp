@@ -80,7 +80,7 @@ void use_unit_beside(CsvLayout& layout, CsvRole role, CsvRole beside) {
   column->unit_source = "as \"" + known->name + "\" beside it";
 }
 
-/// "5.4 mph": the fields say it themselves.
+/// "5.4 mph": the fields name it themselves.
 void use_unit_of_fields(CsvLayout& layout) {
   for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
     auto& column = layout.columns.by_role[index];

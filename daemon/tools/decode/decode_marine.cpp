@@ -1,4 +1,4 @@
-// `yuragi decode nmea2000` and `signalk`: lines of which some say what holds for those that follow, or several winds.
+// `yuragi decode nmea2000` and `signalk`: lines of which some apply to the following ones, or have several winds.
 #include <algorithm>
 #include <array>
 

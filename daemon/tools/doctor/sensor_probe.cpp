@@ -32,7 +32,7 @@ std::string in_small_letters(std::string text) {
   return text;
 }
 
-/// What the keys that choose one of several equal devices say; empty: any.
+/// The values of the keys that choose one of several equal devices; empty: any.
 std::string chosen_text(const settings::SensorConfig& sensor) {
   std::string text;
   for (const char* const key : {"station", "device", "path", "serial", "port", "host_api"}) {
