@@ -15,16 +15,16 @@
 
 namespace yuragi::daemon::alerts {
 
-/// Decides when alerts begin and end, from the daemon's own state. Each tells its beginning once, after it has held for
-/// AlertConfig::after_s, and its end once. Pure: time is a parameter. Thread-safe: no.
+/// Decides when alerts begin and end, from the daemon's own state. The beginning of each is reported once, after it
+/// has held for AlertConfig::after_s, and its end once. Pure: time is a parameter. Thread-safe: no.
 class AlertJudge {
  public:
   explicit AlertJudge(const std::vector<settings::AlertConfig>& alerts) { change(alerts); }
 
-  /// Other alerts from now on. One of the same name about the same goes on where it was; one that is gone tells no end.
+  /// Replaces the alerts. One with the same name and subject continues; the end of a removed one is not reported.
   void change(const std::vector<settings::AlertConfig>& alerts);
 
-  /// Alerts that were on in an earlier process go on. Those that are not configured any more are ignored.
+  /// Continues alerts that were on in an earlier process. Those that are no longer configured are ignored.
   void resume(const std::vector<AlertOn>& on, const Instant& now);
 
   /// Returns those that have begun and not ended.
@@ -33,7 +33,8 @@ class AlertJudge {
   /// Longer sentences are cut.
   static constexpr std::size_t kMaxMessage_bytes = 500;
 
-  /// What has begun or ended since the last call. `frames`: how many the animation has made; nothing: it has no scenes.
+  /// Returns what has begun or ended since the last call. `frames`: how many the animation has made; nullopt: no
+  /// scenes.
   std::vector<AlertNews> judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now);
 
  private:
@@ -48,14 +49,14 @@ class AlertJudge {
     bool has_begun = false;
     MonoTime begun{};
     UtcTime begun_utc{};
-    std::optional<MonoTime> differs_since{};  ///< since when what holds is not what was told
+    std::optional<MonoTime> differs_since{};  ///< since when the condition differs from what was reported
   };
   struct Alert {
     settings::AlertConfig config;
     std::map<std::string, Progress> of_subject;
   };
 
-  /// None where it cannot be known now.
+  /// Nullopt if it is not known now.
   std::vector<Subject> subjects_of(const settings::AlertConfig& alert, const wire::Sensors& status) const;
 
   std::vector<Alert> alerts_;

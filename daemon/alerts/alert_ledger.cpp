@@ -96,7 +96,7 @@ void AlertLedger::save(const AlertRecord& record) {
   if (failure.empty()) {
     spdlog::debug("alerts: {} is {}", file_.string(), is_empty ? "removed" : "written");
   } else if (failure != failure_) {
-    spdlog::warn("alerts: {}: what is undelivered would be lost at a restart", failure);
+    spdlog::warn("alerts: {}: undelivered alerts would be lost at a restart", failure);
   }
   failure_ = std::move(failure);
 }

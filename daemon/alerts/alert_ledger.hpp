@@ -14,7 +14,7 @@
 namespace yuragi::daemon::alerts {
 
 /// Keeps in a file which alerts are on and what is undelivered, so that both outlive the process. A thread of its own
-/// writes the file whole, or removes it if there is nothing to keep; who calls never waits for the disk. Failures are
+/// writes the file whole, or removes it if there is nothing to keep; the caller never waits for the disk. Failures are
 /// logged, and cost only the saving. Thread-safe: yes. The constructor reads the file, the destructor writes it.
 class AlertLedger {
  public:
@@ -28,7 +28,7 @@ class AlertLedger {
   /// Sets which alerts are on, and adds the news to the undelivered ones, in one piece.
   void set(std::vector<AlertOn> on, const std::vector<AlertNews>& news);
 
-  /// News is delivered by this way, or will never be.
+  /// Removes news that was delivered by this way, or will never be.
   void settle(AlertWay way, const AlertNews& news);
 
  private:

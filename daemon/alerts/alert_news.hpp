@@ -7,7 +7,7 @@
 
 namespace yuragi::daemon::alerts {
 
-/// An alert begins or ends, and whom to tell.
+/// The beginning or end of an alert, and where to report it.
 struct AlertNews {
   std::string alert = {};    ///< its name
   bool has_begun = false;    ///< false: it has ended

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 constexpr std::array<std::string_view, 2> kWayNames = {"command", "webhook"};
 constexpr std::array<std::string_view, 2> kStateNames = {"began", "ended"};
-/// So that ages and RFC 3339 can be computed of it: until the year 2096.
+/// The latest time that is accepted (the year 2096): ages and RFC 3339 can be computed from it.
 constexpr std::int64_t kMaxTime_ns = 4'000'000'000'000'000'000;
 
 // These throw json::exception if a value is missing, of another type, unknown or out of range.

@@ -31,7 +31,7 @@ struct UndeliveredNews {
   AlertNews news = {};
 };
 
-/// What outlives the daemon.
+/// The state of alerts that outlives the daemon.
 struct AlertRecord {
   std::vector<AlertOn> on = {};
   std::vector<UndeliveredNews> undelivered = {};  ///< oldest first

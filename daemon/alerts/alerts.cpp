@@ -79,7 +79,7 @@ void Alerts::resume(const std::vector<settings::AlertConfig>& alerts, const Inst
     const settings::AlertConfig* const config = find(alerts, news.alert);
     const bool is_command = way == AlertWay::kCommand;
     if (config == nullptr || (is_command ? config->command.empty() : config->webhook.is_empty())) {
-      spdlog::warn("alert {}: not told, because the configuration no longer has it: {}", news.alert, news.message);
+      spdlog::warn("alert {}: not sent, because the configuration no longer has it: {}", news.alert, news.message);
       ledger_->settle(way, news);
       continue;
     }
@@ -124,7 +124,7 @@ void Alerts::push(AlertWay way, const AlertNews& news) {
                            .first;
     queue->second.push(news);
   } catch (const std::system_error& error) {
-    report(news.alert, std::string("not told, because no thread can be started: ") + error.what());
+    report(news.alert, std::string("not sent, because no thread can be started: ") + error.what());
     settle(news);
   }
 }

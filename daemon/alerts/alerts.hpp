@@ -17,12 +17,12 @@
 
 namespace yuragi::daemon::alerts {
 
-/// The [[alert]]s of an installation: what begins or ends is written into the log, and told by commands and webhooks,
-/// each of each alert on a thread of its own. Thread-safe: no.
+/// The [[alert]]s of an installation: their beginning and end are logged, and reported by commands and webhooks, each
+/// on its own thread. Thread-safe: no.
 class Alerts {
  public:
-  /// `host`: the name of this machine, for who is told. `record_file`: AlertLedger's, from which alerts go on; empty:
-  /// they begin anew.
+  /// `host`: the name of this machine in messages. `record_file`: the file of AlertLedger, from which alerts
+  /// continue; empty: they begin anew.
   Alerts(const std::vector<settings::AlertConfig>& alerts, std::string host, const std::filesystem::path& record_file,
          const Instant& now);
   ~Alerts();
@@ -31,7 +31,7 @@ class Alerts {
 
   void change(const std::vector<settings::AlertConfig>& alerts);
 
-  /// To be called about twice a second. Does not wait. See AlertJudge::judge().
+  /// Call it about twice a second. Does not wait. See AlertJudge::judge().
   void judge(const wire::Sensors& status, std::optional<std::uint64_t> frames, const Instant& now);
 
  private:

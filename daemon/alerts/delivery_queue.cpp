@@ -49,7 +49,7 @@ void DeliveryQueue::work(const std::stop_token& stop) {
     is_delivering_ = true;
     lock.unlock();
     if (given_up > 0)
-      calls_.report(news.alert, fmt::format("{} not told: too many wait", count_text(given_up, "message")));
+      calls_.report(news.alert, fmt::format("{} not sent: too many are waiting", count_text(given_up, "message")));
     deliver(news, stop);
     lock.lock();
     is_delivering_ = false;
@@ -63,7 +63,7 @@ void DeliveryQueue::deliver(const AlertNews& news, const std::stop_token& stop) 
   for (bool is_first_try = true;; is_first_try = false) {
     const auto delivered = try_once(news, stop);
     if (delivered) {
-      if (!is_first_try) calls_.report(news.alert, "was told at last");
+      if (!is_first_try) calls_.report(news.alert, "was sent after all");
       return calls_.settle(news);
     }
     if (stop.stop_requested()) return;

@@ -24,7 +24,7 @@ struct RetryTimes {
 };
 
 /// Delivers the news of one alert by one way, in their order, on a thread of its own: only what comes later of the same
-/// alert waits for a delivery that takes long or is tried again. Its end gives up what waits. Thread-safe: yes.
+/// alert waits for a delivery that takes long or is tried again. Its destructor drops what waits. Thread-safe: yes.
 class DeliveryQueue {
  public:
   struct Calls {
@@ -36,7 +36,7 @@ class DeliveryQueue {
     std::function<void(const AlertNews&)> settle = [](const AlertNews&) {};
   };
 
-  /// The oldest gives way if more would wait.
+  /// Drops the oldest if too many wait.
   static constexpr std::size_t kMostWaiting = 64;
 
   DeliveryQueue(Calls calls, const RetryTimes& times);
@@ -65,7 +65,7 @@ class DeliveryQueue {
   std::condition_variable_any changed_;
   std::deque<AlertNews> waiting_;
   bool is_delivering_ = false;
-  std::size_t given_up_ = 0;  ///< for want of room, not yet reported
+  std::size_t given_up_ = 0;  ///< because there was no room; not yet reported
   std::jthread thread_;
 };
 

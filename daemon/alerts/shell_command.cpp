@@ -25,7 +25,7 @@ namespace {
 
 using platform::Descriptor;
 
-/// This program's environment and what the command is told. A name may hold anything but a zero byte.
+/// Returns this program's environment and the command's own variables. A name can hold any byte except zero.
 std::vector<std::string> environment_for(const AlertNews& news) {
   std::vector<std::string> all;
   for (char** entry = environ; *entry != nullptr; ++entry) {
@@ -93,12 +93,12 @@ Result<void, Failure> run_command(const AlertNews& news, Nanoseconds most, const
   }
   print_end.reset();
   const bool ended = has_ended(*process, pipe.get(), most, stop, output);
-  // Before it is waited for: until then no other process group has its number.
+  // Before waiting for it: until then no other process group can have its number.
   process->signal(SIGKILL);
   const platform::ChildEnd end = process->wait();
   while (output.size() < kMaxCommandOutput_bytes && read_some(pipe.get(), output)) {
   }
-  if (!ended) return Failure{fmt::format("was killed, as it had not ended after {:.0f} s", seconds(most))};
+  if (!ended) return Failure{fmt::format("was killed because it had not ended after {:.0f} s", seconds(most))};
   if (!end.is_good()) return Failure{text_of(end)};
   return {};
 }

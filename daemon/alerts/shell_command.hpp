@@ -10,7 +10,7 @@
 
 namespace yuragi::daemon::alerts {
 
-/// What is kept of what a command prints.
+/// The limit of the kept output of a command.
 inline constexpr std::size_t kMaxCommandOutput_bytes = 64UL * 1024;
 
 /// Runs news.command by /bin/sh, with YURAGI_ALERT, YURAGI_ALERT_STATE and YURAGI_ALERT_MESSAGE in its environment, and

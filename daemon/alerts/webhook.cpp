@@ -69,7 +69,7 @@ Result<void, Failure> post_to_webhook(const AlertNews& news, const std::string& 
   const std::string agent = with_version("yuragi");
   const Handle handle(curl_easy_init(), &curl_easy_cleanup);
   const Fields fields(curl_slist_append(nullptr, "Content-Type: application/json"), &curl_slist_free_all);
-  if (!handle || !fields) return Failure{"there is no memory for a request"};
+  if (!handle || !fields) return Failure{"out of memory for a request"};
   CURL* const request = handle.get();
   curl_easy_setopt(request, CURLOPT_URL, news.webhook.reveal().c_str());
   curl_easy_setopt(request, CURLOPT_PROTOCOLS_STR, "http,https");
@@ -80,7 +80,7 @@ Result<void, Failure> post_to_webhook(const AlertNews& news, const std::string& 
   curl_easy_setopt(request, CURLOPT_CONNECTTIMEOUT, kConnect_s);
   curl_easy_setopt(request, CURLOPT_TIMEOUT, kWhole_s);
   curl_easy_setopt(request, CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(request, CURLOPT_QUICK_EXIT, 1L);  // waits for no look-up of a name that was given up
+  curl_easy_setopt(request, CURLOPT_QUICK_EXIT, 1L);  // does not wait for an abandoned look-up of a name
   curl_easy_setopt(request, CURLOPT_WRITEFUNCTION, &ignore_answer);
   curl_easy_setopt(request, CURLOPT_SOCKOPTFUNCTION, &keep_from_children);
   curl_easy_setopt(request, CURLOPT_NOPROGRESS, 0L);

@@ -91,7 +91,7 @@ void Animation::begin_change(std::unique_ptr<SceneChange> change) noexcept {
   }
 }
 
-/// The scenes that are given up stay in the change, to be freed by whoever takes it.
+/// The scenes that are given up stay in the change, to be freed by its taker.
 void Animation::finish_change() noexcept {
   std::swap(scenes_, change_->last);
   scenes_->read_opacities();

@@ -31,7 +31,7 @@ struct SceneCue {
 /// (StagedScene::step_time), and decides only whether threads share the next steps.
 ///
 /// Thread-safe: no. What is noexcept, and encode(), are realtime-safe; with [animation] threads above 1 a step
-/// waits for the pool's threads (WorkerPool), where that takes less time (SharingChoice). Poses do not depend on the
+/// waits for the pool's threads (WorkerPool), if that takes less time (SharingChoice). Poses do not depend on the
 /// number of threads.
 class Animation {
  public:
@@ -48,7 +48,7 @@ class Animation {
 
   /// Begins to exchange the scenes, of which the change was made. Not while another change is carried out.
   void begin_change(std::unique_ptr<SceneChange> change) noexcept;
-  /// The change that is over, with what is to be freed; null where there is none.
+  /// The change that is over, with what is to be freed; null if there is none.
   std::unique_ptr<SceneChange> take_finished_change() noexcept;
 
   /// The frame of the present poses, size prefix included; valid until the next call.
@@ -61,7 +61,7 @@ class Animation {
   double view_wind_from_deg() const noexcept { return view_wind_.from_deg(); }
   /// The number of the list of scenes that the frame is of.
   std::uint64_t generation() const noexcept { return scenes_->generation(); }
-  /// Sees to it that `buffer` has room for any frame of the present scenes.
+  /// Ensures that `buffer` has room for any frame of the present scenes.
   void make_room_in(wire::Bytes& buffer) noexcept { scenes_->make_room_in(buffer); }
 
   /// The size of a frame in which every scene is visible, which is the largest.

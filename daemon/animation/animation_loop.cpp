@@ -78,7 +78,7 @@ std::optional<std::string> AnimationLoop::failure() const {
   return failure_;
 }
 
-/// No exception leaves the thread. Scenes cannot throw (their steps are noexcept): what is left is the frame, where
+/// No exception leaves the thread. Scenes cannot throw (their steps are noexcept): what remains is the frame, if
 /// there is no memory for it, or a pose that is not of its skeleton's kind.
 void AnimationLoop::run(const std::stop_token& stop) {
   const bool is_over = contain(

@@ -65,27 +65,27 @@ class AnimationLoop {
   /// For the I/O thread: the newest frame, or null if it was taken already. Valid until the next call.
   const PublishedFrame* take_frame() noexcept { return frames_.refresh() ? &frames_.value() : nullptr; }
 
-  /// For the I/O thread: queues a cue for the next tick. False where the ring is full: it is dropped.
+  /// For the I/O thread: queues a cue for the next tick. False if the ring is full: it is dropped.
   bool cue(const SceneCue& cue) { return orders_.push({.cue = cue}); }
 
   /// For the I/O thread: hands over a change of the scenes, which is carried out from the beginning of the next tick
   /// on. Cues and changes take effect in the order in which they are handed over, and a wind that is published behind
-  /// this meets no scenes of before. False, and `change` stays as it is, where a change is being carried out or the
+  /// this meets no scenes of before. False, and `change` stays as it is, if a change is being carried out or the
   /// ring is full.
   bool begin_change(std::unique_ptr<SceneChange>& change);
-  /// Was a change handed over that take_finished_change() has not returned?
+  /// Returns true if a change was handed over that take_finished_change() has not returned yet.
   bool is_changing() const noexcept { return is_changing_; }
   /// For the I/O thread: the change that is over, once the animation has done with it; null while there is none.
   std::unique_ptr<SceneChange> take_finished_change() noexcept;
 
   const LoopCounters& counters() const noexcept { return counters_; }
 
-  /// Why the loop has ended by itself: an exception, which is an error of this program. Nothing while it runs. The
+  /// Why the loop has ended by itself: an exception, which is an error of this program. Nullopt while it runs. The
   /// frames until then have been published, and frame_ready_fd() wakes the I/O thread to look.
   std::optional<std::string> failure() const;
 
  private:
-  /// A cue, or where there is one a change, which it owns.
+  /// A cue, or if there is one a change, which it owns.
   struct Order {
     SceneCue cue{};
     SceneChange* change = nullptr;

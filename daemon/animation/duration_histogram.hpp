@@ -28,10 +28,10 @@ class DurationHistogram {
     if (duration > longest_.load(std::memory_order_relaxed)) longest_.store(duration, std::memory_order_relaxed);
   }
 
-  /// The longest of all, s: exact; 0 where nothing was counted.
+  /// The longest of all, s: exact; 0 if nothing was counted.
   double max_s() const noexcept { return seconds(longest_.load(std::memory_order_relaxed)); }
 
-  /// The duration that `share` (0 to 1) of all counted ones do not exceed, s; 0 where nothing was counted.
+  /// The duration that `share` (0 to 1) of all counted ones do not exceed, s; 0 if nothing was counted.
   double percentile_s(double share) const noexcept { return percentile_s(counts(), share); }
 
   Counts counts() const noexcept {

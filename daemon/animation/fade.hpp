@@ -22,7 +22,7 @@ class Fade {
 
   void advance(double dt_s) noexcept { since_s_ = std::min(since_s_ + dt_s, over_s_); }
 
-  /// Is it shown, or about to be?
+  /// Returns true if it is shown, or fading in.
   bool is_shown() const noexcept { return to_ > 0.5; }
 
   float opacity() const noexcept { return static_cast<float>(value()); }

@@ -16,7 +16,7 @@ class RecentLateness {
  public:
   explicit RecentLateness(const DurationHistogram& all) : all_(&all) {}
 
-  /// Takes what was counted until `now`; to be called at least once a minute.
+  /// Takes what was counted until `now`; call it at least once a minute.
   void advance(MonoTime now) noexcept {
     recent_ = all_->counts();
     const DurationHistogram::Counts& before = before_.begin_at(now, recent_);

@@ -16,7 +16,7 @@ class RecentWindow {
   static constexpr std::size_t kSteps = 10;
   static constexpr Nanoseconds kStep = std::chrono::minutes(1);
 
-  /// To be called at least once a minute. Returns the total at the beginning of the window; that of its first call is
+  /// Call it at least once a minute. Returns the total at the beginning of the window; that of its first call is
   /// Total().
   const Total& begin_at(MonoTime now, const Total& total) noexcept {
     if (count_ == 0 || now - taken_ >= kStep) {

@@ -13,8 +13,8 @@ bool is_same_place(const scenes::ScenePlacement& a, const scenes::ScenePlacement
   return a.x_m == b.x_m && a.y_m == b.y_m && a.z_m == b.z_m && a.heading_deg == b.heading_deg;
 }
 
-/// Are all parameters of its kind, and its picture, the same? Others, as its gain, do not go into the making of a
-/// scene.
+/// Returns true if all parameters of its kind, and its picture, are the same. Others, such as its gain, are not needed
+/// to make a scene.
 bool is_same_model(const settings::SceneConfig& a, const settings::SceneConfig& b) {
   if (a.kind != b.kind || a.cloth != b.cloth || !is_same_place(a.placement, b.placement)) return false;
   return std::ranges::all_of(a.kind->parameters, [&](const Parameter& parameter) {
@@ -42,7 +42,7 @@ std::optional<std::size_t> find_name(const SceneRoster& present, const std::stri
   return static_cast<std::size_t>(found - present.configs.begin());
 }
 
-/// Would clients see no difference between the two lists?
+/// Returns true if clients would see no difference between the two lists.
 bool is_same_list(const SceneRoster& a, const SceneRoster& b) {
   return std::ranges::equal(a.scenes, b.scenes) &&
          std::ranges::equal(a.configs, b.configs, {}, &settings::SceneConfig::name, &settings::SceneConfig::name);

@@ -14,7 +14,7 @@ inline constexpr double kSceneChangeFade_s = 2.0;
 ///
 /// A scene whose kind, parameters, place and seed are the same stays as it is. One that is new, or made anew, begins
 /// hidden in its rest pose and fades in; one that is gone, or was made anew, fades out. Meanwhile there are both; then
-/// a second change of the list takes away what has left. Where both together are larger than the stream allows, what
+/// a second change of the list takes away what has left. If both together are larger than the stream allows, what
 /// leaves fades out first, and the list changes once. What is shown stays shown, by the scene's name, unless the
 /// configuration's `shown` of it changes.
 struct SceneChange {
@@ -22,7 +22,7 @@ struct SceneChange {
   struct Start {
     StagedScene* scene = nullptr;
     double wind_gain = 1.0;
-    const StagedScene* shown_like = nullptr;  ///< shown or hidden as this one was; null: as `shown` says
+    const StagedScene* shown_like = nullptr;  ///< shown or hidden as this one was; null: by `shown`
     bool shown = true;
   };
   /// The Scenes message that clients need before the first frame of a list.
@@ -33,7 +33,7 @@ struct SceneChange {
 
   // For the thread that made it or hands it over; never changes.
   std::shared_ptr<const SceneRoster> roster;  ///< the scenes after it
-  std::vector<Message> messages;              ///< none where clients need not know of the change
+  std::vector<Message> messages;              ///< empty if clients need not know of the change
   std::size_t kept = 0, made = 0, leaving_count = 0;
   double reach_m = 0.0;        ///< of `roster`, as Animation::reach_m()
   std::size_t node_count = 0;  ///< of `roster`
@@ -53,7 +53,7 @@ struct SceneChange {
 
 /// Makes the change from `present` to the scenes of `next`, whose gusts stay those of `present`. It takes as long as
 /// making scenes: for any thread but the animation's and the one of I/O, while both work on. Throws
-/// settings::ConfigError where the scenes of `next` are larger than the stream allows, and what making a scene throws.
+/// settings::ConfigError if the scenes of `next` are larger than the stream allows, and what making a scene throws.
 std::unique_ptr<SceneChange> make_scene_change(const SceneRoster& present, const settings::Config& next,
                                                double fade_s = kSceneChangeFade_s);
 

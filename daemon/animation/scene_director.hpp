@@ -15,7 +15,7 @@ namespace yuragi::daemon::animation {
 /// Thread-safe: no.
 class SceneDirector {
  public:
-  /// Sends a cue to the animation; false where its queue is full.
+  /// Sends a cue to the animation; false if its queue is full.
   using SendCue = std::function<bool(const SceneCue&)>;
 
   SceneDirector(const settings::Config& config, SendCue send_cue);
@@ -27,7 +27,7 @@ class SceneDirector {
   /// Changes who may switch scenes.
   void allow(settings::ControlPermission allowed) { allowed_ = allowed; }
 
-  /// Carries out a client's request; the reply says why not. `is_local`: the client is on this machine.
+  /// Carries out a client's request; the reply has the reason for a refusal. `is_local`: the client is on this machine.
   wire::ControlReply handle(const wire::Control& control, bool is_local);
 
  private:

@@ -24,14 +24,14 @@ class SceneExchange {
   /// What the next change is made from, by any thread. Not while is_changing().
   const std::shared_ptr<const SceneRoster>& present() const noexcept { return present_; }
 
-  /// Is a change being carried out: until what leaves has faded out?
+  /// Returns true while a change is carried out: until the leaving scenes have faded out.
   bool is_changing() const noexcept { return loop_.is_changing(); }
 
-  /// Hands over a change that was made from present(). False, and `change` stays as it is, where another one is being
+  /// Hands over a change that was made from present(). False, and `change` stays as it is, if another one is being
   /// carried out, or too many cues wait: try again at the next tick.
   bool begin(std::unique_ptr<SceneChange>& change);
 
-  /// The Scenes message for the clients, where a frame of this generation is the first that needs it; otherwise null.
+  /// The Scenes message for the clients, if a frame of this generation is the first that needs it; otherwise null.
   std::shared_ptr<const wire::Bytes> new_scenes(std::uint64_t generation);
 
   /// The change that is over, once: to be freed, which takes a moment, on any thread. Null otherwise.

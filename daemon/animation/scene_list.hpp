@@ -75,7 +75,7 @@ class SceneList {
   }
   /// The size of a frame in which every scene is visible, which is the largest.
   std::size_t largest_frame_bytes() const noexcept { return largest_frame_bytes_; }
-  /// Sees to it that `buffer` has room for any frame of this list, by exchanging it for one that was made with the
+  /// Ensures that `buffer` has room for any frame of this list, by exchanging it for one that was made with the
   /// list. There are as many of these as a triple buffer has places.
   void make_room_in(wire::Bytes& buffer) noexcept;
 
@@ -94,9 +94,9 @@ class SceneList {
   std::array<wire::Bytes, 3> rooms_;
 };
 
-/// The Scenes message, or nothing where the scenes are larger than the stream allows, so that clients would refuse it.
+/// Returns the Scenes message; nullopt if the scenes exceed the limits of the stream, so that clients would refuse it.
 std::optional<wire::Bytes> scenes_message(const wire::Scenes& scenes);
-/// The same; throws settings::ConfigError, which says what is allowed.
+/// The same; throws settings::ConfigError, which names what is allowed.
 wire::Bytes checked_scenes_message(const wire::Scenes& scenes);
 
 }  // namespace yuragi::daemon::animation

@@ -25,7 +25,7 @@ class TickSchedule {
   /// The deadline to wait for.
   MonoTime next_deadline() const noexcept { return begin_ + static_cast<Nanoseconds::rep>(next_) * period_; }
 
-  /// Begins a tick at `now`, which is next_deadline() or later. Where whole periods have passed since, their ticks are
+  /// Begins a tick at `now`, which is next_deadline() or later. If whole periods have passed since, their ticks are
   /// skipped, and this is the tick of the latest deadline.
   Tick begin_tick(MonoTime now) noexcept {
     const Nanoseconds since = now - next_deadline();

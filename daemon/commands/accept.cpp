@@ -109,7 +109,7 @@ class OwnDaemon {
   bool is_running_ = false;
 };
 
-/// Asks the technician to hold the vane, and reads it; nothing where there is no vane, or it is left out.
+/// Asks the technician to hold the vane, and reads it; nullopt if there is no vane, or it is left out.
 std::optional<tools::acceptance::NorthCheck> check_north(OwnDaemon& daemon,
                                                          tools::acceptance::SensorMeasurement& measurement,
                                                          const std::string& sensor) {
@@ -149,7 +149,7 @@ void measure_sensor(tools::acceptance::Acceptance& acceptance, const settings::C
   if (const auto check = check_north(daemon, measurement, name)) acceptance.north_checks.push_back(*check);
 }
 
-/// Measures a sensor whose device is simulated, or says why it is not.
+/// Measures a sensor with a simulated device, or returns the reason why it cannot be simulated.
 tools::acceptance::SimulatedPart measure_simulated(const settings::Config& config, std::size_t index,
                                                    const AcceptOptions& options) {
   const sensing::SystemClock clock;
@@ -195,18 +195,18 @@ void refuse_beside_a_daemon(const settings::Config& config) {
   tools::doctor::listen_trouble(config.stream.listen, is_in_use);
   if (!is_in_use) return;
   throw ExitError(kExitUnavailable,
-                  fmt::format("a daemon runs at {}, and has the devices: stop it first, and start it again afterwards "
+                  fmt::format("a daemon runs at {} and uses the devices: stop it first, and start it again afterwards "
                               "(sudo systemctl stop yuragi)",
                               config.stream.listen));
 }
 
 void run_accept(const AcceptOptions& options) {
   if (options.asks && options.is_simulated_only)
-    throw ExitError(kExitUsage, "--ask is about real vanes: leave out --simulated-only");
+    throw ExitError(kExitUsage, "--ask needs real vanes: remove --simulated-only");
   if (options.asks && isatty(STDIN_FILENO) == 0)
-    throw ExitError(kExitUsage, "--ask: there is nobody at a terminal to be asked");
+    throw ExitError(kExitUsage, "--ask needs a terminal, to ask the technician");
   const service::DaemonLog log(false);
-  spdlog::set_level(spdlog::level::err);  // what a sensor says is on the page
+  spdlog::set_level(spdlog::level::err);  // the messages of sensors are on the page
   const auto file = installed_config(options.config_file);
   const settings::Config config = file ? settings::load_config(*file) : settings::default_config();
   service::check(config);
@@ -259,21 +259,23 @@ void add_accept(CLI::App& app) {
       "first\n"
       "pose that it moves. Mean speeds are compared with those of the other sensors. Nothing is recorded, opening "
       "hours\n"
-      "and the fall-back recording are left out. No daemon may run: it has the devices.\n"
+      "and the fall-back recording are left out. Stop the daemon first: it uses the devices.\n"
       "Each sensor takes the time of --for, and up to as long again until its first reading.\n"
       "First each sensor on a line or in the network is simulated: yuragi-sim plays its device in a constant wind (8 "
       "m/s\n"
-      "from 225 degrees) on this machine, for --for and at most 10 s, and the sensor's entry is used but for the way "
+      "from 225 degrees) on this machine, for --for and at most 10 s, and the sensor's entry is used except for the "
+      "way "
       "to\n"
       "its device, which station it is, and, with nmea, talker, address and xdr_id. Then the speed and direction "
       "after\n"
       "the calibration must be those of that wind: configuration and software are proved, cables and device are not.\n"
-      "A Modbus device has its factory slave ids, or those of the entry. What is not simulated says why, and is\n"
+      "A Modbus device has its factory slave ids, or those of the entry. For what is not simulated the reason is "
+      "shown; it is\n"
       "neither passed nor failed; the same where yuragi-sim is not installed.\n"
       "It asks nothing, unless --ask is given: then it also has each vane held to the north (15 degrees are allowed).\n"
       "Failed: no reading, readings that are not used at the end, no frames or poses that do not move. Remarks: "
       "readings\n"
-      "that are made up, replayed or do not change, 5 % of messages refused, 200 ms from reading to pose, a mean "
+      "that are synthetic, replayed or do not change, 5 % of messages refused, 200 ms from reading to pose, a mean "
       "speed\n"
       "that is half or twice that of the others.\n"
       "Exit code 0: passed, with remarks at most; 1: failed; 69: a daemon runs; 73: the page cannot be written.\n"

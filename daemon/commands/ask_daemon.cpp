@@ -48,7 +48,7 @@ class StatusCollector {
 Result<tools::sensors::DaemonStatus, Failure> ask_daemon(const std::string& address, const std::string& client) {
   auto stream = stream::StreamClient::connect(address, kAskConnectTimeout);
   if (!stream) return Failure{stream.error().message + ". Is `yuragi run` running?", FailureKind::kUnavailable};
-  // Where the daemon has closed the connection, its Hello, which is still to be read, says why.
+  // If the daemon has closed the connection, its Hello, which can still be read, has the reason.
   if (stream->subscribe(
           {.poses = false, .sensors = true, .client = client, .token = settings::own_token(address).token})) {
     stream->send(wire::Control{});

@@ -33,7 +33,7 @@ std::size_t append(char* part, std::size_t size, std::size_t count, void* answer
   }
 }
 
-/// Where a daemon that listens so is reached from this machine.
+/// Returns the address at which a daemon that listens there is reached from this machine.
 Address address_of(const std::string& listen) {
   Address address = parse_address(listen).value();
   if (address.host == "0.0.0.0") address.host = "127.0.0.1";
@@ -50,7 +50,7 @@ nlohmann::json ask_page(const PageRequest& request) {
   std::string answer;
   const Handle handle(curl_easy_init(), &curl_easy_cleanup);
   const Fields fields(curl_slist_append(nullptr, "Content-Type: application/json"), &curl_slist_free_all);
-  if (!handle || !fields) throw FailureError({"there is no memory for a request"});
+  if (!handle || !fields) throw FailureError({"out of memory for a request"});
   CURL* const curl = handle.get();
   curl_easy_setopt(curl, CURLOPT_URL, url.c_str());
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http");

@@ -18,7 +18,7 @@ struct PageRequest {
 };
 
 /// Returns the JSON that the daemon answers. Throws FailureError (kUnavailable) if none answers within 10 s, or its
-/// answer is no JSON of at most 1 MiB, and ExitError with the daemon's reason if it refuses the request.
+/// answer is not JSON of at most 1 MiB, and ExitError with the daemon's reason if it refuses the request.
 nlohmann::json ask_page(const PageRequest& request);
 
 }  // namespace yuragi::daemon::commands

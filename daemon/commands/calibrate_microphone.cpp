@@ -242,7 +242,7 @@ void add_calibrate_microphone(CLI::App& calibrate) {
       "more): whichever is better on pairs that were not used for the fit. Needs at least 8 pairs that span 1 m/s and\n"
       "3 dB. A fit to half an hour of light wind is poor in a storm, so record varied wind. With --speed twice: a "
       "power law\n"
-      "through two known winds. [sensor.calibration] of the microphone becomes neutral, but for its height\n"
+      "through two known winds. [sensor.calibration] of the microphone becomes neutral, except for its height\n"
       "and north.\n"
       "  yuragi calibrate microphone --config wall.toml --sensor mic --reference roof --for 3600\n"
       "  yuragi calibrate microphone --config wall.toml --sensor mic --reference roof --recording may.windlog\n"

@@ -49,7 +49,7 @@ wind::judging::CalibrationPoint measure_known_speed(tools::calibration::Calibrat
   return {mean_m_s, speed_m_s};
 }
 
-/// The pairs of indicated and true speed, as the options say.
+/// The pairs of indicated and true speed, from the options.
 std::vector<wind::judging::CalibrationPoint> known_pairs(tools::calibration::CalibrationSession& session,
                                                          const SpanOptions& options) {
   if (!options.points.empty())
@@ -69,7 +69,7 @@ std::vector<wind::judging::CalibrationPoint> known_pairs(tools::calibration::Cal
   return beside.pairs;
 }
 
-/// Hints at a wrong unit, where the gain is close to a conversion factor.
+/// Hints at a wrong unit, if the gain is close to a conversion factor.
 void hint_at_unit(const tools::calibration::CalibrationSession& session, tools::calibration::CalibrationDialog& dialog,
                   double gain) {
   if (session.calibration().unit_m_s != 1.0) return;

@@ -173,15 +173,15 @@ void add_check_config(CLI::App& app) {
   CLI::App* command = app.add_subcommand("check-config", "check a configuration, and show what it amounts to");
   command->footer(
       "Exit code 0: no error; 78: errors, each reported as file:line:column: key: what is wrong.\nNo device is opened. "
-      "--full prints the whole configuration with every default; \"(secret)\" stands in place of a password.\n"
-      "Warns on standard error where others can read a password.\n"
+      "--full prints the whole configuration with every default; \"(secret)\" replaces a password.\n"
+      "Warns on standard error if others can read a password.\n"
       "--json: sensors (name, driver, place, gust_length_m, height_m), scenes (name, kind), cameras (name, from), "
       "alerts\n(name, when) and outputs (name, windows); with --full also the values of every table by the keys of the "
       "configuration, without "
       "secrets.\n"
-      "--as-service tries the next boot: what yuragi.service would meet, whoever asks (with sudo it may look at "
+      "--as-service tries the next boot: what yuragi.service would meet, for its own user (with sudo it can check "
       "everything):\nits user's rights to token, pictures, recordings, profiles and devices, ports, libraries, the "
-      "wall's X server, monitors.\nExit code 0: no error; 1: errors, each with the command that mends it. --json: as "
+      "wall's X server, monitors.\nExit code 0: no error; 1: errors, each with the command that fixes it. --json: as "
       "`yuragi doctor`.\n"
       "  sudo yuragi check-config /etc/yuragi/yuragi.toml --as-service");
   auto options = std::make_shared<CheckOptions>();
@@ -225,15 +225,15 @@ std::vector<DescribedTable> all_tables() {
                  "a place to see the scenes from, with a name, and how it moves; viewers follow it at once, and take "
                  "the next when its time comes",
                  look::camera_parameters()});
-  all.push_back({"[[alert]]",
-                 "what somebody is told of, by a command or a webhook, once when it begins and once when it ends; with "
-                 "a name",
-                 settings::alert_parameters()});
   all.push_back(
-      {"[[output]]",
-       "how `yuragi-viewer --config FILE` shows its picture on a wall; with a name where there are several, for "
-       "`--output NAME`",
-       output::output_parameters()});
+      {"[[alert]]",
+       "a condition that is reported by a command or a webhook, once when it begins and once when it ends; with "
+       "a name",
+       settings::alert_parameters()});
+  all.push_back({"[[output]]",
+                 "how `yuragi-viewer --config FILE` shows its picture on a wall; with a name if there are several, for "
+                 "`--output NAME`",
+                 output::output_parameters()});
   all.push_back({"[[output.window]]",
                  "below an [[output]]: a monitor that it fills, with all of the picture or a part; without any it is "
                  "the primary monitor",
@@ -262,7 +262,7 @@ void add_describe(CLI::App& app) {
   command->footer(
       "--json: a list with table, summary, parameters for each table; of a parameter name, type, unit, default, "
       "left_out\n"
-      "(what it means where it is left out), min, max, choices, help.");
+      "(what it means if it is left out), min, max, choices, help.");
   auto as_json = std::make_shared<bool>(false);
   add_json(*command, *as_json);
   command->callback([as_json] { describe_everything(*as_json); });

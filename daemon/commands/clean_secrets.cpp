@@ -59,8 +59,8 @@ void clean_one(const std::string& file) {
              found.secrets == 0 ? "has no secrets in it" : count_text(found.secrets, "secret") + " taken out");
   if (found.unreadable_texts > 0) {
     throw ExitError(kExitDataError,
-                    fmt::format("{}: {} in it cannot be read as TOML and stayed; there may be secrets in such a text",
-                                file, count_text(found.unreadable_texts, "configuration")));
+                    fmt::format("{}: {} cannot be read as TOML; each was left unchanged and may contain secrets", file,
+                                count_text(found.unreadable_texts, "configuration")));
   }
 }
 

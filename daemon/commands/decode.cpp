@@ -61,7 +61,7 @@ class Input {
   std::array<std::uint8_t, 16384> block_{};
 };
 
-/// `text` for JSON: where it is not valid UTF-8, each byte beyond ASCII as \xNN.
+/// `text` for JSON: if it is not valid UTF-8, each byte beyond ASCII as \xNN.
 std::string as_utf8(std::string_view text) {
   if (is_utf8(text)) return std::string(text);
   std::string escaped;
@@ -202,7 +202,8 @@ std::string footer() {
   text +=
       "Text can be given as hexadecimal digits, too (--hex). Standard input can be endless:\n"
       "  tail -f voyage.log | yuragi decode nmea | jq .speed_m_s\n"
-      "Exit code 0: the input was read to its end, whatever was refused; 64: wrong command line; 66: the input cannot "
+      "Exit code 0: the input was read to its end, even if messages were refused; 64: wrong command line; 66: the "
+      "input cannot "
       "be\n"
       "read; 78: the Modbus profile is missing or wrong.";
   return text;

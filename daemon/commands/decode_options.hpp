@@ -22,7 +22,7 @@ class DecodeCommandOptions {
   /// Adds them to the command; this object must outlive it.
   void add_to(CLI::App& command);
 
-  /// To be called after parsing. Throws ExitError where an option does not apply to the format, or where two quantities
+  /// Call it after parsing. Throws ExitError if an option does not apply to the format, or if two quantities
   /// have the same column.
   void check();
 

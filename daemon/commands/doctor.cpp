@@ -39,7 +39,7 @@ void run_doctor(const DoctorOptions& options) {
 
 void add_doctor(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("doctor", "find what is wrong with an installation, and the commands that mend it");
+      app.add_subcommand("doctor", "find what is wrong with an installation, and the commands that fix it");
   command->footer(
       "Looks at the configuration, the devices that it names (serial ports, USB devices, sound cards, hosts, brokers,\n"
       "files), permissions, clock, disk, listening address, graphics and display, versions and limits. It changes\n"
@@ -49,7 +49,7 @@ void add_doctor(CLI::App& app) {
       "Exit code 0: no error, warnings at most; 1: errors; 64: the command line.\n"
       "--json: verdict (\"ok\", \"warning\" or \"error\": the gravest) and findings, a list with area, verdict, text "
       "and\n"
-      "remedy (null where nothing is wrong).");
+      "remedy (null if nothing is wrong).");
   auto options = std::make_shared<DoctorOptions>();
   add_installation_config(*command, options->config_file);
   add_daemon_address(*command, options->address);

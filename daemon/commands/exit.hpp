@@ -7,7 +7,7 @@
 
 namespace yuragi::daemon::commands {
 
-// How commands end: 0, or one of sysexits.h, so that a service manager can tell what went wrong; or, where a command
+// How commands end: 0, or one of sysexits.h, so that a service manager can see what went wrong; or, if a command
 // judges something, one of the first two.
 inline constexpr int kExitAttention = 1;      ///< `status`, `doctor`, `accept`, `verify`: something needs attention
 inline constexpr int kExitNoDaemon = 2;       ///< `status`: no daemon answers
@@ -40,7 +40,7 @@ constexpr int exit_code_of(FailureKind kind) {
 }
 
 /// A failure of a command, with a text for a person and an exit code for the shell. Thrown by commands alone, and
-/// caught once, in main. An empty text: the command has printed all there is to say. Rooms below return a Failure, or
+/// caught once, in main. An empty text: the command has printed everything already. Rooms below return a Failure, or
 /// throw it as a FailureError.
 class ExitError : public std::runtime_error {
  public:

@@ -38,10 +38,11 @@ constexpr const char* kExportFooter =
     "of\n"
     "its length in UTC; the mean speed; the direction of the mean vector; the largest gust or speed; and the count of\n"
     "readings, where 0 leaves the other values empty (means as in WMO-No. 8). At most 10 million rows.\n"
-    "With --quantities it writes what stations said besides the wind, at most one row a sensor and second, with the "
+    "With --quantities it writes what stations reported besides the wind, at most one row a sensor and second, with "
+    "the "
     "columns\n"
     "time_utc, sensor, vertical_speed_m_s (upward), air_temperature_c, pressure_hpa, relative_humidity_percent,\n"
-    "rain_total_mm (the station's counter) and rain_rate_mm_h; empty where it did not say that.\n"
+    "rain_total_mm (the station's counter) and rain_rate_mm_h; empty if it did not report that.\n"
     "A .windlog as output is a consistent copy, even of a recording that is being written.\n"
     "A .glb as output is a take: a scene, moved by the recorded wind, as glTF 2.0 for Blender and other 3D programs; "
     "each\n"
@@ -68,7 +69,7 @@ struct ExportOptions {
   TakeOptions take;
 };
 
-/// The log time of --from or --to; nothing if it is after the end.
+/// The log time of --from or --to; nullopt if it is after the end.
 std::optional<Nanoseconds> resolve(drivers::windlog::WindlogReader& reader, const std::string& option,
                                    const std::string& text) {
   const auto moment = drivers::windlog::parse_log_moment(text);
@@ -78,7 +79,7 @@ std::optional<Nanoseconds> resolve(drivers::windlog::WindlogReader& reader, cons
   return *log_time;
 }
 
-/// The log time of --since or --until: a moment, or a duration back from the end; nothing if it is after the end.
+/// The log time of --since or --until: a moment, or a duration back from the end; nullopt if it is after the end.
 std::optional<Nanoseconds> resolve_back(drivers::windlog::WindlogReader& reader, const std::string& option,
                                         const std::string& text) {
   if (const auto back_s = parse_duration_s(text)) {
@@ -147,7 +148,7 @@ void export_as_csv(drivers::windlog::WindlogReader& reader, const ExportOptions&
              options.resample_s ? fmt::format("{} from {}", count_text(report->rows, "row"), readings) : readings);
 }
 
-/// Says which option is for another kind of output.
+/// Names the option that is for another kind of output.
 void refuse_others(const ExportOptions& options) {
   if (!options.to.empty() || !options.since.empty() || !options.until.empty() || options.resample_s ||
       options.quantities)
@@ -219,7 +220,7 @@ void add_export(CLI::App& app) {
                              ->check(CLI::Range(1e-3, 366.0 * 86400.0));
   command
       ->add_flag("--quantities", options->quantities,
-                 "write what stations said besides the wind: temperature, pressure, humidity, rain")
+                 "write what stations reported besides the wind: temperature, pressure, humidity, rain")
       ->excludes(resample);
   command->add_flag("--force", options->force, "overwrite the output");
   options->take.add_to(*command);

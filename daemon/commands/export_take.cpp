@@ -19,7 +19,7 @@
 namespace yuragi::daemon::commands {
 namespace {
 
-/// What 3D programs open without effort.
+/// The number of joints that 3D programs open without effort.
 constexpr std::size_t kUsualJoints = 12'000;
 
 std::string scene_of(const TakeOptions& options, const wire::Scenes& scenes) {
@@ -33,7 +33,7 @@ std::string scene_of(const TakeOptions& options, const wire::Scenes& scenes) {
   if (!options.scene.empty())
     throw ExitError(kExitUsage, fmt::format("--scene: there is no '{}'; there are: {}", options.scene, names));
   if (only.empty() || only.find('\n') != std::string::npos)
-    throw ExitError(kExitUsage, "--scene: which one? There are: " + names);
+    throw ExitError(kExitUsage, "--scene is missing; there are: " + names);
   return only;
 }
 
@@ -50,7 +50,7 @@ class TakeMaker {
     recorder_->add(*animation.poses()[scene_]);
   }
   const tools::take::TakeRecorder& recorder() const {
-    if (!recorder_) throw ExitError(kExitDataError, "the recording has no reading from there on");
+    if (!recorder_) throw ExitError(kExitDataError, "the recording has no reading from that time on");
     return *recorder_;
   }
   const std::string& scene() const { return name_; }
@@ -64,14 +64,15 @@ class TakeMaker {
     const pose::Skeleton& skeleton = *animation.skeletons()[scene_];
     const auto least = tools::take::every_within(skeleton, tools::take::kMostJoints);
     if (!least) {
-      throw ExitError(kExitUsage, fmt::format("{} has more joints than the {} that a glTF file takes: make it coarser",
-                                              name_, tools::take::kMostJoints));
+      throw ExitError(kExitUsage,
+                      fmt::format("{} has more joints than the {} that a glTF file can have: make it coarser", name_,
+                                  tools::take::kMostJoints));
     }
     const auto usual = tools::take::every_within(skeleton, kUsualJoints);
     every_ = options_.every ? *options_.every : usual.value_or(*least);
     if (every_ < *least)
-      throw ExitError(kExitUsage, fmt::format("--every: is to be at least {} here: a glTF file takes {} joints", *least,
-                                              tools::take::kMostJoints));
+      throw ExitError(kExitUsage, fmt::format("--every: must be at least {} here: a glTF file can have {} joints",
+                                              *least, tools::take::kMostJoints));
     recorder_ = std::make_unique<tools::take::TakeRecorder>(skeleton, name_, every_, options_.fps);
     if (options_.duration_s) {
       tools::take::checked_size(recorder_->joints(), std::floor(*options_.duration_s * options_.fps)).value();
@@ -92,9 +93,7 @@ void TakeOptions::add_to(CLI::App& command) {
   command.add_option("--config,-c", config_file, "the configuration with the scene; default: one meadow")
       ->type_name("FILE")
       ->group(kGroup);
-  command.add_option("--scene", scene, "the scene; not needed where there is only one")
-      ->type_name("NAME")
-      ->group(kGroup);
+  command.add_option("--scene", scene, "the scene; not needed if there is only one")->type_name("NAME")->group(kGroup);
   command.add_option("--fps", fps, "pictures a second (default 30)")->check(CLI::Range(1.0, 240.0))->group(kGroup);
   command.add_option("--duration", duration_s, "how long: 20 (seconds), 5min; default: to the end")
       ->type_name("TIME")

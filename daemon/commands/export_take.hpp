@@ -9,13 +9,13 @@
 
 namespace yuragi::daemon::commands {
 
-/// What of a recording becomes a take: one scene's motion as a file for 3D programs.
+/// The options of a take: one scene's motion as a file for 3D programs.
 struct TakeOptions {
   std::optional<std::filesystem::path> config_file = {};
   std::string scene = {};  ///< its name; empty: the only one besides the ground
   double fps = 30.0;
   std::optional<double> duration_s = {};
-  std::optional<std::size_t> every = {};  ///< of strands and leaves; nothing: as few are left out as possible
+  std::optional<std::size_t> every = {};  ///< of strands and leaves; nullopt: as few as possible are left out
 
   void add_to(CLI::App& command);
 };

@@ -47,12 +47,12 @@ constexpr const char* kFieldFooter =
     "wind the standard deviation is 0.8 of that along it and the length a third, upward 0.5 and a twelfth (IEC\n"
     "61400-1). The mean wind carries the gusts along; meanwhile their eddies turn over, unless --frozen.\n"
     "\n"
-    "In 3-D gusts come down and lulls rise, as much as --stress says: the covariance of u along the wind and w, over\n"
+    "In 3-D gusts come down and lulls rise, by --stress: the covariance of u along the wind and w, over\n"
     "both standard deviations. Variances and spectra are the same for every stress.\n"
     "\n"
     "It is made on a tile that repeats: --tile samples an edge, by default at least twice the grid's edge, as far as\n"
     "that is allowed. Give it 8 L or more if you want to measure statistics. Gusts of less than two samples are\n"
-    "missing; FILE.json says which variance is there.\n"
+    "missing; FILE.json has the variance that remains.\n"
     "\n"
     "With --windlog it is the live wind over the ground that the daemon would have had while that was recorded.\n"
     "\n"
@@ -71,7 +71,7 @@ struct FieldOptions {
   std::optional<double> stress;
   tools::offline::FieldFrames frames;
   bool is_frozen = false;
-  bool is_evolving = false;  ///< by default not, unless a configuration says otherwise
+  bool is_evolving = false;  ///< false by default, unless a configuration sets it
   std::optional<std::uint64_t> seed;
   std::optional<std::filesystem::path> recording;
   drivers::windlog::PlaybackOptions playback;
@@ -137,7 +137,7 @@ std::size_t tile_of(const FieldOptions& options, const wind::field::FieldGrid& g
   return std::min(largest, std::bit_ceil(std::max<std::size_t>(2 * edge, is_space ? 64 : 256)));
 }
 
-/// Writes values as they are computed. Throws where the disk does not take them.
+/// Writes values as they are computed. Throws if the disk does not take them.
 class FieldFile {
  public:
   FieldFile(std::string name, const std::filesystem::path& path, const std::vector<std::size_t>& shape)
@@ -252,15 +252,15 @@ void run_field(FieldOptions options) {
   double bytes = sizeof(float);
   for (const std::size_t edge : shape) bytes *= static_cast<double>(edge);
   if (bytes > 1e11) {
-    throw ExitError(kExitUsage, fmt::format("--size, --frames: that would be {:.0f} GB; allowed: 100 GB", bytes / 1e9));
+    throw ExitError(kExitUsage, fmt::format("--size, --frames: too large: {:.0f} GB (maximum 100 GB)", bytes / 1e9));
   }
   if (options.recording && !drivers::windlog::recording_exists(*options.recording)) {
-    throw ExitError(kExitNoInput, options.recording->string() + ": there is no such recording");
+    throw ExitError(kExitNoInput, options.recording->string() + ": this recording does not exist");
   }
   const std::filesystem::path beside = std::filesystem::path(options.output).replace_extension(".json");
   if (beside == options.output) {
     throw ExitError(kExitUsage, "-o: " + options.output.string() +
-                                    ": this name is taken by the description; choose a name in .npy");
+                                    ": this name is needed for the description; choose a name that ends with .npy");
   }
 
   nlohmann::ordered_json description = description_of(options, grid, shape);

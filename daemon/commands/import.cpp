@@ -31,20 +31,18 @@ extern const Command kImportCommand;
 namespace {
 
 constexpr const char* kImportFooter =
-    "What `import` finds by itself, and tells:\n"
+    "What `import` finds by itself, and prints:\n"
     "  the header       below a preamble (Campbell TOA5, HOBO, open-meteo), over two lines (Davis), or in a comment\n"
     "                   (KNMI, NDBC); rows of units below it\n"
     "  the columns      by their usual names: timestamp, wind_speed, direction, gust, or u and v; date and time, or "
     "year,\n"
     "                   month, day, hour in columns of their own; temperature, pressure, humidity, w\n"
     "  the units        of each column: from its name (\"Gust (mph)\"), the row of units, the preamble, the fields\n"
-    "                   (\"5.4 kn\"), the program that wrote the file, the column beside it. Where nothing says one, "
-    "m/s\n"
-    "                   is assumed, and told; where that cannot be right, --unit is asked for\n"
-    "  the times        ISO 8601, 20.7.2018, 7/20/18 2:00 PM, 201807201400, Unix time. Where day and month cannot be "
-    "told\n"
-    "                   apart, --time-format is asked for. Times without a zone are in UTC, unless --zone says "
-    "otherwise\n"
+    "                   (\"5.4 kn\"), the program that wrote the file, the column beside it. If none is given, m/s\n"
+    "                   is assumed, and printed; if that cannot be right, --unit is required\n"
+    "  the times        ISO 8601, 20.7.2018, 7/20/18 2:00 PM, 201807201400, Unix time. If the order of day and month\n"
+    "                   is not clear, --time-format is required. Times without a zone are in UTC, unless --zone is\n"
+    "                   given\n"
     "  missing values   --, M, VRB, -999, 9999, 99.0 far above all others ... A missing direction leaves the speed in\n"
     "  the order        a file with its newest row first is read from its end\n"
     "\n"
@@ -143,7 +141,7 @@ tools::csv::LineLogOptions log_options(const ImportOptions& options, const tools
   return log;
 }
 
-/// As a table or as a log, whichever it looks like.
+/// Imports it as a table or as a log, by its first lines.
 Result<tools::csv::CsvImportReport, Failure> import_any(const ImportOptions& options, std::istream& in,
                                                         const tools::csv::CsvSinks& sinks) {
   const tools::csv::CsvImportOptions csv = csv_options(options);
@@ -228,11 +226,12 @@ void print_report(const ImportOptions& options, const tools::csv::CsvImportRepor
   fmt::print("{}: {} of {}, {} left out\n", options.output, count_text(report.taken, "reading"),
              count_text(report.rows, "row"), report.refused());
   if (report.quantities > 0)
-    fmt::print("{} say more than the wind (yuragi export --quantities)\n", count_text(report.quantities, "row"));
+    fmt::print("{} with other quantities besides the wind (yuragi export --quantities)\n",
+               count_text(report.quantities, "row"));
 }
 
 void run_import(const ImportOptions& options) {
-  csv_options(options);  // a mistake in them is told before anything is opened
+  csv_options(options);  // a mistake in them is reported before anything is opened
   std::ifstream file;
   const bool is_standard_input = options.input == "-";
   if (!is_standard_input) {
@@ -279,7 +278,7 @@ void add_import(CLI::App& app) {
     command->add_option(flag, options->csv.columns[static_cast<std::size_t>(role)], help)->type_name("COLUMN");
   };
   add_column("--time", tools::csv::CsvRole::kTime, "the column of times");
-  add_column("--date", tools::csv::CsvRole::kDate, "the column of dates, where --time has none");
+  add_column("--date", tools::csv::CsvRole::kDate, "the column of dates, if --time has none");
   add_column("--speed", tools::csv::CsvRole::kSpeed, "the column of wind speeds");
   add_column("--direction", tools::csv::CsvRole::kDirection, "the column of directions");
   add_column("--gust", tools::csv::CsvRole::kGust, "the column of gusts");
@@ -304,9 +303,9 @@ void add_import(CLI::App& app) {
       ->option_text("auto|iso|day-first|month-first|compact|unix|unix-ms|unix-us|unix-ns|seconds");
   command
       ->add_option("--zone", options->zone,
-                   "zone of times that name none: UTC, +02:00, Europe/Berlin (default: as the file says, or UTC)")
+                   "zone of times that name none: UTC, +02:00, Europe/Berlin (default: given in the file, or UTC)")
       ->type_name("ZONE");
-  command->add_option("--unit", options->unit, "unit of speed, gust, u, v and w; default: as the file says, or m/s")
+  command->add_option("--unit", options->unit, "unit of speed, gust, u, v and w; default: given in the file, or m/s")
       ->option_text("m/s|km/h|kn|mph|ft/s|cm/s|\"0.1 m/s\"");
   command->add_option("--gust-unit", options->gust_unit, "unit of the gust alone")->type_name("UNIT");
   static const std::map<std::string, bool> kConventions = {{"from", false}, {"toward", true}};

@@ -37,7 +37,7 @@ tools::doctor::Examination examination_of(const std::optional<std::filesystem::p
     service::check(config);
     if (address) config = settings::listening_at(std::move(config), *address);
     examination.config = std::move(config);
-  } catch (const std::exception& error) {  // ConfigError, and what a sensor or a recording says of itself
+  } catch (const std::exception& error) {  // ConfigError, and errors of a sensor or a recording
     examination.config_error = error.what();
   }
   const std::string asked = address              ? *address

@@ -17,11 +17,11 @@ void add_installation_config(CLI::App& command, std::optional<std::filesystem::p
 /// Adds --connect.
 void add_daemon_address(CLI::App& command, std::optional<std::string>& address);
 
-/// The configuration that a command for the technician is about: the given one, else that of the service where this
+/// The configuration that a command for the technician is about: the given one, else that of the service if this
 /// user can read it, else none (the built-in one).
 std::optional<std::filesystem::path> installed_config(const std::optional<std::filesystem::path>& given);
 
-/// What `doctor` examines: that configuration, its errors, and the daemon that listens where it says, or at `address`.
+/// What `doctor` examines: that configuration, its errors, and the daemon that listens at its address, or at `address`.
 /// `client`: the name of the command in the daemon's log.
 tools::doctor::Examination examination_of(const std::optional<std::filesystem::path>& given,
                                           const std::optional<std::string>& address, const std::string& client);

@@ -26,7 +26,7 @@ constexpr const char* kNoiseFooter =
     "The tile is the raw material of every scene. It is periodic (its edges meet without a seam), has mean 0 and\n"
     "variance 1, and is the same, bit for bit, for the same seed.\n"
     "\n"
-    "beta says how rough the noise is: its power falls as 1/frequency^beta. 0 is white noise, 5/3 (the default) is\n"
+    "beta sets how rough the noise is: its power falls as 1/frequency^beta. 0 is white noise, 5/3 (the default) is\n"
     "turbulent wind, 2 and more are rolling hills.\n"
     "\n"
     "In two and three dimensions beta can mean two things:\n"

@@ -33,7 +33,7 @@ wire::ControlReply carry_out(const ParameterOptions& options, wire::ParameterCom
   const wire::Control control{.scene = "", .parameters = std::move(command)};
   if (control.parameters->edits.size() > wire::kMaxParameterEdits ||
       wire::encode(control).size() > wire::kMaxClientMessageBytes) {
-    throw ExitError(kExitUsage, "these are too many values at once: set them by several commands");
+    throw ExitError(kExitUsage, "too many values at once: set them with several commands");
   }
   auto reply = send_control(options.connect, options.of_scenes ? "scene" : "look", control, kParameterTimeout);
   if (!reply.parameters) {
@@ -100,7 +100,7 @@ std::string toml_text(const wire::ParameterState& state, const std::string& valu
   return state.kind == wire::ParameterKind::kText ? settings::toml_value(value) : value;
 }
 
-/// The lines that the configuration would need to say what is so now.
+/// Prints the lines that the configuration needs for the present values.
 void print_toml(const wire::ParameterGroup& group) {
   const bool is_changed =
       std::ranges::any_of(group.parameters, [](const auto& state) { return state.value != state.configured; });
@@ -130,7 +130,7 @@ void print_table(const wire::ParameterGroup& group) {
     };
     std::string line = fmt::format("  {:<20} {}", state.name, shown(state.value));
     if (state.value != state.configured) line += fmt::format("  (the configuration: {})", shown(state.configured));
-    if (state.change == KeyChange::kTakesRestart) line += "  (takes a restart)";
+    if (state.change == KeyChange::kTakesRestart) line += "  (needs a restart)";
     fmt::print("{}\n", line);
   }
 }

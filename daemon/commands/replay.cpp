@@ -36,7 +36,7 @@ struct ReplayOptions {
   bool is_to_stdout = false;
 };
 
-/// Whoever begins to watch sees scenes that have lived in the wind for so long.
+/// The scenes have already moved in the wind for this long when a client first sees them.
 constexpr double kLead_s = 15.0;
 constexpr double kMinRate = 0.01;
 constexpr double kMaxRate = 1000.0;
@@ -77,12 +77,12 @@ settings::SensorConfig replay_sensor(const ReplayOptions& options, double rate) 
 /// The whole installation as the recording holds it. Logs what is not as it was.
 sensing::RecordedInstallation installation_of(const ReplayOptions& options, double rate) {
   if (options.run.config_file) {
-    throw ExitError(kExitUsage, "--as-recorded takes the recording's own configuration: leave --config out");
+    throw ExitError(kExitUsage, "--as-recorded uses the recording's own configuration: remove --config");
   }
   if (options.playback.loop || options.at_time_of_day || !options.playback.sensor.empty()) {
     throw ExitError(kExitUsage,
-                    "--as-recorded replays all sensors once, by the recorded clock: it takes neither --loop nor "
-                    "--same-time-of-day nor --sensor");
+                    "--as-recorded replays all sensors once, by the recorded clock: remove --loop, "
+                    "--same-time-of-day and --sensor");
   }
   sensing::RecordedInstallation installation =
       sensing::recorded_installation(
@@ -114,7 +114,7 @@ tools::offline::LockstepResult replay_in_lockstep(const ReplayOptions& options,
       .value();
 }
 
-/// Whoever reads is waited for; once nobody does, SIGPIPE ends this program.
+/// Waits for its reader; when there is none any more, SIGPIPE ends this program.
 void write_to_stdout(const ReplayOptions& options) {
   if (isatty(STDOUT_FILENO) != 0) {
     throw ExitError(kExitUsage, "--to-stdout writes messages for a program: send them through a pipe or into a file");
@@ -139,7 +139,7 @@ void replay_at_full_speed(const ReplayOptions& options) {
                     "--rate max with --loop would never end; add --duration TIME (in time of the recording)");
   }
   if (options.at_time_of_day || options.is_paused) {
-    throw ExitError(kExitUsage, "--rate max has no clock: it takes neither --same-time-of-day nor --paused");
+    throw ExitError(kExitUsage, "--rate max has no clock: remove --same-time-of-day and --paused");
   }
   if (options.is_to_stdout) return write_to_stdout(options);
   const bool is_watched = isatty(STDERR_FILENO) != 0;
@@ -178,7 +178,7 @@ void replay(const ReplayOptions& options) {
     for (const std::string& damage : reader->damage()) spdlog::warn("{}", damage);
   }
   if (options.is_to_stdout && options.rate != "max") {
-    throw ExitError(kExitUsage, "--to-stdout waits for its reader, not for a clock: it takes --rate max");
+    throw ExitError(kExitUsage, "--to-stdout waits for its reader, not for a clock: add --rate max");
   }
   if (options.as_recorded && options.rate != "max") {
     const sensing::RecordedInstallation installation = installation_of(options, parse_rate(options.rate));
@@ -220,7 +220,7 @@ void add_replay(CLI::App& app) {
       "clock), and each sensor by its name with its calibration, judging and part in the blend, of the configuration "
       "in "
       "the\n"
-      "recording. That of the session in which it begins holds to the end; the log says where the recording has "
+      "recording. That of the session in which it begins holds to the end; the log shows where the recording has "
       "another.\n"
       "Not in a recording, and so not as they were: what had been learnt of the site before it began (site_file), the "
       "fall-\n"

@@ -131,7 +131,7 @@ void run_report(const ReportOptions& options) {
     throw ExitError(is_there ? kExitDataError : kExitNoInput, reader.error().message);
   }
   if (!options.json.empty() && options.json == options.output) {
-    throw ExitError(kExitUsage, "--json: is the name of the page; choose another file");
+    throw ExitError(kExitUsage, "--json: is the same file as the page; choose another file");
   }
   // Checked before hours of work.
   const auto page_lock = lock_output(options.output);

@@ -26,7 +26,7 @@ settings::Config config_with_warnings(const RunOptions& options) {
   return config;
 }
 
-/// Runs the daemon, whose configuration can be read again where it is a file. `record`: the recording in place of the
+/// Runs the daemon, whose configuration can be read again if it is a file. `record`: the recording in place of the
 /// configured one.
 void run_daemon(const RunOptions& options, const std::optional<std::filesystem::path>& record, bool with_scenes) {
   service::hold_back_hangups();

@@ -8,7 +8,7 @@
 namespace yuragi::daemon::commands {
 
 /// Sends a Control to a running daemon, with this installation's token (settings::own_token()), and waits for the
-/// reply. `client`: the name of the command in the daemon's log. A refusal says, too, if the token cannot be read.
+/// reply. `client`: the name of the command in the daemon's log. A refusal also reports a token that cannot be read.
 /// Throws FailureError if no daemon replies, or if it refuses the connection or has another protocol.
 wire::ControlReply send_control(const std::string& address, const std::string& client, const wire::Control& control,
                                 Nanoseconds timeout = std::chrono::seconds(5));

@@ -55,7 +55,7 @@ void add_sensors_describe(CLI::App& sensors) {
   command->footer(
       "--json: a list with name, summary, parameters, known_devices, device_setup (what to set at the device) for each "
       "driver;\n"
-      "of a parameter name, type, unit, default, left_out (what it means where it is left out), min, max, choices, "
+      "of a parameter name, type, unit, default, left_out (what it means if it is left out), min, max, choices, "
       "help;\n"
       "of a device name, device, confirmed_by, unconfirmed, value (what its speed is: value, averaging_s, source; "
       "null: "

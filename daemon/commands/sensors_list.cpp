@@ -29,7 +29,7 @@ struct ListOptions {
   bool as_json = false;
 };
 
-/// How to reach the broker; and the same as a sensor's table says it. Throws FailureError.
+/// Returns how to reach the broker, and the same as keys of a sensor's table. Throws FailureError.
 drivers::mqtt::BrokerSearch broker_search_of(const ListOptions& options) {
   constexpr std::uint16_t kPort = 1883;
   constexpr std::uint16_t kTlsPort = 8883;
@@ -71,7 +71,7 @@ void list_plugged_in(bool as_json) {
   if (as_json) return print_json(tools::sensors::devices_json(findings));
   fmt::print(
       "{}Devices on a serial line or behind a Modbus gateway: `yuragi sensors probe modbus PORT|HOST:PORT`.\n"
-      "What is announced on an MQTT broker: `yuragi sensors list --broker HOST`.\n"
+      "Devices that are announced on an MQTT broker: `yuragi sensors list --broker HOST`.\n"
       "Stations and servers in the local network: `yuragi sensors list --network`.\n",
       tools::sensors::device_list(findings, drivers));
 }
@@ -81,7 +81,7 @@ void list_announced(const ListOptions& options) {
   if (options.as_json) return print_json(tools::sensors::devices_json(findings));
   if (!findings.empty()) return fmt::print("{}", tools::sensors::device_list(findings, {}));
   fmt::print(
-      "No anemometer is announced on {} below {}/. What is published there without an announcement is configured by "
+      "No anemometer is announced on {} below {}/. Configure what is published without an announcement by "
       "hand:\n`yuragi sensors describe mqtt`.\n",
       options.broker, options.prefix);
 }
@@ -94,9 +94,10 @@ void list_network(const ListOptions& options) {
   if (options.as_json) return print_json(tools::sensors::devices_json(findings));
   if (!findings.empty()) return fmt::print("{}", tools::sensors::device_list(findings, {}));
   fmt::print(
-      "Nothing was found within {:g} s. What is in another network, behind a firewall (UDP 50222, and answers to what "
-      "is\nasked), or in a wireless network that keeps its stations apart is not found: ask its address with --ask, or "
-      "\nconfigure it by hand: `yuragi sensors describe tempest`, ecowitt, weatherlink, signalk.\n",
+      "Nothing was found within {:g} s. Devices in another network, behind a firewall (UDP 50222, and replies to what "
+      "is\nasked), or in a wireless network that isolates its stations are not found: give their address with --ask, "
+      "or "
+      "\nconfigure them by hand: `yuragi sensors describe tempest`, ecowitt, weatherlink, signalk.\n",
       *options.network_s);
 }
 
@@ -117,7 +118,7 @@ void add_sensors_list(CLI::App& sensors) {
       "  sends    multicast DNS, 224.0.0.251 port 5353: who is _signalk-ws._tcp, _signalk-tcp._tcp (signalk), "
       "_weatherlinklive._tcp\n           (weatherlink)?\n"
       "Without it nothing is sent.\n"
-      "--json: a list with driver, device, settings (TOML to paste), trouble and remedy (null where it can be "
+      "--json: a list with driver, device, settings (TOML to paste), trouble and remedy (null if it can be "
       "opened).");
   auto options = std::make_shared<ListOptions>();
   CLI::Option* const broker = command->add_option("--broker", options->broker,
@@ -134,14 +135,12 @@ void add_sensors_list(CLI::App& sensors) {
   CLI::Option* const network =
       command
           ->add_option("--network", options->network_s,
-                       "[SECONDS]: search the local networks instead; what is sent is said below")
+                       "[SECONDS]: search the local networks instead; what is sent is listed below")
           ->expected(0, 1)
           ->default_str("12")
           ->check(CLI::Range(0.1, 3600.0))
           ->excludes(broker);
-  command->add_option("--ask", options->ask, "ask this IPv4 address, and nobody else")
-      ->needs(network)
-      ->check(CLI::ValidIPV4);
+  command->add_option("--ask", options->ask, "ask only this IPv4 address")->needs(network)->check(CLI::ValidIPV4);
   add_json(*command, options->as_json);
   command->callback([options] {
     if (options->network_s) return list_network(*options);

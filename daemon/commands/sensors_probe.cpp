@@ -85,7 +85,7 @@ std::vector<std::uint8_t> ids_of(const std::string& text) {
   return ids;
 }
 
-/// Where none are given: those that people choose, and those that devices have from the factory.
+/// The default, if none are given: those that people choose, and those that devices have from the factory.
 std::vector<std::uint8_t> usual_ids(const std::vector<drivers::modbus::NamedModbusProfile>& profiles) {
   std::vector<std::uint8_t> ids = ids_of("1-16");
   for (const drivers::modbus::NamedModbusProfile& named : profiles) {
@@ -100,7 +100,7 @@ std::string settings_of(const drivers::bus::ModbusLine& line) {
   return fmt::format(", {} 8{}{}", line.baud, line.parity, line.stop_bits);
 }
 
-/// HOST:PORT, or nothing if it is not an address.
+/// HOST:PORT, or nullopt if it is not an address.
 std::optional<drivers::bus::ModbusLine> tcp_line_of(const std::string& where) {
   const std::size_t colon = where.rfind(':');
   if (where.starts_with('/') || colon == std::string::npos || colon == 0) return std::nullopt;
@@ -113,7 +113,7 @@ std::optional<drivers::bus::ModbusLine> tcp_line_of(const std::string& where) {
   return line;
 }
 
-/// The persistent name of a serial port, where the system has one.
+/// The persistent name of a serial port, if the system has one.
 std::string stable_name(const std::string& device) {
   std::error_code ignored;
   for (const drivers::bus::SerialPortInfo& port : drivers::bus::find_serial_ports()) {
@@ -289,12 +289,13 @@ void add_sensors_probe(CLI::App& sensors) {
       "  yuragi sensors probe modbus 192.168.1.20:502 --id 1-10\n"
       "Where profiles read the same register with different scales, all of them are shown, and the device's own wind "
       "force, where\n"
-      "it has one, tells which is right. What reads nothing but zeros comes last.\n"
+      "it has one, shows which is right. Those that read only zeros come last.\n"
       "--json: an object a line for each device: line, baud, parity, stop_bits (null over TCP), slave, fits, "
       "scale_doubts (the\n"
-      "profiles among which nothing tells); of each fit profile, device, speed_m_s, direction_deg, gust_m_s, beaufort, "
+      "profiles between which it cannot decide); of each fit profile, device, speed_m_s, direction_deg, gust_m_s, "
+      "beaufort, "
       "agrees_with_beaufort\n"
-      "(null where it has none), is_live (not all of it is 0), has_factory_settings.");
+      "(null if it has none), is_live (not all of it is 0), has_factory_settings.");
   auto options = std::make_shared<ProbeOptions>();
   command->add_option("where", options->where, "serial port, or HOST:PORT of a device or gateway")
       ->required()

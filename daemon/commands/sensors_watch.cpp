@@ -1,4 +1,4 @@
-// `yuragi sensors watch`: shows the sensors of the running daemon, or the devices themselves where none runs.
+// `yuragi sensors watch`: shows the sensors of the running daemon, or the devices themselves if none runs.
 #include <algorithm>
 #include <functional>
 #include <memory>
@@ -59,7 +59,7 @@ class Screen {
  public:
   virtual ~Screen() = default;
   virtual wire::Subscribe subscription() const = 0;
-  /// Called with the sensors at once, and then about twice a second; `source` says where they come from.
+  /// Called with the sensors at once, and then about twice a second; `source` names their origin.
   virtual bool show_sensors(const wire::Sensors& sensors, const std::string& source) = 0;
   virtual bool show_message(const wire::RawTrace& /*trace*/) { return true; }
 };
@@ -101,7 +101,7 @@ class RawScreen final : public Screen {
         .poses = false, .sensors = true, .client = "sensors watch --raw", .raw = true, .raw_sensor = options_.sensor};
   }
 
-  /// Prints once where they come from, and whether there is such a sensor.
+  /// Prints their origin once, and whether there is such a sensor.
   bool show_sensors(const wire::Sensors& sensors, const std::string& source) override {
     if (std::exchange(is_begun_, true)) return true;
     std::string known;
@@ -225,9 +225,9 @@ void add_sensors_watch(CLI::App& sensors) {
       "of what is usual.\n"
       "If [shaping] changes the wind of the scenes (floor, site gain, gusts, opening hours, ceiling), that is shown, "
       "too.\n"
-      "Since the daemon's start: clients refused (no place), stuck (they stopped reading) and idle (they asked for\n"
+      "Since the daemon's start: clients refused (no place), stuck (they stopped reading) and idle (they requested\n"
       "nothing), and the lateness of its I/O thread and of the animation's ticks: median, 99th percentile, maximum.\n"
-      "Raw messages are shown only where [stream] control allows it. To clients of other machines, files are named\n"
+      "Raw messages are shown only if [stream] control allows it. To clients of other machines, files are named\n"
       "without their folders.\n"
       "--json: an object a line: wind (speed_m_s, direction_deg, source, ...), sensors (a list: name, driver, state,\n"
       "state_reason, value (what its speed is), reads_times_group (1: not levelled), speed_m_s, direction_deg, "

@@ -15,7 +15,7 @@ namespace yuragi::daemon::commands {
 /// started it ends in any other way.
 class SimulatorProcess {
  public:
-  /// Waits until it listens, for at most 10 s. Fails where it is not installed (beside this program, or in the system's
+  /// Waits until it listens, for at most 10 s. Fails if it is not installed (beside this program, or in the system's
   /// folders of programs), or cannot play what was asked for.
   static Result<SimulatorProcess, Failure> start(const std::vector<std::string>& arguments);
 

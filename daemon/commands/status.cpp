@@ -57,19 +57,19 @@ void add_status(CLI::App& app) {
       "Attention is needed by a sensor whose readings are not used (connecting, stale, frozen, seized, implausible,\n"
       "disconnected), a recorder that cannot write, whose disk does not answer, that has dropped readings or has less\n"
       "than 200 MB left, and by lateness: 1 % of the ticks late by more than 17 ms, or of the steps of sensors and\n"
-      "clients by more than 100 ms. The time that it runs is that of its animation; without scenes it is not known.\n"
+      "clients by more than 100 ms. The time that it runs is that of its animation; without scenes it is unknown.\n"
       "A scene's part of a tick, and what this machine carries (until half of each tick is worked for), are means of "
       "the\n"
-      "last 5 s. On the daemon's machine this has an answer also where the maximum number of clients is connected.\n"
+      "last 5 s. On the daemon's machine this works even if the maximum number of clients is connected.\n"
       "  yuragi status --connect 192.168.1.30:7410\n"
       "  yuragi status --quiet || mail -s \"the wall\" me@example.org < /dev/null\n"
       "--json: verdict (\"well\", \"attention\" or \"no daemon\"), attention (a list of texts), address, software,\n"
-      "tick_rate_hz, running_s (null where it is not known), scenes (name, kind, is_shown), players (as `yuragi "
+      "tick_rate_hz, running_s (null if it is not known), scenes (name, kind, is_shown), players (as `yuragi "
       "player\n"
       "status --json`), and all that `yuragi sensors watch --json` has.");
   auto options = std::make_shared<StatusOptions>();
   add_daemon_address(*command, options->address);
-  command->add_option("--config,-c", options->config_file, "the configuration that says where it listens (TOML)")
+  command->add_option("--config,-c", options->config_file, "the configuration with its address (TOML)")
       ->type_name("FILE");
   add_json(*command, options->as_json);
   command->add_flag("--quiet,-q", options->is_quiet, "print nothing but errors: only the exit code counts");

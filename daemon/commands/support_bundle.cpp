@@ -1,4 +1,4 @@
-// `yuragi support-bundle`: packs what whoever helps needs to know, without secrets.
+// `yuragi support-bundle`: packs what a helper needs to know, without secrets.
 #include "daemon/tools/support/support_bundle.hpp"
 
 #include <chrono>
@@ -47,15 +47,16 @@ void make_bundle(const BundleOptions& options) {
 
 void add_support_bundle(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("support-bundle", "pack what whoever helps needs to know of an installation, without secrets");
+      app.add_subcommand("support-bundle", "pack what a helper needs to know of an installation, without secrets");
   command->footer(
-      "Packs the configuration, what `yuragi doctor` and `yuragi status` say, the last 5000 lines of the log of each\n"
-      "unit, the sessions and counts of the recording, and what the system tells of its kernel, packages, disks and\n"
+      "Packs the configuration, the output of `yuragi doctor` and `yuragi status`, the last 5000 lines of the log of "
+      "each\n"
+      "unit, the sessions and counts of the recording, and what the system reports of its kernel, packages, disks and\n"
       "devices. \"(secret)\" stands in place of each password of the configuration wherever it occurs, and of what "
       "looks\n"
       "like one (behind password, passphrase, token, psk, ..., and in URLs). The name of this machine is left out.\n"
-      "A configuration that is no TOML is left out. The file is readable by its owner and group (0640).\n"
-      "The log is there for who may read it: sudo yuragi support-bundle\n"
+      "A configuration that is not TOML is left out. The file is readable by its owner and group (0640).\n"
+      "To include the log, run it as a user who may read it: sudo yuragi support-bundle\n"
       "Exit code 0: written; 73: it cannot be written.");
   auto options = std::make_shared<BundleOptions>();
   add_installation_config(*command, options->config_file);

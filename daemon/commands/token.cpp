@@ -32,7 +32,7 @@ constexpr const char* kTokenFooter =
     "year by the code, which is another one every ten minutes; scripts send the token itself: Authorization: Bearer "
     "TOKEN.\n"
     "  yuragi token --config wall.toml            the code of now\n"
-    "  yuragi token --config wall.toml --new      makes the file of the token; where there was one, it is replaced, "
+    "  yuragi token --config wall.toml --new      makes the file of the token; an existing one is replaced, "
     "and\n"
     "                                             all who knew it are out once the daemon has been started again\n"
     "  yuragi token --config wall.toml --sessions        lists the browsers that were paired and are still let in\n"
@@ -74,14 +74,14 @@ void write_token(const std::filesystem::path& file, const std::filesystem::path&
   const std::string line = web::Access::new_token().reveal() + "\n";
   struct stat config {};
   const bool is_written = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
-  // The daemon's group, where it may be given away to it.
+  // The daemon's group, if this process may give the file to it.
   const bool is_given = ::stat(config_file.c_str(), &config) == 0 &&
                         ::fchown(descriptor, static_cast<uid_t>(-1), config.st_gid) == 0 &&
                         ::fchmod(descriptor, S_IRUSR | S_IWUSR | S_IRGRP) == 0;
   const bool is_on_disk = is_written && ::fsync(descriptor) == 0;
   if (::close(descriptor) != 0 || !is_on_disk) fail("cannot be written");
   if (const auto done = output.commit(); !done) throw FailureError(done.error());
-  fmt::print(stderr, "{}: a new token, for {}; start the daemon again\n", file.string(),
+  fmt::print(stderr, "{}: new token, readable by {}; restart the daemon\n", file.string(),
              is_given ? "its owner and the configuration's group" : "its owner alone");
 }
 
@@ -104,8 +104,10 @@ void show_sessions(const PageRequest& request, bool as_json) {
 /// Asks the running daemon for the sessions, or to end one.
 void handle_sessions(const TokenOptions& options, const std::string& listen, const Secret& token) {
   if (listen.empty()) {
-    throw ExitError(kExitConfig, options.config_file.string() +
-                                     ": has no [http] listen, so that no browser can be paired with this daemon");
+    throw ExitError(
+        kExitConfig,
+        options.config_file.string() +
+            ": [http] listen is missing, so no browser can be paired with this daemon; set it to HOST:PORT");
   }
   PageRequest request{.listen = listen, .path = std::string(web::kSessionsPath), .token = token};
   if (!options.revoked_id) return show_sessions(request, options.as_json);
@@ -119,7 +121,7 @@ void show_token(const TokenOptions& options) {
   const std::filesystem::path file = config.http.token_file;
   if (file.empty()) {
     throw ExitError(kExitConfig, options.config_file.string() +
-                                     ": has no [http] token_file: name a file in which the token is to be, such as "
+                                     ": [http] token_file is missing: name a file for the token, such as "
                                      "token_file = \"/etc/yuragi/token\"");
   }
   if (options.makes_new) write_token(file, options.config_file);

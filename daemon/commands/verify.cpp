@@ -28,7 +28,7 @@ constexpr const char* kVerifyFooter =
     "are missing since their session was closed, a file that is missing between two. A session that was not closed "
     "(its\n"
     "program was killed, or still records) or is of an older version has no count to compare with.\n"
-    "Times without a reading of a sensor that are longer than --gap are listed; they are no damage.\n"
+    "Times without a reading of a sensor that are longer than --gap are listed; they are not damage.\n"
     "The exit code is 0 if all is sound, and 1 if something is damaged or missing.\n"
     "--json prints is_sound, files (file, is_sound, damage, readings, sessions, sessions_without_count, first, last),\n"
     "missing, gap_s and gaps (sensor, from, to, length_s).\n"

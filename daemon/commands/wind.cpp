@@ -50,7 +50,7 @@ constexpr const char* kWindFooter =
     "--value sets what the recorded speeds are: mean (since the previous reading), instant (instantaneous wind) or\n"
     "maximum (of a period; not used as wind). Default: what the driver that recorded them states; if it states "
     "nothing,\n"
-    "it is judged from the readings where they are close enough; until then instant for readings at most 30 s apart,\n"
+    "it is judged from the readings if they are close enough; until then instant for readings at most 30 s apart,\n"
     "otherwise mean.\n"
     "\n"
     "--sensor-interval simulates a slower sensor: vector means over that many seconds, given at their end. --gap "
@@ -125,7 +125,7 @@ GroundPlace parse_place(const std::string& option, const std::string& text) {
 
 const std::filesystem::path& existing(const std::filesystem::path& file) {
   if (!drivers::windlog::recording_exists(file))
-    throw ExitError(kExitNoInput, file.string() + ": there is no such recording");
+    throw ExitError(kExitNoInput, file.string() + ": this recording does not exist");
   return file;
 }
 

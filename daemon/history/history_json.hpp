@@ -6,7 +6,7 @@
 
 namespace yuragi::daemon::history {
 
-/// As JSON: for each sensor a row of each value, with null where nothing was recorded and a direction where there was a
+/// As JSON: for each sensor a row of each value, with null if nothing was recorded and a direction where there was a
 /// wind. Invalid UTF-8 in names is replaced.
 std::string history_json(const WindHistory& history);
 

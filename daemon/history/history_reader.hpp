@@ -14,7 +14,7 @@ namespace yuragi::daemon::history {
 /// slow or hanging. What was read last is kept for a while.
 class HistoryReader {
  public:
-  /// Reads the last hours. It owns all that it uses: where the disk hangs, it outlives everything else.
+  /// Reads the last hours. It owns all that it uses: if the disk hangs, it outlives everything else.
   using Read = std::function<Result<std::string, Failure>(unsigned hours, const std::stop_token& stop)>;
   /// Called once: at once, or on the reader's thread.
   using Reply = std::function<void(Result<std::string, Failure>)>;

@@ -27,7 +27,7 @@ void add(HistoryStep& step, const wind::WindReading& reading) {
     step.vector_sum_m_s = step.vector_sum_m_s + wind::wind_from(reading.speed_m_s, *reading.direction_deg);
 }
 
-/// The history of that name, which is added where there is none; null where there are enough.
+/// The history of that name, which is added if there is none; null if there are enough.
 SensorHistory* sensor_named(const std::string& name, WindHistory& history) {
   const auto found = std::ranges::find(history.sensors, name, &SensorHistory::name);
   if (found != history.sensors.end()) return &*found;

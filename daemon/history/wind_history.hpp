@@ -13,7 +13,7 @@
 
 namespace yuragi::daemon::history {
 
-/// What a sensor said in one step of time, before calibration.
+/// What a sensor reported in one step of time, before calibration.
 struct HistoryStep {
   std::uint64_t readings = 0;  ///< 0: a gap, in which nothing else is known
   double sum_m_s = 0.0, min_m_s = 0.0, max_m_s = 0.0;
@@ -35,7 +35,7 @@ struct WindHistory {
   std::vector<SensorHistory> sensors = {};  ///< in the order of their first readings
 };
 
-/// More steps than these are not made, but for the one that has only begun.
+/// More steps than these are not made, except for the one that has only begun.
 inline constexpr std::int64_t kMostSteps = 500;
 /// Further sensors of a recording are left out.
 inline constexpr std::size_t kMostSensors = 16;

@@ -32,7 +32,7 @@ Result<std::vector<std::uint8_t>, Failure> bytes_of(const std::filesystem::path&
   }
   struct stat status {};
   if (fstat(opened.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
-    return refusal("is no regular file, but a folder, a pipe or a device");
+    return refusal("is not a regular file, but a folder, a pipe or a device");
   }
   if (static_cast<std::uintmax_t>(status.st_size) > kLargestFile_bytes) {
     return refusal("is a file of " + std::to_string(status.st_size >> 20) + " MB; allowed: up to " +

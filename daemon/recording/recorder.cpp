@@ -27,7 +27,7 @@ void Recorder::close() {
   thread_.detach();
   const RecorderStatus status = worker_->status();
   worker_->report_at_last("the disk does not answer: ended with " + count_text(status.waiting, "reading") +
-                          " that were perhaps not written");
+                          " that may not have been written");
 }
 
 }  // namespace yuragi::daemon::recording

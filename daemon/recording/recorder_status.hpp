@@ -9,7 +9,7 @@
 namespace yuragi::daemon::recording {
 
 enum class RecorderState : std::uint8_t {
-  kWriting,   ///< all is well
+  kWriting,   ///< no fault
   kRetrying,  ///< writing failed, and is tried again at growing intervals
   kHanging,   ///< the disk has not answered for RecorderLimits::hang_after
 };
@@ -27,7 +27,7 @@ struct RecorderStatus {
   std::uint64_t lost = 0;                   ///< readings that were dropped
   std::uint64_t recorded_elsewhere = 0;     ///< readings left to another program that recorded to the same file
   std::string error;                        ///< why it cannot write at present, and since when; empty while it can
-  std::optional<std::uint64_t> free_bytes;  ///< on the recording's disk, for this user; nothing where it is not known
+  std::optional<std::uint64_t> free_bytes;  ///< on the recording's disk, for this user; nullopt if it is not known
   std::optional<ClockDoubt> clock_doubt;    ///< while it lasts, age deletes nothing
 };
 

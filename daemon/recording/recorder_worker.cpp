@@ -23,12 +23,12 @@ namespace {
 
 // Room for the readings between two commits, at tens of thousands a second.
 constexpr std::size_t kRingCapacity = 16'384;
-// What stations say besides the wind waits in the ring, and as much again behind it: minutes of a sensor.
+// What stations report besides the wind waits in the ring, and as much again behind it: minutes of a sensor.
 constexpr std::size_t kQuantitiesCapacity = 1024;
 /// Parts that began in the same second have the names of the seconds that follow.
 constexpr int kMostPartNames = 1000;
 
-/// 0 where it cannot be known.
+/// 0 if it cannot be known.
 std::uint64_t size_of(const std::filesystem::path& file) {
   std::error_code error;
   const auto bytes = std::filesystem::file_size(file, error);
@@ -39,7 +39,7 @@ std::string megabytes(std::uint64_t bytes) {
   return std::to_string(bytes / 1'000'000) + " MB";
 }
 
-/// The earliest time of what stations said besides the wind; there is some.
+/// The earliest time of what stations reported besides the wind; precondition: there is some.
 template <class Entries>
 Instant earliest_of(const Entries& entries) {
   return std::ranges::min_element(entries, {}, [](const auto& entry) { return entry.quantities.time.mono; })
@@ -129,7 +129,7 @@ Result<void, Failure> RecorderWorker::leave_what_is_recorded() {
   auto recorded = writer_->last_time();
   writer_.reset();
   const auto parts = drivers::windlog::completed_parts(file_);
-  if (recorded && !*recorded && !parts.empty()) {  // it ended where it had completed a file and not yet begun the next
+  if (recorded && !*recorded && !parts.empty()) {  // it ended after completing a file and before beginning the next
     auto part = drivers::windlog::WindlogWriter::open(parts.back().file);
     if (!part) return part.error();
     recorded = part->last_time();
@@ -173,7 +173,7 @@ void RecorderWorker::begin_session(RecordingInfo info, const settings::Recording
   push_marks();
 }
 
-/// Where the ring is full they follow with the next reading that is taken: what is dropped meanwhile is in no session.
+/// If the ring is full, they follow with the next reading that is taken: what is dropped meanwhile is in no session.
 void RecorderWorker::push_marks() noexcept {
   while (marks_due_ > 0 && ring_.push({kNextSession, {}})) --marks_due_;
 }
@@ -349,7 +349,7 @@ Result<void, Failure> RecorderWorker::write_pending() {
   return write_quantities();
 }
 
-/// Writes what stations said besides the wind, where no readings took it with them.
+/// Writes what stations reported besides the wind, if no readings took it with them.
 Result<void, Failure> RecorderWorker::write_quantities() {
   if (pending_quantities_.empty()) return {};
   const Instant first = earliest_of(pending_quantities_);
@@ -360,8 +360,8 @@ Result<void, Failure> RecorderWorker::write_quantities() {
   return learn_begin();
 }
 
-/// Appends what stations said before a time; it stays pending until it is committed. What the file has no place for is
-/// counted; the readings do not suffer from it.
+/// Appends what stations reported before a time; it stays pending until it is committed. What the file has no place for
+/// is counted; readings are not affected.
 Result<void, Failure> RecorderWorker::append_quantities(MonoTime before) {
   for (auto entry = pending_quantities_.begin(); entry != pending_quantities_.end();) {
     if (entry->quantities.time.mono >= before) {
@@ -410,7 +410,7 @@ Result<void, Failure> RecorderWorker::learn_begin() {
 }
 
 /// Makes the file ready for what arrived at `first`: completes one, opens one, begins the session that is due at
-/// `earliest`. What stations said before that goes into the session that ends: a session has no place for what was
+/// `earliest`. What stations reported before that goes into the session that ends: a session has no place for what was
 /// before it.
 Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earliest) {
   if (!clock_) {
@@ -437,7 +437,7 @@ Result<void, Failure> RecorderWorker::prepare_file(Instant first, Instant earlie
   return open_session(begin_of_pending(first));
 }
 
-/// `first`, or what stations said before it.
+/// `first`, or the earlier time of what stations reported before it.
 Instant RecorderWorker::begin_of_pending(Instant first) const {
   const bool have_said = !pending_quantities_.empty();
   const Instant said = have_said ? earliest_of(pending_quantities_) : first;
@@ -495,13 +495,13 @@ void RecorderWorker::save_doubt() {
   }
   const bool has_changed =
       doubt.has_value() != saved_doubt_.has_value() || (doubt && doubt->since != saved_doubt_->since);
-  if (has_changed) report(doubt ? text_of(*doubt) : "the clock is no longer doubted");
+  if (has_changed) report(doubt ? text_of(*doubt) : "the clock is trusted again");
   if (!has_changed && (!doubt || doubt->running - saved_doubt_->running < kSaveDoubtEvery)) return;
   write_clock_doubt(clock_doubt_file(file_), doubt);
   saved_doubt_ = doubt;
 }
 
-/// Deletes what is not to be kept. Fails where there is less space all the same than is to be left free.
+/// Deletes what is not to be kept. Fails if there is less space all the same than is to be left free.
 Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
   const settings::RecordingConfig rules = with_room_to_grow(rules_);
   auto free_bytes = measure_free_space();
@@ -515,16 +515,16 @@ Result<void, Failure> RecorderWorker::make_room(UtcTime now) {
   for (const auto& part : parts_to_delete(rules, parts, size_of(file_), free_bytes.value_or(rules.least_free_bytes),
                                           now, clock_->doubt() ? 0 : may_delete_by_age_)) {
     if (!drivers::windlog::remove_recording(part.file)) continue;
-    report("deleted " + part.file.string() + ", which is not to be kept");
+    report("deleted " + part.file.string() + ": keep_days, max_size or min_free of [recording]");
     if (part.is_by_age) --may_delete_by_age_;
   }
   if (!parts.empty()) free_bytes = measure_free_space();
   if (!free_bytes || *free_bytes >= rules.least_free_bytes) return {};
   return Failure{file_.string() + ": " + megabytes(*free_bytes) + " are free on the disk, less than the " +
-                 megabytes(rules_.least_free_bytes) + " of [recording] min_free and what it grows by; free some space"};
+                 megabytes(rules_.least_free_bytes) + " of [recording] min_free and for its growth; free some space"};
 }
 
-/// Fails where the name has come to belong to another file or to none. SQLite does not report that.
+/// Fails if the name has come to belong to another file or to none. SQLite does not report that.
 Result<void, Failure> RecorderWorker::check_name() const {
   const auto named = drivers::windlog::identity_of(file_);
   if (named && *named != identity_) return Failure{file_.string() + ": was replaced by another file"};
@@ -540,7 +540,7 @@ Result<void, Failure> RecorderWorker::open_file() {
   drivers::windlog::finish_rename_to_part(file_);
   const auto aside = drivers::windlog::set_older_recording_aside(file_);
   if (!aside) return aside.error();
-  if (*aside) report(file_.string() + " was of an older format; it is kept as " + (*aside)->string());
+  if (*aside) report(file_.string() + " has an older format; it is kept as " + (*aside)->string());
   create_private_file(file_);
   auto opened = drivers::windlog::WindlogWriter::open(file_);
   if (!opened) return opened.error();

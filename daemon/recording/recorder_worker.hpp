@@ -35,7 +35,7 @@ struct RecordedSensor {
   std::string options;  ///< TOML
 };
 
-/// What a recording says of the run that made it.
+/// What a recording holds about the run that made it.
 struct RecordingInfo {
   Instant started;
   std::string software;       ///< "yuragi 0.1.0"
@@ -55,8 +55,8 @@ struct RecorderLimits {
 };
 
 /// What a Recorder's thread does: takes readings from a ring, writes them to the recording, and begins a new file and
-/// deletes old ones as the rules say. Where the disk hangs
-/// the thread does, too, and nobody else: the other functions wait for no disk, but for the constructor's.
+/// deletes old ones by the rules. If the disk hangs,
+/// the thread does, too, and nobody else: the other functions wait for no disk, except for the constructor's.
 class RecorderWorker {
  public:
   static constexpr std::size_t kMaxPending = 65'536;
@@ -83,7 +83,7 @@ class RecorderWorker {
   bool wait_until(const std::function<bool(const RecorderStatus&)>& is_so, Nanoseconds at_most) const;
   /// Waits until run() has come to its end; false if it does not within `at_most`.
   bool wait_for_end(Nanoseconds at_most) const;
-  /// Nothing is reported any more, but for `sentence`, which is the last.
+  /// Reports `sentence` as the last one; nothing more is reported.
   void report_at_last(std::string_view sentence);
 
  private:

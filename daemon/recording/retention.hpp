@@ -13,8 +13,8 @@ namespace yuragi::daemon::recording {
 
 // How much of a recording is kept. Pure.
 
-/// Is a file that began at a moment, and is so large, to be completed, so that a new one is begun? A daily one also if
-/// the clock has been set back to before its beginning, since that day may be far away.
+/// Returns true if a file of this beginning and size is to be completed and a new one begun. A daily one also if the
+/// clock has been set back to before its beginning, because that day may be far away.
 bool is_complete(const settings::RecordingConfig& rules, UtcTime begin, std::uint64_t bytes, UtcTime now);
 
 /// What a recording may grow by between two looks at its size: SQLite's log beside the file (1000 pages of 4 KiB until
@@ -32,7 +32,7 @@ struct KeptPart {
   std::uint64_t bytes = 0;
 };
 
-/// Age deletes at most so many completed files for each one that is completed, whatever the date is.
+/// Age deletes at most so many completed files for each one that is completed, at any date.
 inline constexpr std::size_t kMaxDeletedByAge = 2;
 
 /// A completed file that is to be deleted.

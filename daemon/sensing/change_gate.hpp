@@ -18,7 +18,7 @@ class ChangeGate {
   /// `reported`: the initial value, which is not reported.
   explicit ChangeGate(std::uint32_t reported) : reported_(reported), seen_(reported) {}
 
-  /// Takes the value at `now`; true where it is to be reported.
+  /// Takes the value at `now`; true if it is to be reported.
   bool offer(std::uint32_t value, MonoTime now) noexcept {
     if (value != seen_) {
       if (seen_ != reported_) ++passed_over_;

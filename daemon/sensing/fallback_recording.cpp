@@ -54,7 +54,7 @@ void FallbackRecording::change(const settings::Config& config) {
   judge_ = wind::judging::ReadingJudge(judged_by_.value_or(wind::judging::JudgeSettings{}));
 }
 
-/// Takes the settings of the sensor that was recorded, where it is configured.
+/// Takes the settings of the sensor that was recorded, if it is configured.
 void FallbackRecording::take_settings(const settings::Config& config) {
   const auto same = std::ranges::find(config.sensors, recorded_, &settings::SensorConfig::name);
   if (same == config.sensors.end()) return;

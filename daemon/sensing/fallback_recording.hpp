@@ -15,27 +15,27 @@
 namespace yuragi::daemon::sensing {
 
 /// Plays a recording while every sensor has been silent for [wind] fallback_after, until one is live again. It loops,
-/// and begins at the present time of day where the recording contains it. For the estimator it is one more source, of
+/// and begins at the present time of day if the recording contains it. For the estimator it is one more source, of
 /// lower priority than all sensors, so that its wind is faded in and out. It is never recorded, and its state is
-/// "replayed". Where it can no longer be read the default wind is used, which is logged once.
+/// "replayed". If it can no longer be read, the default wind is used, which is logged once.
 ///
 /// The readings in a recording are raw: they are calibrated and judged with the settings of the configured sensor that
-/// has the same name as the recorded one; where there is none, uncalibrated and judged with the defaults.
+/// has the same name as the recorded one; if there is none, uncalibrated and judged with the defaults.
 /// Belongs to the I/O thread; the file is read on a thread of its own, for whose end that one does not wait.
 class FallbackRecording {
  public:
   using Use = std::function<void(const wind::WindReading&)>;
 
-  /// Checks the recording, if one is configured. Throws ConfigError where it cannot be played.
+  /// Checks the recording, if one is configured. Throws ConfigError if it cannot be played.
   FallbackRecording(const settings::Config& config, const drivers::sensor::Clock& clock);
 
-  /// Calibrates and judges from now on as a configuration with the same recording says.
+  /// Calibrates and judges from now on by a configuration with the same recording.
   void change(const settings::Config& config);
 
   /// Starts or stops playing, and passes readings that are due to `use`.
   void advance(bool is_any_sensor_live, const Use& use);
 
-  /// Its status for the stream; nothing while it does not play. `report`: of its source.
+  /// Its status for the stream; nullopt while it does not play. `report`: of its source.
   std::optional<wire::SensorStatus> status(const wind::SourceReport& report) const;
 
  private:
@@ -63,7 +63,7 @@ class FallbackRecording {
   bool has_failed_ = false;  ///< and this has been logged
 };
 
-/// Returns the name of the recorded sensor. Throws ConfigError, with the place in the file, where it cannot be played.
+/// Returns the name of the recorded sensor. Throws ConfigError, with the place in the file, if it cannot be played.
 std::string check_fallback(const settings::FallbackConfig& fallback);
 
 }  // namespace yuragi::daemon::sensing

@@ -32,11 +32,11 @@ class PlayerDirector {
   /// Changes who may give orders.
   void allow(settings::ControlPermission allowed) { allowed_ = allowed; }
 
-  /// Carries out a client's command; the reply says why not. `is_local`: the client is on this machine.
+  /// Carries out a client's command; the reply has the reason for a refusal. `is_local`: the client is on this machine.
   wire::ControlReply handle(const wire::PlayerCommand& command, bool is_local);
 
   /// What the clock of the recording machine showed at the place that is played now: by the newest reading, and the
-  /// time for which it has held. Nothing until a recording plays.
+  /// time for which it has held. Nullopt until a recording plays.
   std::optional<UtcTime> recorded_clock() const;
 
  private:

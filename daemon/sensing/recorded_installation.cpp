@@ -36,7 +36,7 @@ class SilentSensor final : public drivers::sensor::Sensor {
   bool has_told_ = false;
 };
 
-/// A failure to read a recording is one of its data, whatever SQLite calls it.
+/// Returns a failure to read a recording as a failure of its data, with any error code of SQLite.
 Failure of_recorded_data(const Failure& failure) {
   return {failure.message, failure.kind == FailureKind::kOther ? FailureKind::kBadData : failure.kind};
 }
@@ -60,7 +60,7 @@ Result<settings::Config, Failure> configuration_of(const WindlogReader& reader, 
   const auto text = reader.configuration(session.id);
   if (!text) return of_recorded_data(text.error());
   if (text->find_first_not_of(" \t\r\n") == std::string::npos) {
-    return Failure{place + ": is empty, as of a recording that was imported; replay it with --config FILE",
+    return Failure{place + ": is empty, because the recording was imported; replay it with --config FILE",
                    FailureKind::kBadData};
   }
   try {
@@ -86,7 +86,7 @@ void leave_out_what_acts_outside(settings::Config& config, std::vector<std::stri
   config.alerts.clear();
 }
 
-/// Has this sensor a reading from a log time on?
+/// Returns true if this sensor has a reading from a log time on.
 Result<bool, Failure> speaks_after(WindlogReader& reader, const std::string& sensor, Nanoseconds begin) {
   std::vector<bool> is_it;
   for (const auto& candidate : reader.sensors()) is_it.push_back(candidate.name == sensor);
@@ -96,8 +96,8 @@ Result<bool, Failure> speaks_after(WindlogReader& reader, const std::string& sen
   return *last && **last >= begin;
 }
 
-/// A sentence where the recording comes to a configuration that is neither that of the first session nor the last one
-/// named.
+/// Returns a sentence for each time at which the recording comes to a configuration that is neither that of the first
+/// session nor the last one named.
 Result<std::vector<std::string>, Failure> changes_after(const WindlogReader& reader, const LoggedSession& first) {
   const auto replayed = reader.configuration(first.id);
   if (!replayed) return of_recorded_data(replayed.error());

@@ -23,8 +23,8 @@ struct RecordedInstallation {
 /// silent. What was outside the recording is left out: the fall-back recording, and the file of the site's wind.
 /// `options`: where it begins, rate, seam, paused; it neither loops nor begins at a time of day.
 ///
-/// Fails where the recording cannot be read, or its session holds no configuration, as one that was imported. Throws
-/// ConfigError where this version does not understand the configuration; each line names a key.
+/// Fails if the recording cannot be read, or its session holds no configuration, as one that was imported. Throws
+/// ConfigError if this version does not understand the configuration; each line names a key.
 Result<RecordedInstallation, Failure> recorded_installation(const std::filesystem::path& recording,
                                                             const drivers::windlog::PlayerOptions& options);
 

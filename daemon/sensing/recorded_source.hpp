@@ -13,8 +13,8 @@ namespace yuragi::daemon::sensing {
 settings::RecordedSource recorded_source(const std::filesystem::path& recording, std::string_view sensor);
 
 /// The configuration, in which each sensor that plays a recording, and the fall-back recording, may be silent for as
-/// long as what was recorded might, at the rate at which it is played: the silence of a source that spoke on change
-/// only is no gap, live or played. The recorded sensor's driver states what the speeds are. Reads the
+/// long as what was recorded might, at the rate at which it is played: the silence of a source that sends only changes
+/// is not a gap, live or played. The recorded sensor's driver states what the speeds are. Reads the
 /// recordings; what cannot be read yet is left as it is.
 settings::Config with_recorded_sources(settings::Config config);
 

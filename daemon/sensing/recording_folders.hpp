@@ -12,7 +12,7 @@
 namespace yuragi::daemon::sensing {
 
 /// Removes the folders of the files that the daemon reads and writes (recordings that are played, the fall-back
-/// recording, files of lines) from what clients on other machines are told: of /home/anna/storm.windlog they see
+/// recording, files of lines) from what clients on other machines receive: of /home/anna/storm.windlog they see
 /// storm.windlog. Thread-safe: yes.
 class RecordingFolders {
  public:

@@ -6,7 +6,7 @@
 
 namespace yuragi::daemon::sensing {
 
-/// "timeout 3, exception 1"; "nothing" where nothing was refused.
+/// "timeout 3, exception 1"; "nothing" if nothing was refused.
 std::string refusal_text(const wire::SensorStatus& sensor);
 
 }  // namespace yuragi::daemon::sensing

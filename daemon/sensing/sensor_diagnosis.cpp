@@ -33,7 +33,7 @@ std::string live_text(const SensorEvidence& evidence) {
                          ? fmt::format("a reading every {}", settings::duration_text(evidence.report.interval_s))
                          : std::string("first reading received");
   if (evidence.report.is_overdue) {
-    text += fmt::format("; none for {}, which says that nothing has changed",
+    text += fmt::format("; none for {}, which means that nothing has changed",
                         settings::duration_text(evidence.report.age_s));
   }
   if (evidence.vote == wind::judging::Vote::kDisputed && evidence.others_m_s) {
@@ -43,7 +43,7 @@ std::string live_text(const SensorEvidence& evidence) {
         evidence.mean_m_s, *evidence.others_m_s);
   } else if (evidence.is_levelled_at_most) {
     text += fmt::format(
-        "; it reads {:.2f} times the group or even {}, and is levelled no further. Check its place, and correct "
+        "; it reads {:.2f} times the group or even {}, and is not levelled further. Check its place, and correct "
         "[sensor.calibration]",
         evidence.reads_times_group, evidence.reads_times_group > 1.0 ? "more" : "less");
   }

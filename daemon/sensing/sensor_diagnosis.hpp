@@ -14,7 +14,7 @@
 
 namespace yuragi::daemon::sensing {
 
-/// From what a sensor's state is derived, at one moment.
+/// The facts from which a sensor's state is derived, at one moment.
 struct SensorEvidence {
   wind::LinkState link = wind::LinkState::kConnecting;
   std::string_view link_detail;                                            ///< the last event of the link
@@ -36,7 +36,7 @@ struct SensorEvidence {
   bool is_levelled_at_most = false;
 };
 
-/// What stands in for a direction that does not come.
+/// What replaces a missing direction.
 enum class DirectionStandIn : std::uint8_t {
   kOtherSensor,  ///< another sensor's
   kLast,         ///< the last one of this sensor
@@ -49,7 +49,7 @@ std::string missing_text(wind::judging::Quantity quantity, std::optional<double>
 
 /// The state. While readings arrive, a fault takes precedence over the kind of source (simulated, replayed). Once they
 /// are stale, a lost link takes precedence over faults, and only implausible readings count as one. A station that has
-/// sent one reading is not stale before two minutes: nobody knows yet how often it speaks. Pure.
+/// sent one reading is not stale before two minutes: its interval is not known yet. Pure.
 wind::judging::SensorState state_of(const SensorEvidence& evidence);
 
 /// Why it is in this state and what to do about it, for a person. Pure.

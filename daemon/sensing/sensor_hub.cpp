@@ -19,7 +19,7 @@ namespace {
 using wind::judging::Quantity;
 using wind::judging::QuantityWatch;
 
-/// Is it used although others differ?
+/// Returns true if it is used although others differ.
 bool is_disputed(wind::judging::SensorState state, wind::judging::Vote vote) {
   return is_believed(state) && vote == wind::judging::Vote::kDisputed;
 }
@@ -29,7 +29,7 @@ std::uint32_t key_of(wind::judging::SensorState state, wind::judging::Vote vote)
   constexpr std::uint32_t kDisputedBit = 1U << 8U;
   return static_cast<std::uint32_t>(state) | (is_disputed(state, vote) ? kDisputedBit : 0U);
 }
-/// The key of a link for the ChangeGate: the state; while it is connected, what is said of it, too.
+/// The key of a link for the ChangeGate: the state; while it is connected, its details, too.
 std::uint32_t key_of(const LinkReport& link) {
   const auto state = static_cast<std::uint32_t>(link.state);
   if (link.state != wind::LinkState::kConnected) return state;
@@ -95,7 +95,7 @@ wind::blend::BlendSettings blend_settings_of(const settings::Config& config) {
                                       .rate_hz = config.animation.rate_hz,
                                       .site = make_site_spectrum(wind)};
   for (const settings::SensorConfig& sensor : config.sensors) settings.sources.push_back(sensor.blend);
-  // After all sensors, whatever their priorities.
+  // After all sensors, independent of their priorities.
   if (wind.fallback) {
     settings.sources.push_back({.priority = std::numeric_limits<int>::max(),
                                 .value = wind.fallback->value.value,
@@ -197,7 +197,7 @@ const wind::WindState& SensorHub::advance() {
   return wind_;
 }
 
-/// Calibrates a raw reading, judges it, and passes it to the estimator where it is believed.
+/// Calibrates a raw reading, judges it, and passes it to the estimator if it is believed.
 void SensorHub::take(std::size_t index, const wind::WindReading& raw) {
   Channel& channel = channels_[index];
   wind::WindReading reading = channel.config.calibration.applied_to(raw);
@@ -244,7 +244,7 @@ SensorEvidence SensorHub::evidence_of(std::size_t index, MonoTime now) const {
           .is_levelled_at_most = jury_.is_levelled_at_most(index)};
 }
 
-/// Logs changes of the link's state, and what a connected sensor says anew of it, but not each failed attempt.
+/// Logs changes of the link's state, and new details of a connected sensor, but not each failed attempt.
 void SensorHub::log_link(Channel& channel, MonoTime now) const {
   if (const std::uint64_t reports = channel.runner->link_reports(); reports != channel.link_reports) {
     channel.link = channel.runner->link();

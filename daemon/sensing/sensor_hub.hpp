@@ -34,11 +34,11 @@ class SensorHub {
  public:
   /// Gets each plausible reading, before calibration; for the recorder.
   using Listener = std::function<void(std::size_t sensor, const wind::WindReading&)>;
-  /// Gets what a station says besides the wind; for the recorder.
+  /// Receives what a station reports besides the wind; for the recorder.
   using QuantitiesListener = std::function<void(std::size_t sensor, const wind::StationQuantities&)>;
 
   /// Opens and starts every sensor. `noise`: of the gusts; `reach_m`: as make_estimator() takes it; `thread`: the
-  /// sensors'. Throws ConfigError where a sensor cannot be constructed from its values.
+  /// sensors'. Throws ConfigError if a sensor cannot be constructed from its values.
   SensorHub(const settings::Config& config, const drivers::sensor::Clock& clock,
             std::shared_ptr<const wind::turbulence::GustNoise> noise, Listener listener = {}, double reach_m = 0.0,
             SensorThread thread = SensorThread::kOwn);
@@ -51,7 +51,7 @@ class SensorHub {
   /// known of each sensor stay; a new calibration is neither a spike nor a contradiction to the other sensors.
   void change(const settings::Config& config);
 
-  /// Passes what stations say besides the wind to `listener` from now on; without one it is dropped.
+  /// Passes what stations report besides the wind to `listener` from now on; without one it is dropped.
   void listen_to_quantities(QuantitiesListener listener) { quantities_listener_ = std::move(listener); }
 
   /// The scenes reach as far as this from now on, as make_estimator() takes it. The wind does not jump.
@@ -60,7 +60,7 @@ class SensorHub {
   /// Takes the readings that have arrived, and returns the wind now. Logs each change of a sensor's state once.
   const wind::WindState& advance();
 
-  /// Is any sensor live and believed? The fall-back recording does not count. As of the last advance().
+  /// Returns true if any sensor is live and believed. The fall-back recording does not count. As of the last advance().
   bool is_any_live() const;
 
   /// The wind as of the last advance().

@@ -70,7 +70,7 @@ class SensorJury {
   bool restore_gains(std::span<const wind::judging::GroupGains::Learnt> learnt);
   /// How many times the group's wind it reads; 1: it is not levelled.
   double reads_times_group(std::size_t sensor) const noexcept;
-  /// Does it read perhaps even more, or less? It is levelled no further.
+  /// Returns true if its gain is at the bound: it may differ more, but is not levelled further.
   bool is_levelled_at_most(std::size_t sensor) const noexcept {
     return is_levelled(sensor) && gains_.is_at_bound(sensor);
   }

@@ -46,8 +46,8 @@ void SensorRunner::run(const std::stop_token& stop) {
   has_ended_.store(true, std::memory_order_release);
 }
 
-/// A driver throws for nothing that a device does. Where one does all the same (memory, an error of its own), the
-/// others go on, and the sensor says what happened.
+/// A driver never throws because of its device. If one throws all the same (memory, a defect), the others continue,
+/// and the state of the sensor shows what happened.
 MonoTime SensorRunner::poll() {
   std::optional<MonoTime> next;
   contain(
@@ -74,8 +74,7 @@ void SensorRunner::reading(const wind::WindReading& reading) {
   }
 }
 
-/// What is out of range is left out without a word: it says nothing about the wind, whose faults are judged by
-/// refusals.
+/// Values out of range are dropped silently: they do not concern the wind, whose faults are judged by refusals.
 void SensorRunner::quantities(const wind::StationQuantities& quantities) {
   const auto plausible = wind::plausible_part(quantities);
   if (plausible && !quantities_.push(*plausible)) lost_quantities_.fetch_add(1, std::memory_order_relaxed);

@@ -67,7 +67,7 @@ class SensorRunner final : private drivers::sensor::SensorSink {
     readings_.drain(use);
   }
 
-  /// Passes what the station has said besides the wind to `use`, oldest first.
+  /// Passes what the station has reported besides the wind to `use`, oldest first.
   template <class Use>
   void drain_quantities(Use&& use) {
     quantities_.drain(use);
@@ -85,7 +85,7 @@ class SensorRunner final : private drivers::sensor::SensorSink {
 
   /// Ends the thread, without waiting for that.
   void end() noexcept;
-  /// Has the thread ended? Then the destructor waits for nothing.
+  /// Returns true if the thread has ended; then the destructor does not wait.
   bool has_ended() const noexcept { return has_ended_.load(std::memory_order_acquire); }
 
   /// Polls the sensor at once, if it is waiting.

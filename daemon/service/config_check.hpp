@@ -8,9 +8,9 @@ namespace yuragi::daemon::service {
 /// recording to write.
 void check(const settings::Config& config);
 
-/// Throws ConfigError where a daemon that runs with one configuration could not be started with another, as far as that
-/// can be told while it runs. What has not changed is not asked for again: a recording that plays may be on a disk that
-/// is away.
+/// Throws ConfigError if a daemon that runs with one configuration could not be started with another, as far as that
+/// can be checked while it runs. What has not changed is not checked again: a recording that plays may be on a disk
+/// that is no longer connected.
 void check_restart(const settings::Config& running, const settings::Config& wanted);
 
 }  // namespace yuragi::daemon::service

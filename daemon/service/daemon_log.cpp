@@ -55,7 +55,7 @@ void BoundedLogSink::log(const spdlog::details::log_msg& message) {
     return;
   }
   if (const std::uint64_t lost = std::exchange(lost_, 0); lost > 0) {
-    const std::string text = count_text(lost, "line") + " of the log lost: nobody read it";
+    const std::string text = count_text(lost, "line") + " of the log lost: standard error was not read";
     write({message.logger_name, spdlog::level::warn, text});
     is_stuck_ = !takes_a_line();
     if (is_stuck_) {

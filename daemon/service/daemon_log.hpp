@@ -18,14 +18,14 @@ class thread_pool;
 
 namespace yuragi::daemon::service {
 
-/// Writes lines of the log to a stream (standard error), and never waits for long for whoever reads it: a line that the
-/// stream does not take within kPatience, or at once where the one before was not taken either, is dropped and counted.
-/// The next line that is taken follows one that says how many were lost. Long lines are cut.
-/// Thread-safe: as spdlog's sinks are.
+/// Writes lines of the log to a stream (standard error), and never waits long for its reader: a line that the stream
+/// does not take within kPatience, or at once if the previous one was not taken either, is dropped and counted. The
+/// next line that is taken is preceded by one with the number of lost lines. Long lines are cut. Thread-safe: as
+/// spdlog's sinks are.
 class BoundedLogSink final : public spdlog::sinks::ansicolor_sink<spdlog::details::console_mutex> {
  public:
   static constexpr int kPatience_ms = 200;
-  /// What a pipe takes at once where it takes anything (POSIX: PIPE_BUF is 512 at least, 4096 on Linux), less what
+  /// What a pipe takes at once if it takes anything (POSIX: PIPE_BUF is 512 at least, 4096 on Linux), less what
   /// stands before the text.
   static constexpr std::size_t kMaxTextBytes = 3800;
 

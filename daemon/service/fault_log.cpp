@@ -25,7 +25,7 @@ std::optional<std::string> FaultLog::line_for(std::string_view kind, std::string
   const std::string since = left_out > 0 ? fmt::format(" ({} more since the last such line)", left_out) : "";
   std::string text(what);
   make_printable(text);
-  return fmt::format("{} failed: {}{}; this is a fault of the program", kind, text, since);
+  return fmt::format("{} failed: {}{}; this is a fault of the program, please report it", kind, text, since);
 }
 
 web::FaultCounts FaultLog::counts() const {

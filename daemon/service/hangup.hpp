@@ -17,7 +17,7 @@ class Terminal {
  public:
   Terminal();
 
-  /// Was there one, and has it been closed?
+  /// Returns true if there was one and it has been closed.
   bool is_closed() const;
 
  private:

@@ -7,7 +7,7 @@
 namespace yuragi::daemon::service {
 namespace {
 
-/// So many ticks are measured, and so many times what all would take as they did is planned.
+/// The number of ticks that are measured, and the factor on the time that all would take at their pace.
 constexpr int kMeasuredTicks = 30;
 constexpr double kPlanned = 1.25;
 

@@ -10,7 +10,7 @@ namespace yuragi::daemon::service {
 
 /// Moves sensors, wind and scenes through the `lead_s` before a replay's first frame, on the caller's thread: holds the
 /// clock in the past, and moves it tick by tick to the present. The recordings are then at the place at which they were
-/// to begin, or a little further where the ticks have taken longer than the first ones promised. At last each sensor
+/// to begin, or a little further if the ticks have taken longer than the first ones promised. At last each sensor
 /// gets a thread of its own.
 ///
 /// All sensors of `hub` play recordings, are polled by the caller (SensorThread::kOfCaller), and have not been polled

@@ -43,7 +43,7 @@ void ParameterDirector::handle(const wire::ParameterCommand& command, bool is_lo
   for (const wire::ParameterEdit& edit : command.edits) edits.push_back({command.scene, edit.key, edit.value});
   if (auto mistake = reload_.mistake_in(edits)) return answer(false, std::move(*mistake));
 
-  // What is shown is switched as by any other client, whatever the configuration began with.
+  // What is shown is switched as by any other client, independent of the configuration.
   std::vector<std::string> done;
   const auto is_shown_key = [](const settings::ParameterEdit& edit) { return edit.key == kShownKey; };
   if (!command.scene.empty()) {

@@ -17,7 +17,7 @@ class ParameterDirector {
  public:
   using Reply = std::function<void(const wire::ControlReply&)>;
 
-  /// Both must outlive it. `scenes`: null where the daemon has none. `revision`: the first; another one than the daemon
+  /// Both must outlive it. `scenes`: null if the daemon has none. `revision`: the first; another one than the daemon
   /// that ran before had.
   ParameterDirector(Reload& reload, animation::SceneDirector* scenes, settings::ControlPermission allowed,
                     std::uint64_t revision);

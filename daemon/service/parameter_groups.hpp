@@ -9,7 +9,7 @@
 namespace yuragi::daemon::service {
 
 /// The parameters of [look] and of every scene, as their tables describe them, with their values: of `running` now, of
-/// `configured` in the file. `scenes`: which are shown; empty where the daemon has none. Secrets are not shown. Pure.
+/// `configured` in the file. `scenes`: which are shown; empty if the daemon has none. Secrets are not shown. Pure.
 std::vector<wire::ParameterGroup> parameter_groups(const settings::Config& running, const settings::Config& configured,
                                                    std::span<const wire::SceneState> scenes);
 

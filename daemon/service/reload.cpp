@@ -47,7 +47,7 @@ void log(const wire::ReloadReport& report, const std::string& file) {
   for (const std::string& warning : report.mistakes) spdlog::warn("reload: {}", warning);
   if (!report.takes_restart.empty()) {
     spdlog::warn("reload: {} a restart: {}",
-                 report.takes_restart.size() == 1 ? "this change takes" : "these changes take",
+                 report.takes_restart.size() == 1 ? "this change needs" : "these changes need",
                  fmt::join(report.takes_restart, "; "));
   }
 }
@@ -136,7 +136,7 @@ void Reload::request(const std::string& expected_file, Reply reply) {
     return refuse("the daemon runs with " + parts_.file + ", not with " + expected_file);
   }
   if (!takes_another_reply()) {
-    if (reply) reply(failure(wire::ReloadOutcome::kFailed, "too many ask at once; try again"));
+    if (reply) reply(failure(wire::ReloadOutcome::kFailed, "too many requests at once; try again"));
     return;
   }
   Due& due = due_file();
@@ -154,7 +154,7 @@ std::optional<std::string> Reload::mistake_in(const std::vector<settings::Parame
 
 void Reload::set(const std::vector<settings::ParameterEdit>& edits, Reply reply) {
   auto why = mistake_in(edits);
-  if (!why && !takes_another_reply()) why = "too many ask at once; try again";
+  if (!why && !takes_another_reply()) why = "too many requests at once; try again";
   if (why) {
     if (reply) reply(failure(wire::ReloadOutcome::kMistake, *why));
     return;

@@ -18,7 +18,7 @@ namespace yuragi::daemon::service {
 
 /// What a Reload needs of the daemon.
 struct ReloadParts {
-  /// Carries out a function on the I/O thread, soon. To be called on any thread.
+  /// Carries out a function on the I/O thread, soon. Call it on any thread.
   std::function<void(std::function<void()>)> post;
 
   /// The absolute path of the configuration, and how it is read: on the reload's thread, which a disk may hold up for
@@ -26,33 +26,32 @@ struct ReloadParts {
   std::string file;
   std::function<settings::Config()> read;
 
-  /// What the next start would meet with the configuration that was read, as texts for people; it is applied all the
-  /// same. On the reload's thread, and so it owns all that it uses. Empty: nothing is tried.
+  /// Returns the problems of the next start with the configuration that was read, as texts for people; it is applied
+  /// all the same. On the reload's thread, and so it owns all that it uses. Empty: nothing is tried.
   std::function<std::vector<std::string>(const settings::Config& running, const settings::Config& next)> rehearse = {};
 
   /// Makes the scenes of a configuration, on the reload's thread. What it returns brings them to the animation, on the
-  /// I/O thread, and cannot fail. Throws ConfigError or FailureError where they cannot be made; `is_given_up` tells it
-  /// to return early, with anything. Empty: other scenes take a restart.
+  /// I/O thread, and cannot fail. Throws ConfigError or FailureError if they cannot be made; if `is_given_up`
+  /// returns true, it should return early, with any result. Empty: other scenes need a restart.
   using Adopt = std::function<void()>;
   std::function<Adopt(const settings::Config& next, const std::function<bool()>& is_given_up)> make_scenes;
 
-  /// Applies all but the scenes, on the I/O thread. Cannot fail.
+  /// Applies all except the scenes, on the I/O thread. Cannot fail.
   std::function<void(const settings::ReloadPlan& plan)> apply;
 
   /// The same for values that are set: of [look] alone, if anything is to be applied besides scenes.
   std::function<void(const settings::ReloadPlan& plan)> apply_edits = {};
 
-  /// Is the last reload still being carried out, by scenes that fade? The next begins after that (go_on()). Empty:
-  /// never.
+  /// Returns true while scenes still fade for the last reload. The next begins after that (go_on()). Empty: never.
   std::function<bool()> is_settling = {};
 };
 
 /// Reads the configuration again while the daemon runs, and applies what can change: file, check and scenes on a thread
 /// of its own, and then, when nothing can fail any more, everything at once on the I/O thread. A mistake changes
-/// nothing. What was done is logged and told to the clients who asked.
+/// nothing. What was done is logged and sent to the clients who asked.
 ///
 /// Single values of [look] and of scenes are set in the same way, without the file; the next reload puts them back to
-/// what the file says.
+/// the values of the file.
 ///
 /// The file has kMaxRead to be read; then the reload has failed, and the next one begins. Its thread is left behind, at
 /// most kMaxLeftBehind of them.
@@ -63,7 +62,7 @@ class Reload {
  public:
   using Reply = std::function<void(const wire::ReloadReport&)>;
 
-  /// At most so many clients wait for a reload; further ones are told to try again.
+  /// At most so many clients wait for a reload; further ones are refused with "try again".
   static constexpr std::size_t kMostWaiting = 64;
 
   static constexpr Nanoseconds kMaxRead = std::chrono::seconds(20);
@@ -78,26 +77,27 @@ class Reload {
   Reload& operator=(const Reload&) = delete;
 
   /// Reads the configuration again. `expected_file`: the client's, as wire::ReloadCommand::file. `reply` is called
-  /// once, with what came of it; not where the daemon ends before.
+  /// once with the result, unless the daemon ends before.
   void request(const std::string& expected_file = {}, Reply reply = {});
 
-  /// Sets values. A mistake, of which `reply` is told at once, changes nothing.
+  /// Sets values. A mistake changes nothing, and `reply` gets it at once.
   void set(const std::vector<settings::ParameterEdit>& edits, Reply reply = {});
-  /// What is wrong with such edits, if anything.
+  /// Returns what is wrong with such edits; nullopt if nothing is.
   std::optional<std::string> mistake_in(const std::vector<settings::ParameterEdit>& edits) const;
 
-  /// What runs, with the values that were set, and what the file said when it was read last, as far as it is applied.
+  /// What runs, with the values that were set, and the values of the file when it was read last, as far as they are
+  /// applied.
   const settings::Config& running() const noexcept { return *running_; }
   const settings::Config& configured() const noexcept { return *configured_; }
 
-  /// Begins the reload that waits, if one does. To be called whenever the last one may have been carried out.
+  /// Begins the reload that waits, if one does. Call it whenever the last one may have been carried out.
   void go_on();
 
-  /// Gives up a file that has been read for longer than kMaxRead, as far as the calls show: to be called about every
-  /// second, with the time.
+  /// Gives up a file that has been read for longer than kMaxRead, as far as the calls show: call it about every second,
+  /// with the time.
   void give_up_late(MonoTime now);
 
-  /// Is the file to be read, or being read, or not been dealt with yet?
+  /// Returns true while the file is waiting to be read, being read, or not yet applied.
   bool is_under_way() const noexcept;
 
  private:

@@ -6,10 +6,10 @@
 
 namespace yuragi::daemon::service {
 
-/// One line for clients that show the message of a reply only.
+/// Returns one line for clients that show only the message of a reply.
 std::string summary_of(const wire::ReloadReport& report);
 
-/// A text without the folders of the absolute paths in it.
+/// Returns a text without the folders of the absolute paths in it.
 std::string without_path_folders(const std::string& text);
 
 /// The same report without the folders of the absolute paths in its texts: for clients of other machines.

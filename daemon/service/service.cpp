@@ -61,7 +61,7 @@ constexpr auto kTryAgainAfter = std::chrono::seconds(2);
 static_assert(settings::kMostSensors + 1 <= wire::kMaxSensors && settings::kMostScenes <= wire::kMaxScenes);
 
 /// Signals that would end the program without closing the recording. SIGPIPE: nobody reads the log any more. SIGXFSZ: a
-/// file has reached its limit, which the recorder is told of, too. The others have no meaning here.
+/// file has reached its limit, which the recorder also gets as an error. The others have no meaning here.
 void ignore_what_need_not_end_it() {
   for (const int signal : {SIGPIPE, SIGXFSZ, SIGUSR1, SIGUSR2}) std::signal(signal, SIG_IGN);
 }
@@ -144,7 +144,7 @@ class Service::Io {
 
   void run() {
     if (options_.lead_s > 0.0) {
-      spdlog::info("first the scenes go through the {:g} s before the beginning", options_.lead_s);
+      spdlog::info("warming up: the scenes run through the {:g} s before the beginning", options_.lead_s);
       lead_in(
           options_.lead_s, rate_hz_, clock_, hub_, [this] { return next_wind(); }, *animation_);
     }
@@ -274,7 +274,7 @@ class Service::Io {
       return true;
     }
     token_trouble_ = "[http] token_file: " + why +
-                     "; until it can be read nobody changes anything. `yuragi token --new` makes a token";
+                     "; until it can be read, all changes are refused. `yuragi token --new` makes a token";
     return false;
   }
 
@@ -308,7 +308,7 @@ class Service::Io {
 
   void try_again() {
     if (read_token()) {
-      spdlog::info("the token in {} is used from now on", http_.token_file);
+      spdlog::info("the token in {} is valid from now on", http_.token_file);
       if (web_) web_->set_token(token_);
     }
     if (page_trouble_.empty()) return;
@@ -578,10 +578,10 @@ class Service::Io {
 
   void log_summary() const;
 
-  /// The scenes stand still for good: whoever started the daemon starts it again.
+  /// The scenes stand still for good: the service manager starts the daemon again.
   void end_with_failure(const std::string& why) {
     failure_ = "the animation has failed (" + why + ")";
-    spdlog::critical("{}: an error of this program, which is ended to be started again", *failure_);
+    spdlog::critical("{}: a fault of this program; it ends, so that it is started again", *failure_);
     end("the animation has failed");
   }
 
@@ -613,7 +613,7 @@ class Service::Io {
   asio::steady_timer::time_point next_wind_;
   animation::DurationHistogram io_lateness_;  ///< of each step of the wind
   animation::RecentLateness recent_io_lateness_{io_lateness_};
-  std::optional<animation::RecentLateness> recent_tick_lateness_;  ///< nothing: no scenes
+  std::optional<animation::RecentLateness> recent_tick_lateness_;  ///< nullopt: no scenes
   animation::RecentWindow<std::uint64_t> skipped_before_;
   asio::posix::stream_descriptor frame_ready_{io_};
   std::uint64_t frames_made_ = 0;
@@ -642,11 +642,11 @@ class Service::Io {
   std::unique_ptr<animation::SceneExchange> scenes_;
   std::unique_ptr<animation::SceneChange> next_scenes_;  ///< of a reload, not yet the animation's
   std::unique_ptr<recording::Recorder> recorder_;
-  std::unique_ptr<history::HistoryReader> history_;  ///< nothing: not recorded
-  std::unique_ptr<web::WebServer> web_;              ///< nothing: not asked for
-  std::optional<alerts::Alerts> alerts_;             ///< nothing: nobody is told
+  std::unique_ptr<history::HistoryReader> history_;  ///< null: not recorded
+  std::unique_ptr<web::WebServer> web_;              ///< null: no [http] listen
+  std::optional<alerts::Alerts> alerts_;             ///< nullopt: no alerts
   ServiceManager manager_{options_.with_scenes};
-  bool is_up_ = false;  ///< it has begun, with its first frame where it has scenes
+  bool is_up_ = false;  ///< it has begun, with its first frame if it has scenes
 
   settings::ControlPermission control_;
   Reload reload_;  ///< it uses all of the above

@@ -17,9 +17,9 @@ struct ServiceOptions {
   std::optional<double> duration_s;             ///< end after this long
   bool end_with_recordings = false;             ///< end when every sensor is a recording that has ended
   bool with_scenes = true;                      ///< false: sensors, recording and their stream only
-  /// Opening hours by the clock of the recordings that play, from this moment on; nothing: by this machine's clock.
+  /// Opening hours by the clock of the recordings that play, from this moment on; nullopt: by this machine's clock.
   std::optional<UtcTime> recorded_from{};
-  /// Only where every sensor plays a recording: before the first frame wind and scenes go through so many seconds
+  /// Only if every sensor plays a recording: before the first frame wind and scenes go through so many seconds
   /// before the place at which the recordings begin, as fast as they can.
   double lead_s = 0.0;
 
@@ -42,7 +42,7 @@ struct ServiceOptions {
 ///   sensors -> SensorHub -> WindShaper -> Latest<DrivingWind> -> AnimationLoop -> Latest<frame> -> TcpStream
 ///                 `-> Recorder
 ///
-/// Everything but the sensors' threads, the animation's and the recorder's runs on the one I/O thread, which is the
+/// Everything except the threads of sensors, animation and recorder runs on the one I/O thread, which is the
 /// caller of run().
 class Service {
  public:
@@ -53,7 +53,7 @@ class Service {
   ~Service();
 
   /// Runs until SIGINT, SIGTERM, a terminal that is closed, or until the options end it; SIGHUP reads the configuration
-  /// again (Reload). Returns in under a second after that. Throws std::runtime_error, with the recording closed, where
+  /// again (Reload). Returns in under a second after that. Throws std::runtime_error, with the recording closed, if
   /// the animation has failed by an error of this program.
   void run();
 

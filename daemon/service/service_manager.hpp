@@ -10,9 +10,9 @@
 
 namespace yuragi::daemon::service {
 
-/// What systemd is told of the daemon: that it is ready, a line on how it does, that it ends, and that it is alive.
-/// Where nothing listens (NOTIFY_SOCKET is not set) every call does nothing. Never waits: what a service manager that
-/// hangs does not take is said again later. For the I/O thread.
+/// Reports to systemd that the daemon is ready, a line on its state, that it ends, and that it is alive.
+/// If nothing listens (NOTIFY_SOCKET is not set), every call does nothing. Never waits: what a service manager that
+/// hangs does not take is sent again later. For the I/O thread.
 class ServiceManager {
  public:
   /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID. `with_animation`: the watchdog watches the animation, too.
@@ -23,13 +23,13 @@ class ServiceManager {
   /// RELOADING=1, which the next READY=1 ends.
   void say_reloading();
 
-  /// STATUS=: one plain line, of the status that clients get. Sent where it is not the line sent last.
+  /// STATUS=: one plain line, of the status that clients get. Sent if it differs from the last line.
   void say_status(const wire::Sensors& status);
 
   /// STOPPING=1.
   void say_stopping(const std::string& why);
 
-  /// The I/O thread has gone round, and the animation has made so many ticks. Feeds the watchdog where that is due.
+  /// The I/O thread has gone round, and the animation has made so many ticks. Feeds the watchdog if that is due.
   void went_round(MonoTime now, std::uint64_t animation_ticks);
 
  private:

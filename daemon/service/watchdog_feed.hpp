@@ -8,7 +8,7 @@ namespace yuragi::daemon::service {
 
 /// Decides when a service manager's watchdog is fed: at most every quarter of its time-out, and only when both the I/O
 /// thread and the animation have gone round since it was fed last. What else may hang (a disk, a device) is a state
-/// that the stream tells, and does not keep the watchdog from being fed. Pure; for one thread.
+/// that the stream shows, and does not stop the feeding of the watchdog. Pure; for one thread.
 class WatchdogFeed {
  public:
   /// `timeout`: the service manager restarts a program that has not fed its watchdog for so long. Without an animation
@@ -24,7 +24,7 @@ class WatchdogFeed {
     ticks_ = ticks;
   }
 
-  /// Is it to be fed at `now`? Where it is, everybody has to go round anew.
+  /// Returns true if it is to be fed at `now`; then both have to go round again.
   bool take(MonoTime now) {
     if (!io_has_ || (with_animation_ && !animation_has_)) return false;
     if (has_fed_ && now - fed_ < interval_) return false;

@@ -39,14 +39,14 @@ const Fields<AlertTable>& alert_fields() {
        of_alert(&AlertConfig::when)},
       {{.name = "sensor",
         .default_value = std::string(),
-        .help = "for sensor_silent: the name of the sensor; empty: each one, told by itself"},
+        .help = "for sensor_silent: the name of the sensor; empty: every sensor, each with its own alert"},
        of_alert(&AlertConfig::sensor)},
       {{.name = "speed",
         .unit = "m/s",
         .default_value = 15.0,
         .min = 0.1,
         .max = 100.0,
-        .help = "for wind_above: of the wind as it is measured, gusts and all"},
+        .help = "for wind_above: limit of the measured wind, including gusts"},
        of_alert(&AlertConfig::speed_m_s)},
       {{.name = "free",
         .unit = "MB",
@@ -61,7 +61,7 @@ const Fields<AlertTable>& alert_fields() {
         .default_value = kDefaultAfter_s,
         .min = 0.0,
         .max = kDay_s,
-        .help = "it begins when it has been so for this long",
+        .help = "the alert begins when the condition has held for this long",
         .left_out = "60 s; for wind_above 0, so that one gust is enough"},
        &AlertTable::after_s},
       {{.name = "end_after",
@@ -69,7 +69,7 @@ const Fields<AlertTable>& alert_fields() {
         .default_value = 60.0,
         .min = 0.0,
         .max = kDay_s,
-        .help = "it ends when it has no longer been so for this long"},
+        .help = "the alert ends when the condition has not held for this long"},
        of_alert(&AlertConfig::end_after_s)},
       {{.name = "command",
         .default_value = Secret(),  // it may hold a password
@@ -81,7 +81,7 @@ const Fields<AlertTable>& alert_fields() {
       {{.name = "webhook",
         .default_value = Secret(),
         .help = "an URL, http:// or https://, to which the same is posted as JSON: alert, state, message, host, "
-                "time, and text for chat services; tried again for a day where it does not answer; empty: none"},
+                "time, and text for chat services; if it does not answer, it is tried again for a day; empty: none"},
        of_alert(&AlertConfig::webhook)},
   };
   return kFields;
@@ -100,15 +100,15 @@ Result<AlertConfig, ParameterError> alert_config_of(std::string name, const Para
   alert.values = values;
   alert.after_s = table.after_s.value_or(alert.when == AlertCondition::kWindAbove ? 0.0 : kDefaultAfter_s);
   if (!alert.sensor.empty() && alert.when != AlertCondition::kSensorSilent)
-    return ParameterError{"sensor", "is for when = \"sensor_silent\" only"};
+    return ParameterError{"sensor", "applies only if when = \"sensor_silent\"; remove it"};
   if (table.command.is_empty() && alert.webhook.is_empty())
-    return ParameterError{"command", "tells nobody; give it a command or a webhook"};
-  // What was recorded or printed has only a word in its place, and can tell nobody.
+    return ParameterError{"command", "is missing, and webhook too, so nobody would be notified; set one of them"};
+  // A configuration that was recorded or printed has only a placeholder here, and cannot notify anybody.
   if (!table.command.is_withheld()) alert.command = table.command.reveal();
   if (alert.webhook.is_withheld()) alert.webhook = Secret();
   const std::string& url = alert.webhook.reveal();
   if (!url.empty() && !url.starts_with("http://") && !url.starts_with("https://"))
-    return ParameterError{"webhook", "takes an URL that begins with http:// or https://"};
+    return ParameterError{"webhook", "must be a URL that begins with http:// or https://"};
   return std::move(table.alert);
 }
 

@@ -18,7 +18,7 @@ inline constexpr std::size_t kMostAlerts = 64;
 
 /// What an [[alert]] is about.
 enum class AlertCondition : std::uint8_t {
-  kSensorSilent,  ///< a sensor's readings are not used, for whatever reason
+  kSensorSilent,  ///< a sensor's readings are not used, for any reason
   kWindAbove,     ///< the wind that the sensors make together, before it is shaped for the scenes
   kDiskBelow,     ///< the free space on the disk of the recording
   kNoFrame,       ///< the animation has made no frame
@@ -27,7 +27,7 @@ enum class AlertCondition : std::uint8_t {
 inline constexpr std::array<std::string_view, 5> kAlertConditionNames = {"sensor_silent", "wind_above", "disk_below",
                                                                          "no_frame", "not_recording"};
 
-/// An [[alert]]: what somebody is told of, when, and how. Its beginning is told once and its end once.
+/// An [[alert]]: what is reported, when, and how. Its beginning is reported once and its end once.
 struct AlertConfig {
   std::string name;
   ParameterValues values{};  ///< of alert_parameters(), from which the members below were made
@@ -41,7 +41,7 @@ struct AlertConfig {
   Secret webhook = {};       ///< http or https; empty: none
 };
 
-/// The keys of an [[alert]], but for its name.
+/// The keys of an [[alert]], except for its name.
 std::span<const Parameter> alert_parameters();
 
 /// From values of alert_parameters(). An error names the key.

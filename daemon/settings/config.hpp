@@ -63,7 +63,7 @@ struct Config {
   std::vector<CameraConfig> cameras;
   std::vector<AlertConfig> alerts;
   std::vector<output::OutputTable> outputs;  ///< the viewers', who read the file themselves; here they are checked
-  LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC where no camera has a time
+  LocalClock clock;  ///< by which the cameras change: of the zone of [shaping]; UTC if no camera has a time
 
   /// The values of config_tables(), from which members above were made. For what writes, compares or changes them only.
   TablesByName by_name;
@@ -75,7 +75,7 @@ struct Config {
 using ConfigTable = TableOf<Config>;
 std::span<const ConfigTable> config_tables();
 
-/// One of them. Throws std::logic_error where there is none.
+/// One of them. Throws std::logic_error if there is none.
 const ConfigTable& config_table(std::string_view name);
 
 /// The names of the lists of tables: sensor, scene, camera, alert, output.
@@ -98,23 +98,23 @@ Config parse_config(std::string_view toml_text, const std::string& source_name);
 /// The largest configuration that is read, in bytes: many times what any installation needs.
 inline constexpr std::size_t kLargestConfig_bytes = 1 << 20;
 
-/// The text of a file. Throws ConfigError where it cannot be read, is no regular file (a folder, a pipe), or is larger
+/// The text of a file. Throws ConfigError if it cannot be read, is no regular file (a folder, a pipe), or is larger
 /// than kLargestConfig_bytes. Waits for nothing but the disk.
 std::string read_config_text(const std::filesystem::path& file);
 
-/// Reads a configuration file, and the pictures that it names, from its folder on. Throws ConfigError, also where one
+/// Reads a configuration file, and the pictures that it names, from its folder on. Throws ConfigError, also if one
 /// of them cannot be read.
 Config load_config(const std::filesystem::path& file);
 
-/// Makes the sensor, without touching its device. Throws ConfigError where its values contradict each other.
+/// Makes the sensor, without touching its device. Throws ConfigError if its values contradict each other.
 std::unique_ptr<drivers::sensor::Sensor> open_sensor(const SensorConfig& sensor);
 
-/// Makes all sensors, so that it also throws where two of them cannot be used together (different settings for one
+/// Makes all sensors, so that it also throws if two of them cannot be used together (different settings for one
 /// serial line, the same device: refuse_same_device()).
 std::vector<std::unique_ptr<drivers::sensor::Sensor>> open_sensors(std::span<const SensorConfig> sensors);
 
-/// Makes a sensor and forgets it, without touching its device. Throws ConfigError where its values contradict each
-/// other; not where they contradict those of a sensor that runs on the same line.
+/// Makes a sensor and forgets it, without touching its device. Throws ConfigError if its values contradict each
+/// other; not if they contradict those of a sensor that runs on the same line.
 void check_sensor(const SensorConfig& sensor);
 
 /// The configuration as TOML with every value written out, except keys without a default that are not set. Stored in
@@ -123,7 +123,7 @@ void check_sensor(const SensorConfig& sensor);
 std::string to_toml(const Config& config);
 std::string to_toml(const ParameterValues& values);
 
-/// The same for a recording: the opening hours name their time zone, also where that is the machine's own.
+/// The same for a recording: the opening hours name their time zone, also if that is the machine's own.
 std::string to_recorded_toml(Config config);
 
 /// The reverse for one table, such as a recording stores for each sensor. Fails with the first error. A secret in it is

@@ -174,7 +174,7 @@ Failure by_hand(std::string_view sensor, const std::string& why, std::span<const
     lines += fmt::format("\n  {}{}{} = {}", change.table, change.table.empty() ? "" : ".", change.key,
                          toml_value(change.value));
   }
-  return {fmt::format("the entry of the sensor \"{}\" cannot be changed by this program ({}); write there by hand:{}",
+  return {fmt::format("the entry of the sensor \"{}\" cannot be edited automatically ({}); add these lines by hand:{}",
                       sensor, why, lines)};
 }
 
@@ -199,19 +199,20 @@ std::string toml_value(const ParameterValue& value) {
 Result<std::string, Failure> edit_sensor(std::string_view toml_text, std::string_view sensor,
                                          std::span<const ConfigChange> changes) {
   for (const ConfigChange& change : changes) {
-    if (std::holds_alternative<Secret>(change.value)) return Failure{change.key + ": a secret is not written"};
+    if (std::holds_alternative<Secret>(change.value))
+      return Failure{change.key + ": secrets are not written by this program; write it by hand"};
   }
   try {
     toml::table root = tables::parse_toml(toml_text);
     toml::table* entry = find_sensor(root, sensor);
-    if (entry == nullptr) return Failure{fmt::format("there is no [[sensor]] that is called \"{}\"", sensor)};
+    if (entry == nullptr) return Failure{fmt::format("there is no [[sensor]] named \"{}\"", sensor)};
 
     SensorEditor editor(toml_text, *entry);
     for (const ConfigChange& change : changes) editor.set(change);
     std::string text = editor.text();
 
-    // Verify: the new text must equal the old one but for the changes.
-    if (!apply(*entry, changes)) return by_hand(sensor, "a value stands where a table should be", changes);
+    // Verify: the new text must equal the old one except for the changes.
+    if (!apply(*entry, changes)) return by_hand(sensor, "it has a value in the place of a table", changes);
     if (tables::parse_toml(text) != root) return by_hand(sensor, "its layout is unusual", changes);
     return {boost::system::in_place_value, std::move(text)};
   } catch (const toml::parse_error& error) {

@@ -20,8 +20,8 @@ struct ConfigChange {
 /// line ends stay. A missing key is added after the others of its table, a missing [sensor.calibration] is added.
 /// `sensor` is the name as parse_config() gives it: the configured name, or else the driver's.
 ///
-/// The result is parsed again to verify that nothing but these values differs. Where it does (or the text is not TOML,
-/// or there is no such sensor, or a value is a secret), the failure says what to edit by hand. Pure.
+/// The result is parsed again to verify that only these values differ. If others do (or the text is not TOML,
+/// or there is no such sensor, or a value is a secret), the failure shows what to edit by hand. Pure.
 Result<std::string, Failure> edit_sensor(std::string_view toml_text, std::string_view sensor,
                                          std::span<const ConfigChange> changes);
 

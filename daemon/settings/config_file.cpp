@@ -30,12 +30,14 @@ Result<void, Failure> write_like(const std::filesystem::path& model, const std::
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
   out.close();
   if (!out) {
-    return not_written(file.string() + ": cannot be written; is its folder writable, and the disk not full?");
+    return not_written(file.string() +
+                       ": cannot be written; check that its folder is writable and the disk is not full");
   }
   return {};
 }
 
-/// Can a sensor be constructed from its values? Not necessarily: this may be another machine than the daemon's.
+/// Returns true if a sensor can be constructed from its values. That may fail here: this may be another machine than
+/// the daemon's.
 bool can_be_opened(const SensorConfig& sensor) {
   try {
     return open_sensor(sensor) != nullptr;
@@ -44,7 +46,7 @@ bool can_be_opened(const SensorConfig& sensor) {
   }
 }
 
-/// Fails where the daemon would refuse the file, or a sensor that it accepted before.
+/// Fails if the daemon would refuse the file, or a sensor that it accepted before.
 Result<void, Failure> prove(const std::filesystem::path& file, const Config& before) {
   try {
     const Config config = load_config(file);
@@ -53,7 +55,7 @@ Result<void, Failure> prove(const std::filesystem::path& file, const Config& bef
     }
     return {};
   } catch (const ConfigError& error) {
-    return Failure{std::string("the new configuration would be wrong, and was not written: ") + error.what()};
+    return Failure{std::string("the new configuration would have an error and was not written: ") + error.what()};
   }
 }
 
@@ -88,7 +90,8 @@ Result<std::filesystem::path, Failure> replace_config(const std::filesystem::pat
 
   // The old text is on the disk before the new one replaces it.
   if (read_config_text(real) != old_text) {
-    return not_written(file.string() + ": has been changed meanwhile, and was left as it is; begin again");
+    return not_written(file.string() +
+                       ": was changed by another program in the meantime, and was not overwritten; start again");
   }
   const std::filesystem::path kept = real.string() + ".bak";
   platform::OutputFile backup(kept, true);

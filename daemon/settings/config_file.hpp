@@ -20,7 +20,7 @@ std::filesystem::path state_file(const std::filesystem::path& config_file, std::
 /// and every sensor that could be constructed from the old text can be constructed from it. The old text is kept as
 /// FILE.bak. Permissions stay, and a symbolic link keeps pointing at its file.
 ///
-/// `old_text` is what the new text was made from; the file is left alone where it has changed since. Returns the path
+/// `old_text` is what the new text was made from; the file is left unchanged if it has changed since. Returns the path
 /// of the old text; after a Failure the file is as it was.
 Result<std::filesystem::path, Failure> replace_config(const std::filesystem::path& file, std::string_view old_text,
                                                       std::string_view new_text);

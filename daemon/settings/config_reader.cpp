@@ -136,7 +136,7 @@ class ConfigReader {
 
   std::string place(const toml::source_region& where) const { return mistakes_.place(where); }
 
-  /// At a key of a table, or at the table where the key is not given.
+  /// At a key of a table, or at the table if the key is not given.
   void mistake_in(const toml::table& table, const std::string& prefix, const ParameterError& error) {
     const toml::node* node = table.get(error.name);
     mistake(node != nullptr ? node->source() : table.source(), prefix + error.name, error.message);
@@ -147,7 +147,8 @@ class ConfigReader {
     for (const auto& [key, node] : root) {
       const std::string name(key.str());
       if (std::ranges::find(config_lists(), key.str()) != config_lists().end()) {
-        if (!is_list(node)) mistake(key.source(), name, fmt::format("is one table; write [[{}]] above it", name));
+        if (!is_list(node))
+          mistake(key.source(), name, fmt::format("is a single table; write its heading as [[{}]]", name));
       } else if (std::ranges::find(values, key.str(), &Parameter::name) != values.end()) {
         continue;
       } else if (std::ranges::find(config_tables(), key.str(), &ConfigTable::name) == config_tables().end()) {
@@ -225,7 +226,8 @@ class ConfigReader {
       if (description == nullptr) return;
       std::string name = tables::read_name(entry, prefix, std::string(description->name), mistakes_);
       if (!names.insert(name).second)
-        mistake(entry.source(), prefix + "name", fmt::format("\"{}\" is used twice; give each {} a name", name, list));
+        mistake(entry.source(), prefix + "name",
+                fmt::format("\"{}\" is used twice; give each {} a different name", name, list));
       ParameterValues values =
           read_values(entry, prefix, parameters_of(*description), keys_beside(*description), retired_of(*description));
       use(entry_of(std::move(name), *description, std::move(values)), entry);
@@ -250,8 +252,9 @@ class ConfigReader {
       if (!entry.contains(kNameKey)) {
         mistake_in(entry, prefix, {std::string(kNameKey), fmt::format("is missing; give each {} a name", list)});
       } else if (!name.empty() && !names.insert(name).second) {
-        mistake_in(entry, prefix,
-                   {std::string(kNameKey), fmt::format("\"{}\" is used twice; give each {} a name", name, list)});
+        mistake_in(
+            entry, prefix,
+            {std::string(kNameKey), fmt::format("\"{}\" is used twice; give each {} a different name", name, list)});
       }
       use(std::move(name), entry);
     });
@@ -290,7 +293,7 @@ class ConfigReader {
     };
     const auto is_ground = [](const SceneConfig& scene) { return scene.kind->name == kGroundKind; };
     if (std::ranges::none_of(config.scenes, is_ground)) {
-      return refuse("is for a scene that is not there; add [[scene]] with kind = \"ground\"");
+      return refuse("needs a scene that is missing; add [[scene]] with kind = \"ground\"");
     }
     if (!folder_) return;
     const std::string& file = look.text(kKey);
@@ -312,7 +315,9 @@ class ConfigReader {
     camera.camera = std::move(*made);
     for (const CameraConfig& other : config.cameras) {
       if (camera.camera.from_h && other.camera.from_h == camera.camera.from_h)
-        mistake_in(entry, prefix, {"from", "is that of the camera \"" + other.name + "\", too; only one can be on"});
+        mistake_in(
+            entry, prefix,
+            {"from", "is also the start of the camera \"" + other.name + "\"; give each camera a different time"});
     }
     const std::string& scene = camera.camera.scene;
     if (!scene.empty() && std::ranges::find(config.scenes, scene, &SceneConfig::name) == config.scenes.end()) {

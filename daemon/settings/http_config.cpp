@@ -29,7 +29,7 @@ Result<std::vector<std::string>, Failure> host_names(const std::string& text) {
   for (const std::string& name : names) {
     if (name.find_first_of("/:,") == std::string::npos) continue;
     return Failure{"\"" + name +
-                   "\" is no name; allowed: names with blanks between them, such as \"wall.example.org wall\""};
+                   "\" is not a name; allowed: names separated by blanks, such as \"wall.example.org wall\""};
   }
   return names;
 }
@@ -41,7 +41,7 @@ Result<std::vector<std::string>, Failure> addresses(const std::string& text) {
     if (inet_pton(AF_INET, address.c_str(), &parsed) == 1 || inet_pton(AF_INET6, address.c_str(), &parsed) == 1)
       continue;
     return Failure{"\"" + address +
-                   "\" is no address; allowed: addresses with blanks between them, such as \"127.0.0.1 ::1\""};
+                   "\" is not an address; allowed: addresses separated by blanks, such as \"127.0.0.1 ::1\""};
   }
   return all;
 }
@@ -58,20 +58,20 @@ const Fields<HttpConfig>& http_fields() {
        address_or_empty},
       {{.name = "hosts",
         .default_value = std::string(),
-        .help = "names, with blanks between them, by which others call this machine, besides its own name, "
+        .help = "names of this machine, separated by blanks, that others use besides its own name, "
                 "localhost and its addresses; a request for any other is refused"},
        &HttpConfig::hosts,
        host_names},
       {{.name = "token_file",
         .default_value = std::string(),
         .help = "a file with the token, which `yuragi token --new` makes; then only clients of the page and the stream "
-                "that show it, and browsers that were paired with `yuragi token`, change something, whatever their "
-                "address; empty: only this machine does. Behind a reverse proxy a token is required",
+                "that have it, and browsers paired with `yuragi token`, can change something, from any "
+                "address; empty: only this machine can. Behind a reverse proxy a token is required",
         .is_secret_file = true},
        &HttpConfig::token_file},
       {{.name = "proxies",
         .default_value = std::string(),
-        .help = "addresses, with blanks between them, of reverse proxies whose X-Forwarded-For is believed: 127.0.0.1; "
+        .help = "addresses, separated by blanks, of reverse proxies whose X-Forwarded-For is believed: 127.0.0.1; "
                 "for the log and the limit of attempts to pair"},
        &HttpConfig::proxies,
        addresses},
@@ -90,7 +90,7 @@ std::vector<ParameterError> fill_http(HttpConfig& http, const ParameterValues& v
   http = {};
   std::vector<ParameterError> errors = http_fields().fill(http, values.all());
   if (http.reading_takes_token && http.token_file.empty())
-    errors.push_back({"readers", "\"token\" takes a token_file; `yuragi token --new` makes one"});
+    errors.push_back({"readers", "\"token\" needs a token_file; `yuragi token --new` makes one"});
   return errors;
 }
 

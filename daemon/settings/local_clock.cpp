@@ -25,9 +25,9 @@ Result<LocalClock, ParameterError> LocalClock::of_zone(const std::string& name) 
   try {
     clock.zone_ = find_zone(name);
   } catch (const std::exception&) {
-    return ParameterError{"zone", fmt::format("is \"{}\", which is no time zone that this machine knows; allowed: a "
+    return ParameterError{"zone", fmt::format("is \"{}\", a time zone that this machine does not know; allowed: a "
                                               "name such as \"Europe/Berlin\" or \"Asia/Tokyo\" (timedatectl "
-                                              "list-timezones), or nothing for this machine's own",
+                                              "list-timezones), or \"\" for this machine's own",
                                               name)};
   }
   return clock;

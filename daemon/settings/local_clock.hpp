@@ -19,7 +19,7 @@ class LocalClock {
   /// That of UTC.
   LocalClock() noexcept = default;
 
-  /// `name`: of the IANA database ("Europe/Berlin"); empty: this machine's own zone, or UTC where it has none. The
+  /// `name`: of the IANA database ("Europe/Berlin"); empty: this machine's own zone, or UTC if it has none. The
   /// error names "zone".
   static Result<LocalClock, ParameterError> of_zone(const std::string& name);
 

@@ -65,7 +65,7 @@ struct OpeningRule {
 
 std::optional<OpeningRule> parse_rule(std::string_view text) {
   OpeningRule rule;
-  // Days, where the rule begins with a letter: up to the first digit.
+  // Days, if the rule begins with a letter: up to the first digit.
   if (const auto digit = text.find_first_of("0123456789"); digit != 0 && digit != std::string_view::npos) {
     const auto days = parse_range(without_spaces_around(text.substr(0, digit)), parse_weekday);
     if (!days) return std::nullopt;
@@ -91,7 +91,7 @@ Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours,
   result.clock_ = *clock;
   if (!has_hours) return result;
   if (hours.size() > kLongestHours) {
-    return ParameterError{"hours", fmt::format("has {} characters; allowed: at most {}", hours.size(), kLongestHours)};
+    return ParameterError{"hours", fmt::format("is too long: {} characters (maximum {})", hours.size(), kLongestHours)};
   }
 
   result.open_.reset();
@@ -100,7 +100,7 @@ Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours,
     const std::string_view text = without_spaces_around(hours.substr(0, comma));
     const std::optional<OpeningRule> rule = parse_rule(text);
     if (!rule) {
-      return ParameterError{"hours", fmt::format("has \"{}\"; allowed: FROM-TO, with days before it or without, and "
+      return ParameterError{"hours", fmt::format("has \"{}\"; allowed: FROM-TO, optionally after days, with "
                                                  "commas between: \"10:00-18:00\", \"Tue-Sun 10:00-18:00, Thu "
                                                  "18:00-21:00\"",
                                                  text)};

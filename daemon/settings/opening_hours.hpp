@@ -15,7 +15,7 @@ namespace yuragi::daemon::settings {
 /// Weekly opening hours in the local time of a time zone, to the minute.
 ///
 /// Written as rules with commas between them: "10:00-18:00" (every day), "Tue-Sun 10:00-18:00, Thu 18:00-21:00",
-/// "Fri 20:00-02:00" (into the next day), "00:00-24:00". Open whenever any rule says so; days without a
+/// "Fri 20:00-02:00" (into the next day), "00:00-24:00". Open if any rule applies; days without a
 /// rule are closed. Local time follows the zone's daylight saving time.
 ///
 /// Thread-safe: reading, yes. Only the functions that return text allocate.
@@ -25,7 +25,7 @@ class OpeningHours {
   OpeningHours() noexcept { open_.set(); }
 
   /// An empty text: open at all hours. `zone`: a name of the IANA database ("Europe/Berlin"); empty: this machine's
-  /// own, or UTC where it has none. The error names "hours" or "zone".
+  /// own, or UTC if it has none. The error names "hours" or "zone".
   static Result<OpeningHours, ParameterError> parse(std::string_view hours, const std::string& zone);
 
   bool is_always_open() const noexcept { return open_.all(); }
@@ -35,8 +35,8 @@ class OpeningHours {
   /// The time zone: "Europe/Berlin"; "UTC" on a machine without one.
   std::string zone_name() const { return clock_.zone_name(); }
 
-  /// The local time of the next change, for a person: "until 18:00", "until Tue 10:00" where that is more than a
-  /// day away; empty where there is none.
+  /// The local time of the next change, for a person: "until 18:00", "until Tue 10:00" if that is more than a
+  /// day away; empty if there is none.
   std::string until_text(UtcTime now) const;
 
  private:

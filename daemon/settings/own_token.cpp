@@ -37,7 +37,7 @@ std::string group_hint(const std::string& file) {
   if (::stat(file.c_str(), &status) != 0) return {};
   const group* const members = getgrgid(status.st_gid);  // NOLINT(concurrency-mt-unsafe): a command has one thread
   if (members == nullptr || (status.st_mode & S_IRGRP) == 0) return {};
-  return fmt::format("you may not read {}: its group \"{}\" may (`sudo adduser YOUR-NAME {}`, then log in again)", file,
+  return fmt::format("you may not read {}; its group \"{}\" may (`sudo adduser YOUR-NAME {}`, then log in again)", file,
                      members->gr_name, members->gr_name);
 }
 

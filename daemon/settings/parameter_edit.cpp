@@ -31,17 +31,17 @@ Result<ParameterValues, ParameterError> with_edit(std::span<const Parameter> tab
   return ParameterValues::resolve(table, given);
 }
 
-/// Why a key is not changed while the daemon runs; nothing: it is, or it is not known.
+/// Why a key is not changed while the daemon runs; nullopt: it is, or it is not known.
 std::optional<ParameterError> refusal(std::string_view table, std::span<const Parameter> parameters,
                                       KeyChange otherwise, const ParameterEdit& edit) {
   const auto parameter = std::ranges::find(parameters, edit.key, &Parameter::name);
   if (parameter == parameters.end()) return std::nullopt;
   const KeyChange change = parameter->change.value_or(otherwise);
   if (change == KeyChange::kTakesRestart) {
-    return error_in(table, {edit.key, "takes a restart: write it into the configuration"});
+    return error_in(table, {edit.key, "needs a restart: write it into the configuration and restart the daemon"});
   }
   if (change == KeyChange::kTakesReload) {
-    return error_in(table, {edit.key, "is read with the configuration: write it there, then: yuragi reload"});
+    return error_in(table, {edit.key, "is read only from the configuration: write it there, then run yuragi reload"});
   }
   return std::nullopt;
 }

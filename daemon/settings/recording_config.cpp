@@ -65,7 +65,7 @@ const Fields<RecordingConfig>& recording_fields() {
         .default_value = 200.0,
         .min = 0.0,
         .max = 1e9,
-        .help = "space to leave free on the disk: below it the oldest completed files are deleted, and where that is "
+        .help = "space to leave free on the disk: below it the oldest completed files are deleted, and if that is "
                 "not enough nothing is recorded"},
        &RecordingConfig::least_free_bytes,
        whole_bytes_of},

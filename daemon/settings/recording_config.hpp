@@ -10,7 +10,7 @@ namespace yuragi::daemon::settings {
 
 /// [recording]: where readings are recorded, and how much of that is kept.
 struct RecordingConfig {
-  std::optional<std::filesystem::path> file = {};  ///< nothing: not recorded, unless the command line says so
+  std::optional<std::filesystem::path> file = {};  ///< nullopt: not recorded, unless --record is given
   bool is_daily = false;                           ///< a file for each day (UTC)
   std::uint64_t most_file_bytes = 0;               ///< a new file is begun beyond; 0: never
   std::int64_t keep_days = 0;                      ///< completed files that ended longer ago are deleted; 0: none

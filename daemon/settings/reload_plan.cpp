@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLongestShownValue = 60;
 
-/// A value for a person; "left out" where there is none.
+/// A value for a person; "left out" if there is none.
 std::string shown(const ParameterValues::Map& values, std::string_view key) {
   const auto found = values.find(key);
   if (found == values.end()) return "left out";
@@ -63,7 +63,7 @@ class Comparison {
     return next;
   }
 
-  /// Does the same with all tables of an owner, which it makes anew where values change.
+  /// Does the same with all tables of an owner, which it makes anew if values change.
   template <class Owner>
   void merge_tables(const std::string& who, const std::string& prefix, std::span<const TableOf<Owner>> tables,
                     Owner& next, const Owner& wanted) {

@@ -23,7 +23,7 @@ struct ReloadPlan {
 };
 
 /// Compares two configurations as parse_config() makes them. `can_change_scenes`: the scenes can be exchanged while the
-/// daemon runs; otherwise what differs in them takes a restart. Sensors and scenes are the same where they have the
+/// daemon runs; otherwise what differs in them needs a restart. Sensors and scenes are the same if they have the
 /// same name. Pure.
 ReloadPlan plan_reload(const Config& running, const Config& wanted, bool can_change_scenes);
 

@@ -16,8 +16,8 @@ namespace {
 using drivers::sensor::Endpoint;
 using drivers::sensor::ValueSelection;
 
-/// What one sensor needs of its device; nothing if that cannot be told: open_sensor() reports the reason, unless the
-/// sensor has been running since before its profile was lost.
+/// What one sensor needs of its device; empty if that is not known: open_sensor() reports the reason, unless
+/// the sensor has been running since before its profile was lost.
 struct DeviceUse {
   const SensorConfig* sensor;
   std::optional<ValueSelection> selection;
@@ -63,8 +63,8 @@ void refuse_same_values(const DeviceUse& first, const DeviceUse& second) {
   std::string keys(one.device_keys);
   for (const auto& part : one.parts) keys += fmt::format("{}{}", keys.empty() ? "" : ", ", part.key);
   throw same_device(first, second,
-                    fmt::format("read {}{}: leave one out, or give them different settings (one of: {})", one.device,
-                                parts_text(one, other), keys));
+                    fmt::format("read {}{}: remove one of the sensors, or give them different settings (one of: {})",
+                                one.device, parts_text(one, other), keys));
 }
 
 void refuse_same_claim(const DeviceUse& first, const DeviceUse& second) {
@@ -75,7 +75,8 @@ void refuse_same_claim(const DeviceUse& first, const DeviceUse& second) {
     if (is_one_driver && endpoint.is_shared && other->is_shared) continue;
     throw same_device(
         first, second,
-        fmt::format("need {}, which only one can have: leave one out, or give one of them another", endpoint.claim));
+        fmt::format("need {}, which only one sensor can use: remove one of them, or give one of them another",
+                    endpoint.claim));
   }
 }
 

@@ -72,7 +72,7 @@ const Fields<BlendTable>& blend_fields() {
         .default_value = 0.0,
         .min = -1000.0,
         .max = 1000.0,
-        .help = "position to the south of the middle of the scenes; where only one of x and z is set, the other is 0",
+        .help = "position to the south of the middle of the scenes; if only one of x and z is set, the other is 0",
         .left_out = kAtTheEdge},
        &BlendTable::south_m},
       {{.name = "lead",
@@ -162,7 +162,7 @@ Result<BlendSourceSettings, ParameterError> blend_source_of(const ParameterValue
   settings.is_relative = table.role == Role::kRelative || (table.role == Role::kOfDriver && driver.is_relative);
   settings.fits_site = !settings.is_relative && !driver.plays_recordings;
   if (settings.lead_m > 0.0 && !settings.has_place) {
-    return ParameterError{"lead", "is counted from where the sensor stands; give x or z, too, or leave it out"};
+    return ParameterError{"lead", "needs the position of the sensor; give x or z, too, or remove it"};
   }
   return settings;
 }

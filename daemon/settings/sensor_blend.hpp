@@ -19,7 +19,7 @@ std::span<const Parameter> sensor_blend_parameters();
 drivers::sensor::StatedValue sensor_value_of(const ParameterValues& values,
                                              const std::optional<drivers::sensor::StatedValue>& stated);
 
-/// From the values of sensor_blend_parameters(), with the driver's defaults where they are "auto"; length_m, and what
+/// From the values of sensor_blend_parameters(), with the driver's defaults if they are "auto"; length_m, and what
 /// sensor_value_of() returns, are not set.
 /// An error (values that contradict each other) names the key.
 Result<wind::blend::BlendSourceSettings, ParameterError> blend_source_of(

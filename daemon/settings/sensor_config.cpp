@@ -33,7 +33,7 @@ const Fields<CalibrationTable>& calibration_fields() {
   static const Fields<CalibrationTable> kFields{
       {{.name = "unit",
         .default_value = std::string("m/s"),
-        .help = "unit of the sensor's speeds, where its driver assumes m/s",
+        .help = "unit of the sensor's speeds, if its driver assumes m/s",
         .choices = drivers::sensor::kSpeedUnitNames},
        of_calibration(&Calibration::unit_m_s),
        drivers::sensor::metres_per_second_in},

@@ -24,7 +24,7 @@ struct SensorHeights {
   double scene_m = 10.0;             ///< the height whose wind moves the scenes
 };
 
-/// What plays a sensor's part where a recording is replayed as it was.
+/// What takes a sensor's part if a recording is replayed as it was.
 struct StandIn {
   std::filesystem::path recording;
   std::function<std::unique_ptr<drivers::sensor::Sensor>()> open;
@@ -55,12 +55,12 @@ void set_value(SensorConfig& sensor, const std::optional<drivers::sensor::Stated
 /// Its origin, or its name if it is in no file: how a message about it begins.
 const std::string& place_of(const SensorConfig& sensor) noexcept;
 
-/// The integral length of the gusts at a sensor before it is fitted to its readings, m: [wind] default_length where it
+/// The integral length of the gusts at a sensor before it is fitted to its readings, m: [wind] default_length if it
 /// is set; else from the sensor's height; else that of the default wind. Pure.
 double gust_length_m(const WindConfig& wind, const SensorConfig& sensor) noexcept;
 
-/// Sets the integral length of the gusts from the sensor's height, where that is known: 8.1 * 0.7 times the height, up
-/// to 60 m (IEC 61400-1), at least kShortestGusts_m. Where the calibration scales speeds to another height, the length
+/// Sets the integral length of the gusts from the sensor's height, if that is known: 8.1 * 0.7 times the height, up
+/// to 60 m (IEC 61400-1), at least kShortestGusts_m. If the calibration scales speeds to another height, the length
 /// is scaled by the same factor, so that the time scale is unchanged.
 void set_gust_length(SensorConfig& sensor) noexcept;
 
@@ -72,7 +72,7 @@ std::span<const SensorTable> sensor_tables();
 inline constexpr std::string_view kBlendTable = "blend";
 inline constexpr std::string_view kCalibrationTable = "calibration";
 
-/// From values of [sensor.calibration] that are in no file. Throws std::runtime_error where they contradict each other.
+/// From values of [sensor.calibration] that are in no file. Throws std::runtime_error if they contradict each other.
 wind::judging::Calibration calibration_of(const ParameterValues& values);
 
 }  // namespace yuragi::daemon::settings

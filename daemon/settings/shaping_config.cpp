@@ -140,8 +140,8 @@ return kFields;
 std::vector<ParameterError> speed_mistakes(const SiteRange& site, const SoftCeiling& ceiling) {
   std::vector<ParameterError> mistakes;
   if (site.strong_m_s > 0.0 && !(site.median_m_s > 0.0 && site.strong_m_s > site.median_m_s)) {
-    mistakes.push_back({"site_strong", fmt::format("is {}, with site_median {}; allowed: 0, or more than a "
-                                                   "site_median that is above 0",
+    mistakes.push_back({"site_strong", fmt::format("is {}, with site_median {}; allowed: 0, or more than "
+                                                   "site_median, if that is above 0",
                                                    site.strong_m_s, site.median_m_s)});
   }
   if (ceiling.from_m_s > 0.0 && !(ceiling.most_m_s > ceiling.from_m_s)) {

@@ -11,7 +11,7 @@ namespace yuragi::daemon::settings {
 
 Result<std::vector<double>, Failure> parse_site_octaves(std::string_view text) {
   const Failure failure{
-      fmt::format("\"{}\" is no row of octaves; allowed: up to {} numbers from {:g} to {:g} dB, such as "
+      fmt::format("\"{}\" is not a list of octaves; allowed: up to {} numbers from {:g} to {:g} dB, such as "
                   "\"+1.2 +0.8 -0.5 -1.1\"",
                   text, wind::turbulence::SiteSpectrum::kOctaves, -wind::turbulence::SiteSpectrum::kMost_db,
                   wind::turbulence::SiteSpectrum::kMost_db)};

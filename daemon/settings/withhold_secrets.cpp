@@ -97,7 +97,7 @@ Result<WithheldText, Failure> withhold_in(std::string_view toml_text, const With
     withhold(withholder);
     return withholder.take();
   } catch (const toml::parse_error&) {
-    return Failure{"is no TOML, or too large or too deep", FailureKind::kBadData};
+    return Failure{"is not TOML, or is too large or too deeply nested", FailureKind::kBadData};
   }
 }
 

@@ -16,7 +16,7 @@ struct WithheldText {
 
 // For recordings that were made while passwords were still recorded. Which values are secrets is taken from the tables
 // of the drivers; a driver that is not known has the secrets of all others. Everything but these values stays as it is,
-// byte by byte, where the layout allows it, else all values do. An empty secret is none. A text that is no TOML is a
+// byte by byte, if the layout allows it, else all values do. An empty secret is none. A text that is not TOML is a
 // failure, whose message shows nothing of it. Pure.
 
 /// Of a whole configuration.

@@ -30,7 +30,7 @@ std::string shaping_text(const wind::shaping::WindShapingReport& report,
   if (opening.has_hours) {
     std::string hours = opening.is_open ? "open" : "closed";
     if (!opening.until.empty()) hours += " " + opening.until;
-    // During the change, and where closing leaves a part of the wind, that part is named.
+    // During the change, and if closing leaves a part of the wind, that part is named.
     const double target = opening.is_open ? 1.0 : settings.closed_level;
     if (std::abs(report.opening - target) > 0.005) hours += opening.is_open ? ", fading in" : ", fading out";
     if (std::abs(report.opening - (opening.is_open ? 1.0 : 0.0)) > 0.005) {

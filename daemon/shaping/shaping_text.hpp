@@ -13,12 +13,12 @@ struct OpeningNews {
   std::string until;  ///< OpeningHours::until_text
 };
 
-/// Does the floor raise the mean by more than this share of the result?
+/// Returns true if the floor raises the mean by more than this share of the result.
 bool is_raised(const wind::shaping::WindShapingReport& report, double share = 0.02);
 
 /// What is shaping the wind at present, in one line: "site gain 1.80 (in 5 days 3 h
 /// median 1.2, strong 3.9 m/s); floor: raised 0.6 to 1.5 m/s; gusts 2.00 times the real ones; closed until 10:00".
-/// Empty where nothing is.
+/// Empty if nothing is.
 std::string shaping_text(const wind::shaping::WindShapingReport& report,
                          const wind::shaping::WindShapingSettings& settings, const OpeningNews& opening);
 

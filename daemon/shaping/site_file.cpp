@@ -48,7 +48,7 @@ nlohmann::json json_of_reach(const wind::blend::GustReach& reach) {
           {kAlongDeviationKey, std::sqrt(reach.along_variance)}};
 }
 
-/// The failure has an empty text where there was none.
+/// The failure has an empty text if there was none.
 Failure write_site_file(const std::filesystem::path& file, const SiteMemory& memory) {
   try {
     nlohmann::json json = {
@@ -62,7 +62,7 @@ Failure write_site_file(const std::filesystem::path& file, const SiteMemory& mem
   }
 }
 
-/// The numbers of a key, none where it is missing; false where it has another type.
+/// The numbers of a key, none if it is missing; false if it has another type.
 bool read_numbers(const nlohmann::json& json, const char* key, std::vector<double>& numbers) {
   if (!json.contains(key)) return true;
   const nlohmann::json& row = json[key];
@@ -92,7 +92,7 @@ class NameCount {
 
 /// Takes the gains. Returns what is wrong with them; empty: nothing.
 std::string read_gains(const nlohmann::json& json, std::size_t names, wind::judging::LearntByName& gains) {
-  if (!json.is_object()) return "is no object";
+  if (!json.is_object()) return "is not an object";
   if (names != json.size()) return "names a sensor twice";
   if (names > kMostSensors) return fmt::format("names {} sensors", names);
   wind::judging::LearntByName all;
@@ -101,7 +101,7 @@ std::string read_gains(const nlohmann::json& json, std::size_t names, wind::judg
       return learnt.contains(key) && learnt[key].is_number();
     };
     if (!learnt.is_object() || !is_number(kReadsKey) || !is_number(kSecondsKey))
-      return "has something else than numbers";
+      return "has values that are not numbers";
     const auto reads = learnt[kReadsKey].get<double>();
     if (!(reads > 0.0)) return "has a sensor that reads 0 or less";
     all[name] = {.deviation = std::log(reads), .learnt_s = learnt[kSecondsKey].get<double>()};
@@ -121,7 +121,7 @@ std::string read_reach(const nlohmann::json& json, wind::blend::GustReach& reach
                                       .along_ln = std::log(json[kAlongKey].get<double>()),
                                       .across_variance = square(kAcrossDeviationKey),
                                       .along_variance = square(kAlongDeviationKey)};
-  if (!is_valid(all)) return "has what cannot have been learnt";
+  if (!is_valid(all)) return "has impossible values";
   reach = all;
   return {};
 }
@@ -132,7 +132,7 @@ Result<SiteMemory, Failure> SiteFile::read() const {
   const auto text = platform::read_whole(file_, kLongestSiteFile_bytes);
   if (!text) return Failure{file_.string() + ": " + text.error().message};
 
-  const Failure none{file_.string() + ": is not a memory of a site's wind"};
+  const Failure none{file_.string() + ": is not a file of a site's wind"};
   NameCount names;
   const auto json = nlohmann::json::parse(*text, std::ref(names), false);
   if (!json.is_object() || !json.contains(kTimesKey)) return none;
@@ -157,7 +157,7 @@ Result<std::filesystem::path, Failure> SiteFile::set_aside() const {
 }
 
 void SiteFile::save(SiteMemory memory) {
-  // Where no thread can be created, wait() writes the file.
+  // If no thread can be created, wait() writes the file.
   writing_ = std::async(std::launch::async | std::launch::deferred, write_site_file, file_, std::move(memory));
 }
 

@@ -43,7 +43,7 @@ class SiteFile {
   void save(SiteMemory memory);
   bool is_writing() const;
 
-  /// Waits until it is written. Returns the failure, once; its text is empty where there was none.
+  /// Waits until it is written. Returns the failure, once; its text is empty if there was none.
   Failure wait();
 
  private:

@@ -80,7 +80,7 @@ void WindShaper::keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> 
 void WindShaper::restore_gains(const SiteMemory& memory) {
   if (!sensors_.gains.restore) return;
   std::string refusal = memory.gains_refusal;
-  if (refusal.empty() && !sensors_.gains.restore(memory.gains)) refusal = "has what cannot have been learnt";
+  if (refusal.empty() && !sensors_.gains.restore(memory.gains)) refusal = "has impossible values";
   if (!refusal.empty()) {
     spdlog::warn("shaping: {}: relative_gains {}; how the sensors differ is learnt anew", site_path_.string(), refusal);
   } else if (!memory.gains.empty()) {
@@ -149,7 +149,7 @@ void WindShaper::log_changes() {
   }
 }
 
-/// A storm is logged once, however many gusts it has.
+/// A storm is logged once, with any number of gusts.
 void WindShaper::log_ceiling(const wind::shaping::WindShapingReport& report, MonoTime now) {
   if (report.ceiling_gain < 1.0 - kCeilingBegins) {
     held_back_ = now;

@@ -28,7 +28,7 @@ struct KeptOfSensors {
   Kept<wind::blend::GustReach> reach{};
 };
 
-/// WindShaping with opening hours, a site file that keeps what was learnt over a restart, and a log line where an
+/// WindShaping with opening hours, a site file that keeps what was learnt over a restart, and a log line when an
 /// effect begins or ends. Belongs to the I/O thread.
 class WindShaper {
  public:
@@ -38,8 +38,8 @@ class WindShaper {
   WindShaper(const WindShaper&) = delete;
   WindShaper& operator=(const WindShaper&) = delete;
 
-  /// Reads [shaping] site_file, and writes it from now on, once an hour and at the end. To be called before the first
-  /// shape(). Does nothing where no file is configured, or where a sensor plays a recording, which may be of another
+  /// Reads [shaping] site_file, and writes it from now on, once an hour and at the end. Call it before the first
+  /// shape(). Does nothing if no file is configured, or if a sensor plays a recording, which may be of another
   /// site. `gusts`: the spectrum that is kept in the file too; null: not kept. What `sensors` calls must live as long
   /// as this.
   void keep_site_file(std::shared_ptr<wind::turbulence::SiteSpectrum> gusts = {}, KeptOfSensors sensors = {});

@@ -11,7 +11,7 @@ namespace yuragi::daemon::state {
 /// programs.
 inline constexpr double kCarriedShare = 0.5;
 
-/// How many times the present work of the animation this machine carries; nothing where it is not known. Below 1 it is
+/// How many times the present work of the animation this machine carries; nullopt if it is not known. Below 1 it is
 /// too much. Pure.
 std::optional<double> carried_times(const wire::AnimationStatus& animation);
 

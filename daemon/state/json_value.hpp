@@ -6,7 +6,7 @@
 
 namespace yuragi::daemon::state {
 
-/// A value as JSON, null where there is none.
+/// A value as JSON, null if there is none.
 template <class Value>
 nlohmann::ordered_json json_or_null(const std::optional<Value>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);

@@ -22,21 +22,21 @@ struct Peer {
   std::optional<std::string> only_asks_because = std::nullopt;
 };
 
-/// Places besides `max_clients`, so that `yuragi status` on this machine has an answer however many clients there are.
-/// Who has one gets neither poses nor raw messages, and is let go after kQuestionsFor.
+/// Places besides `max_clients`, so that `yuragi status` on this machine gets a reply with any number of clients.
+/// A client in one gets neither poses nor raw messages, and is disconnected after kQuestionsFor.
 inline constexpr std::size_t kPlacesForQuestions = 4;
 inline constexpr auto kQuestionsFor = std::chrono::seconds(60);
 
 /// The number of places that only clients of this machine get, so that a technician on it can always see what is wrong:
-/// the last 4, or half of them where there are fewer than 8.
+/// the last 4, or half of them if there are fewer than 8.
 std::size_t places_kept_for_this_machine(const AdmissionLimits& limits);
 
-/// Why `newcomer` may not connect besides those who are connected; nothing where it may. Those with a place for
+/// Why `newcomer` may not connect besides those who are connected; nullopt if it may. Those with a place for
 /// questions do not count. Pure.
 std::optional<std::string> admission_refusal(const AdmissionLimits& limits, std::span<const Peer> connected,
                                              const Peer& newcomer);
 
-/// Is one of the places for questions free for `newcomer`, whom admission_refusal() refuses? Pure.
+/// Returns true if one of the places for questions is free for `newcomer`, whom admission_refusal() refuses. Pure.
 bool may_ask(std::span<const Peer> connected, const Peer& newcomer);
 
 }  // namespace yuragi::daemon::stream

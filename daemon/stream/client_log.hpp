@@ -12,7 +12,7 @@
 
 namespace yuragi::daemon::stream {
 
-/// The log of what clients do, within a LogAllowance: however often they connect and whatever they request, the log
+/// The log of what clients do, within a LogAllowance: even if they connect and request very often, the log
 /// does not fill up. Thread-safe: no.
 class ClientLog {
  public:
@@ -29,7 +29,7 @@ class ClientLog {
     write(spdlog::level::warn, format, values...);
   }
 
-  /// Says how many lines were left out, now and then: to be called again and again.
+  /// Logs how many lines were omitted, from time to time: call it repeatedly.
   void tell_left_out() {
     if (const std::uint64_t count = allowance_.tell_left_out(now_()); count > 0) {
       spdlog::warn("{} about clients left out of this log: they came too fast", count_text(count, "line"));

@@ -65,18 +65,18 @@ class ClientQueue {
   /// Behind the message in flight only `last` is sent, and nothing that is offered later.
   void dismiss(SharedBytes last);
   bool is_dismissed() const noexcept { return dismissed_; }
-  /// Has all been written to a dismissed client? Then it should be disconnected.
+  /// Returns true if all has been written to a dismissed client; then it should be disconnected.
   bool is_done() const noexcept { return dismissed_ && setup_.empty() && !in_flight_; }
 
   /// Replaces a waiting message of the same kind; one in flight is finished. Ignored unless subscribed to.
   void offer_frame(SharedBytes frame);
   void offer_sensors(SharedBytes sensors);
 
-  /// A reply to the client's request: sent before frames and sensors, and never replaced. False where too many wait:
+  /// A reply to the client's request: sent before frames and sensors, and never replaced. False if too many wait:
   /// the client sends requests faster than it reads.
   bool offer_reply(SharedBytes reply);
 
-  /// A raw trace: sent in order, never replaced. False where too many wait: it is dropped.
+  /// A raw trace: sent in order, never replaced. False if too many wait: it is dropped.
   bool offer_trace(SharedBytes trace);
 
   /// The rest of the message in flight, or else the next message, which is in flight from `now`. Empty: nothing to

@@ -14,7 +14,7 @@ Result<wire::ControlReply, Failure> ask(const std::string& address, std::string_
                                         const wire::Control& control, Nanoseconds timeout, const Secret& token) {
   auto stream = StreamClient::connect(address, kControlConnectTimeout);
   if (!stream) return Failure{stream.error().message + ". Is `yuragi run` running?", FailureKind::kUnavailable};
-  // Where this fails the daemon has closed the connection: its Hello, which is still to be read, says why.
+  // If this fails, the daemon has closed the connection: its Hello, which can still be read, has the reason.
   if (stream->subscribe({.poses = false, .client = std::string(client), .token = token})) stream->send(control);
   while (true) {
     auto message = stream->receive(timeout);
@@ -38,7 +38,7 @@ std::string reload_text(const wire::ReloadReport& report) {
   std::string text;
   for (const std::string& mistake : report.mistakes) text += mistake + "\n";
   for (const std::string& change : report.applied) text += "applied: " + change + "\n";
-  for (const std::string& change : report.takes_restart) text += "takes a restart: " + change + "\n";
+  for (const std::string& change : report.takes_restart) text += "needs a restart: " + change + "\n";
   if (text.empty()) text = "nothing has changed\n";
   return text;
 }

@@ -11,13 +11,13 @@
 namespace yuragi::daemon::stream {
 
 /// Sends a Control to the daemon at `address` and waits for the reply, `timeout` at most. `client`: a name for the
-/// daemon's log; `token`: the installation's, empty: none is shown. Fails (kUnavailable) where no daemon replies, and
-/// where it refuses the connection or speaks another protocol. Thread-safe: yes.
+/// daemon's log; `token`: the installation's, empty: none is shown. Fails (kUnavailable) if no daemon replies, and
+/// if it refuses the connection or speaks another protocol. Thread-safe: yes.
 Result<wire::ControlReply, Failure> ask(const std::string& address, std::string_view client,
                                         const wire::Control& control, Nanoseconds timeout, const Secret& token = {});
 
 /// What came of asking the daemon at `address` to read its configuration again. `file`: as ReloadCommand::file. Fails
-/// as ask() does, and where the daemon is an older one that cannot do it. Waits as long as reading a file and making
+/// as ask() does, and if the daemon is an older one that cannot do it. Waits as long as reading a file and making
 /// scenes may take. Thread-safe: yes.
 Result<wire::ReloadReport, Failure> ask_to_reload(const std::string& address, const std::string& file,
                                                   const Secret& token = {});

@@ -6,7 +6,7 @@
 
 namespace yuragi::daemon::stream {
 
-/// Which frames a client gets that wants at most so many a second. The rate holds in the long run also where it does
+/// Which frames a client gets that wants at most so many a second. The rate holds in the long run also if it does
 /// not divide that of the frames; after a pause no more than one frame is made up for. Pure: time is a parameter.
 /// Thread-safe: no.
 class FramePace {
@@ -14,7 +14,7 @@ class FramePace {
   /// `rate_hz`: above 0.
   FramePace(double rate_hz, MonoTime now) : every_(from_seconds(std::min(1.0 / rate_hz, kLongest_s))), due_(now) {}
 
-  /// Is it time for a frame at `now`? Then the next one has to wait.
+  /// Returns true if a frame is due at `now`; then the next one has to wait.
   bool take(MonoTime now) noexcept {
     if (now < due_) return false;
     due_ = std::max(due_ + every_, now);

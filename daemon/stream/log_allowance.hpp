@@ -20,7 +20,7 @@ class LogAllowance {
   LogAllowance(const Settings& settings, MonoTime now)
       : settings_(settings), tokens_(settings.burst), filled_(now), told_(now) {}
 
-  /// May a line be written at `now`? Where not, it is counted.
+  /// Returns true if a line may be written at `now`; otherwise counts it.
   bool take(MonoTime now) noexcept {
     tokens_ = std::min(settings_.burst, tokens_ + settings_.per_s * seconds(now - filled_));
     filled_ = now;
@@ -32,7 +32,7 @@ class LogAllowance {
     return true;
   }
 
-  /// How many lines were left out since it was last told; 0 where none, or where it was told less than told_every ago.
+  /// Returns how many lines were omitted since the last report; 0 if none, or if that was less than told_every ago.
   std::uint64_t tell_left_out(MonoTime now) noexcept {
     if (left_out_ == 0 || now - told_ < settings_.told_every) return 0;
     told_ = now;

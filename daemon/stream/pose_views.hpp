@@ -18,7 +18,7 @@ class PoseView {
   const wire::Thinning& thinning() const noexcept { return thinning_; }
   const SharedBytes& scenes() const noexcept { return scenes_; }
 
-  /// Is there a frame of these scenes already?
+  /// Returns true if there is a frame of these scenes already.
   bool has_frame() const noexcept { return whole_ != nullptr; }
   /// Counts the frames that were set, from 1.
   std::uint64_t sequence() const noexcept { return sequence_; }

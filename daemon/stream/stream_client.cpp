@@ -105,7 +105,7 @@ class StreamClient::Connection {
   }
 
  private:
-  /// Runs the operation that was started. False where it does not complete in time: the caller has to end it.
+  /// Runs the operation that was started. False if it does not complete in time: the caller has to end it.
   bool run_for(Nanoseconds timeout) {
     io_.restart();
     io_.run_for(timeout);

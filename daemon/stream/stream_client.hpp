@@ -20,8 +20,8 @@ enum class StreamEnd : std::uint8_t {
 };
 std::string_view name_of(StreamEnd end);
 
-/// The failure where `message` is a Hello by which the daemon at `address` refuses the connection or shows that it
-/// speaks another protocol version; nothing for any other message.
+/// Returns the failure if `message` is a Hello by which the daemon at `address` refuses the connection or shows that it
+/// speaks another protocol version; nullopt for any other message.
 std::optional<Failure> refusal_in(const wire::Message& message, std::string_view address);
 
 /// The failure for a connection to the daemon at `address` that ended.
@@ -46,10 +46,10 @@ class StreamClient {
   StreamClient& operator=(StreamClient&&) noexcept;
   ~StreamClient();
 
-  /// Subscribes; once. False where the connection is closed.
+  /// Subscribes; once. False if the connection is closed.
   bool subscribe(const wire::Subscribe& request);
 
-  /// Sends a request, after subscribe(). False where the connection is closed.
+  /// Sends a request, after subscribe(). False if the connection is closed.
   bool send(const wire::Control& request);
 
   /// Waits at most `timeout` for the next message. Messages of unknown kinds are skipped.

@@ -16,7 +16,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 // A client that vanished without a word is noticed after 30 s + 3 * 10 s without an answer from its machine, and after
-// the same time where something is on its way to it.
+// the same time if something is on its way to it.
 constexpr int kKeepAliveIdle_s = 30;
 constexpr int kKeepAliveInterval_s = 10;
 constexpr int kKeepAliveProbes = 3;

@@ -31,7 +31,7 @@ using boost::system::error_code;
 constexpr std::size_t kMinSendBufferBytes = 256u << 10;
 constexpr auto kAcceptBackOff = std::chrono::milliseconds(100);
 
-// Of what a client says, the log shows so many characters.
+// The log shows this many characters of a text from a client.
 constexpr std::size_t kShownNameCharacters = 64;
 constexpr std::size_t kShownReplyCharacters = 200;
 
@@ -141,7 +141,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// Disconnects the client if it has exceeded a time limit, which is returned.
   std::optional<Overdue> check(MonoTime now) {
-    offer_frame();  // the last one, where no other comes to be offered in its stead
+    offer_frame();  // the last one, if no other one replaces it
     const auto overdue = is_open() ? queue_.overdue(now) : std::nullopt;
     if (!overdue) return overdue;
     const std::string why = reason_text(*overdue, limits_);
@@ -176,7 +176,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     return limits;
   }
 
-  /// Tells the client why, and disconnects it once that has been sent.
+  /// Sends the reason to the client, and disconnects it once that has been sent.
   void dismiss(std::string why) {
     queue_.dismiss(share(feed_->goodbye(why)));
     dismissed_because_ = std::move(why);
@@ -465,7 +465,7 @@ class TcpStream::Server : public std::enable_shared_from_this<Server> {
     connections_.back()->start();
   }
 
-  /// Sends a Hello that says why, in one write that fits into an empty socket buffer, and closes.
+  /// Sends a Hello with the reason, in one write that fits into an empty socket buffer, and closes.
   void refuse(tcp::socket socket, std::string why) const {
     error_code ignored;
     socket.non_blocking(true, ignored);

@@ -20,7 +20,7 @@ namespace yuragi::daemon::stream {
 struct TcpStreamSettings {
   wire::Hello hello;    ///< the first message to every client
   wire::Scenes scenes;  ///< the second message to clients that subscribe to poses, until others are published
-  AdmissionLimits admission = {};  ///< further clients are refused with a Hello that says why
+  AdmissionLimits admission = {};  ///< further clients are refused with a Hello that has the reason
   /// Carries out a client's request about scenes or recordings and returns the reply; `is_local`: the client is on this
   /// machine, or has shown the token. Empty: every request is refused.
   std::function<wire::ControlReply(const wire::Control& control, bool is_local)> on_control = {};
@@ -35,17 +35,17 @@ struct TcpStreamSettings {
       on_parameters = {};
   /// Why a client may not have raw messages, if so; then the connection ends with that reason. Empty: everybody may.
   std::function<std::optional<std::string>(bool is_local)> raw_refusal = {};
-  /// Is this the installation's token? A client that shows it in its Subscribe is trusted, wherever `is_local` is asked
-  /// about above; one that shows a wrong token is disconnected. Empty: there is no token.
+  /// Returns true for the token of the installation. A client that sends it in its Subscribe is trusted, for every
+  /// `is_local` above; one that sends a wrong token is disconnected. Empty: there is no token.
   std::function<bool(const std::string& token)> is_token = {};
-  /// Are clients of this machine trusted without a token?
+  /// Clients of this machine are trusted without a token.
   bool trusts_this_machine = true;
   ClientLimits limits = {};
   LogAllowance::Settings log = {};                           ///< how many lines clients may cause in the log
   Nanoseconds check_every = std::chrono::milliseconds(250);  ///< how often the limits are checked
   std::function<MonoTime()> now = steady_now;                ///< the clock of the limits
 
-  /// Is a client at this numeric address, without the port, on this machine?
+  /// Returns true if a client at this numeric address, without the port, is on this machine.
   std::function<bool(const std::string& address)> is_of_this_machine = is_loopback;
 
   /// Loopback, also of an IPv4 client on an IPv6 socket.
@@ -63,18 +63,18 @@ struct ClientCounts {
 /// The stream of engine/wire/pose.fbs over TCP: size-prefixed messages to any number of clients.
 ///
 /// Each client gets a Hello, subscribes once, and is then sent the newest messages of that kind (ClientQueue), thinned
-/// out as it asked for (PoseViews, FramePace). Where
-/// the scenes change, a client that takes new ones gets them before the first frame of them; another one is let go.
-/// After that it may send Controls, each of which gets a reply, and Displays. A client that sends anything else, does
-/// not subscribe, asks for nothing, or stops reading is disconnected, and that is logged (ClientLog); where it can
-/// still read, it is told why by a second Hello. Who gets a place is decided by admission_refusal(). The kernel asks
-/// every 10 s whether a silent client is still there, so that one that vanished without a word is forgotten within a
-/// minute. Send buffers are kept small, so that a slow client gets new frames.
+/// out as it asked for (PoseViews, FramePace). When the scenes change, a client that takes new ones gets them before
+/// their first frame; another one is disconnected. After that it may send Controls, each of which gets a reply, and
+/// Displays. A client that sends anything else, does not subscribe, asks for nothing, or stops reading is disconnected,
+/// and that is logged (ClientLog); if it can still read, a second Hello gives it the reason. Who gets a place is
+/// decided by admission_refusal(). The kernel asks every 10 s whether a silent client is still there, so that one that
+/// vanished without a word is forgotten within a minute. Send buffers are kept small, so that a slow client gets new
+/// frames.
 ///
 /// All work is done in callbacks on the thread that runs `io`, which must outlive this object. Thread-safe: no.
 class TcpStream final : public Transport {
  public:
-  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) where
+  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) if
   /// that is not possible.
   TcpStream(boost::asio::io_context& io, std::string_view listen, TcpStreamSettings settings);
   ~TcpStream() override;
@@ -91,7 +91,7 @@ class TcpStream final : public Transport {
   /// The most of all clients' wire::Display.
   std::uint8_t given_up() const;
 
-  /// Has any client subscribed to the raw messages of this sensor's device?
+  /// Returns true if any client has subscribed to the raw messages of this sensor's device.
   bool wants_trace(std::string_view sensor) const;
   /// Sends one to these clients. A client that reads too slowly misses some; the next one counts them.
   void publish_trace(const wire::RawTrace& trace);

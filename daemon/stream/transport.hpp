@@ -28,11 +28,11 @@ class Transport {
   virtual void publish(SharedBytes frame) = 0;
 
   /// The scenes have changed (an encoded wire::Scenes): all frames published from now on are of these. A client that
-  /// has not said that it takes new scenes is let go with that reason.
+  /// has not announced that it takes new scenes is disconnected with that reason.
   virtual void publish_scenes(SharedBytes scenes) = 0;
 
   /// The newest state of the sensors (an encoded wire::Sensors): one message for clients of this machine, and one for
-  /// those of others, which are told less. `elsewhere` may be null while has_untrusted_clients() is false; a client
+  /// those of others, which get less. `elsewhere` may be null while has_untrusted_clients() is false; a client
   /// that would need it waits for the next one.
   virtual void publish_sensors(SharedBytes here, SharedBytes elsewhere) = 0;
 

@@ -39,7 +39,7 @@ Digest digest_of(const Secret& token, std::string_view purpose, std::string_view
   return digest;
 }
 
-/// Takes as long wherever they differ; how long they are may be learned.
+/// Takes the same time for every difference; only the lengths may be learned.
 bool are_same(std::string_view one, std::string_view other) {
   return one.size() == other.size() && CRYPTO_memcmp(one.data(), other.data(), one.size()) == 0;
 }

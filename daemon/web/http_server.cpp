@@ -39,13 +39,13 @@ HttpResponse plain(unsigned status, std::string text) {
   return {.status = status, .content_type = "text/plain; charset=utf-8", .body = std::move(text) + "\n"};
 }
 
-/// What a request is refused with that cannot be read; nothing where the connection has only ended.
+/// Returns the refusal of a request that cannot be read; nullopt if the connection has only ended.
 std::optional<HttpResponse> refusal_of(const error_code& error) {
   if (error == http::error::body_limit) return plain(413, "the body is too long");
   if (error == http::error::header_limit || error == http::error::buffer_overflow)
     return plain(431, "the header is too long");
   if (error == http::error::end_of_stream) return std::nullopt;
-  if (error.category() == error_code(http::error::bad_method).category()) return plain(400, "this is no HTTP");
+  if (error.category() == error_code(http::error::bad_method).category()) return plain(400, "this is not HTTP");
   return std::nullopt;
 }
 

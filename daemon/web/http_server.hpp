@@ -31,8 +31,8 @@ struct HttpRequest {
   std::string if_none_match = {};
   std::string body = {};
   std::string forwarded_for = {};  ///< X-Forwarded-For: for whom a proxy sends it
-  bool is_forwarded = false;       ///< a proxy says that it sends it for another
-  bool is_https = false;           ///< a proxy says that it came to it by HTTPS
+  bool is_forwarded = false;       ///< a proxy states that it sends it for another client
+  bool is_https = false;           ///< a proxy states that it received it by HTTPS
   stream::Peer client = {};
 };
 
@@ -43,7 +43,7 @@ struct HttpResponse {
   std::vector<std::pair<std::string, std::string>> fields = {};  ///< further fields of the header
 };
 
-/// To be called once, on the thread of the server's context, at once or later.
+/// Call it once, on the thread of the server's context, at once or later.
 using HttpReply = std::function<void(HttpResponse)>;
 
 struct HttpLimits {
@@ -55,7 +55,7 @@ struct HttpLimits {
 };
 
 /// A server of HTTP/1.1 (R. Fielding and others, RFC 9110 and 9112, 2022) with connections that stay open. What is not
-/// HTTP, too long or too slow is refused or closed here; the handler gets whole requests alone. Where it throws a
+/// HTTP, too long or too slow is refused or closed here; the handler gets whole requests only. If it throws, a
 /// std::exception the client is answered with 500.
 ///
 /// All work is done on the thread that runs `io`, which must outlive this object. Thread-safe: no.
@@ -63,7 +63,7 @@ class HttpServer {
  public:
   using Handler = std::function<void(const HttpRequest& request, HttpReply reply)>;
 
-  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) where that is not
+  /// Listens on `listen` ("HOST:PORT"; port 0 takes any free one). Throws FailureError (kUnavailable) if that is not
   /// possible.
   HttpServer(boost::asio::io_context& io, std::string_view listen, const HttpLimits& limits, Handler handler);
   ~HttpServer();

@@ -63,8 +63,8 @@ void add_sensors(std::vector<MetricFamily>& all, const wire::Sensors& sensors) {
   Family speed = gauge("yuragi_sensor_speed_meters_per_second", "Last reading of each sensor, calibrated");
   Family direction = gauge("yuragi_sensor_direction_degrees", "Its direction, clockwise from north");
   Family age = gauge("yuragi_sensor_age_seconds", "Time since the last reading");
-  Family believed = gauge("yuragi_sensor_believed", "1 where its readings are used for the wind");
-  Family missing = gauge("yuragi_sensor_quantity_missing", "1 where readings come without what they should have");
+  Family believed = gauge("yuragi_sensor_believed", "1 if its readings are used for the wind");
+  Family missing = gauge("yuragi_sensor_quantity_missing", "1 if readings come without what they should have");
   Family state = gauge("yuragi_sensor_state", "1 for the state that the sensor is in");
   Family readings = counter("yuragi_sensor_readings_total", "Readings since the daemon began");
   Family messages = counter("yuragi_sensor_messages_total", "Messages of its device, of use or not");
@@ -150,7 +150,7 @@ void add_faults(std::vector<MetricFamily>& all, const FaultCounts& faults) {
 }
 
 void add_recorder(std::vector<MetricFamily>& all, const wire::RecorderStatus& recorder) {
-  all.push_back(gauge("yuragi_recorder_writing", "1 where the recording can be written")
+  all.push_back(gauge("yuragi_recorder_writing", "1 if the recording can be written")
                     .add(recorder.state == wire::RecorderState::kWriting ? 1.0 : 0.0)
                     .take());
   all.push_back(counter("yuragi_recorder_written_total", "Readings on the disk").add(recorder.written).take());

@@ -22,7 +22,7 @@ std::span<const PageFile> page_files();
 /// within a page's text (W3C, Content Security Policy Level 3).
 std::string_view content_security_policy();
 
-/// The file of the page that a GET or HEAD asks for, or that the browser has it already (304). Nothing: it asks for
+/// The file of the page that a GET or HEAD asks for, or that the browser has it already (304). Nullopt: it asks for
 /// something else. The files are the same for everybody and hold no secret. Pure.
 std::optional<HttpResponse> page_answer(const HttpRequest& request);
 

@@ -16,8 +16,8 @@
 namespace yuragi::daemon::web {
 
 /// Keeps Pairings in a file, so that they outlive the daemon. A thread of its own writes the file whole, readable by
-/// its owner only; who calls never waits for the disk. Failures are logged, and cost only the saving. Thread-safe: yes.
-/// The destructor writes what was saved last.
+/// its owner only; the caller never waits for the disk. Failures are logged, and cost only the saving. Thread-safe:
+/// yes. The destructor writes what was saved last.
 class PairingsFile {
  public:
   using Done = std::function<void(const Result<void, Failure>& saved)>;

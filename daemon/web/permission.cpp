@@ -17,7 +17,7 @@ constexpr std::string_view kBearer = "Bearer ";
 /// Of an IPv6 address with its zone; what is longer is no address.
 constexpr std::size_t kMaxAddressCharacters = 64;
 
-/// The value of a cookie (A. Barth, RFC 6265, 2011, 5.4); empty where it is not there.
+/// The value of a cookie (A. Barth, RFC 6265, 2011, 5.4); empty if it is missing.
 std::string_view cookie_named(std::string_view name, std::string_view cookies) {
   while (!cookies.empty()) {
     const std::size_t end = std::min(cookies.find(';'), cookies.size());
@@ -58,10 +58,10 @@ std::optional<HttpResponse> permission_refusal(const HttpRequest& request, bool 
   const bool only_reads = request.method == "GET" || request.method == "HEAD";
   if (is_trusted || (only_reads && !reading_takes_token)) return std::nullopt;
   const char* const why =
-      !trust.takes_token ? "only this machine itself may do this: the configuration has no [http] token_file"
+      !trust.takes_token ? "only the machine of the daemon may do this: the configuration has no [http] token_file"
       : trust.access == nullptr
-          ? "the token of this installation cannot be read, so that nobody may do this: the daemon's log says why"
-          : "this takes the token (Authorization: Bearer TOKEN), or a browser that was paired: `yuragi token` shows a "
+          ? "the token of this installation cannot be read, so nobody may do this: the daemon's log has the reason"
+          : "this needs the token (Authorization: Bearer TOKEN) or a paired browser: `yuragi token` shows a "
             "code";
   HttpResponse refusal = problem(401, "Not allowed", why);
   refusal.fields.push_back({"WWW-Authenticate", "Bearer realm=\"yuragi\""});

@@ -23,7 +23,7 @@ struct Trust {
 /// Returns the id of the valid session that the request shows, or nullopt. Pure.
 std::optional<std::string> session_shown(const HttpRequest& request, const Trust& trust, double utc_s);
 
-/// Returns true if the client may change something: it shows the token or a session, or, where that is not configured,
+/// Returns true if the client may change something: it shows the token or a session, or, if that is not configured,
 /// it is on this machine and no proxy sends it for another. `utc_s`: now, seconds since 1970. Pure.
 bool is_trusted(const HttpRequest& request, const Trust& trust, double utc_s);
 

@@ -16,7 +16,7 @@ Result<unsigned, Failure> number_in_query(std::string_view query, const QueryNum
     const auto read = std::from_chars(digits.data(), end, value);
     if (read.ec == std::errc() && read.ptr == end && value >= number.least && value <= number.most) return value;
   }
-  return Failure{fmt::format("the query may be {}=N, with N from {} to {}", number.name, number.least, number.most)};
+  return Failure{fmt::format("the query must be {}=N, with N from {} to {}", number.name, number.least, number.most)};
 }
 
 }  // namespace yuragi::daemon::web

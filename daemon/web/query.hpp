@@ -6,7 +6,7 @@
 
 namespace yuragi::daemon::web {
 
-/// A whole number that may stand in a query, and what holds where it does not.
+/// A whole number that may stand in a query, and its default.
 struct QueryNumber {
   std::string_view name;
   unsigned least = 0, most = 0, otherwise = 0;

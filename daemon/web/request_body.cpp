@@ -21,7 +21,7 @@ class Body {
       return depth <= kDeepest;
     };
     object_ = nlohmann::json::parse(text, is_shallow, false);
-    if (!object_.is_object()) mistake_ = "the body is to be a JSON object";
+    if (!object_.is_object()) mistake_ = "the body must be a JSON object";
   }
 
   std::string text(const char* key, std::string otherwise) {
@@ -64,7 +64,7 @@ class Body {
     return &taken_;
   }
   void refuse(const char* key, const std::string& allowed) {
-    if (!mistake_) mistake_ = fmt::format("{}: is to be {}", key, allowed);
+    if (!mistake_) mistake_ = fmt::format("{}: must be {}", key, allowed);
   }
 
   nlohmann::json object_;
@@ -121,7 +121,7 @@ Result<wire::PlayerCommand, Failure> player_command_of(std::string_view json) {
   command.place = body.text("place", "");
   command.rate = body.number("rate", 1.0, wire::kMinPlayRate, wire::kMaxPlayRate);
   const auto* const named = std::ranges::find(kActions, action, &ActionName::name);
-  body.require(named != kActions.end(), "action: is to be pause, resume, step, seek or rate");
+  body.require(named != kActions.end(), "action: must be pause, resume, step, seek or rate");
   if (auto mistake = body.mistake()) return std::move(*mistake);
   command.action = named->action;
   return command;

@@ -26,16 +26,15 @@ HttpResponse json_response(const ordered_json& content) {
   return {.body = json_text(content, 2) + "\n"};
 }
 
-/// Why nothing that the daemon said is true any more.
+/// Returns why the last state of the daemon is no longer valid; nullopt if it is.
 std::optional<std::string> silence_of(const Facts& facts) {
   if (facts.sensors == nullptr) return "the daemon has only just begun";
   if (facts.age_s <= facts.patience_s) return std::nullopt;
-  return fmt::format("the daemon has said nothing for {:.0f} s: it hangs, or its machine has far too much to do",
-                     facts.age_s);
+  return fmt::format("no news from the daemon for {:.0f} s: it hangs, or its machine is overloaded", facts.age_s);
 }
 
 HttpResponse no_news(const std::string& why) {
-  HttpResponse response = problem(503, "No news of the daemon", why);
+  HttpResponse response = problem(503, "No news from the daemon", why);
   response.fields.push_back({"Retry-After", "1"});
   return response;
 }
@@ -208,7 +207,7 @@ std::optional<HttpResponse> method_refusal(const HttpRequest& request) {
     if (method == "GET") return std::nullopt;
     allowed = "GET";
   }
-  HttpResponse refusal = problem(405, "Not so", request.path + " takes " + allowed);
+  HttpResponse refusal = problem(405, "Method not allowed", request.path + " takes " + allowed);
   refusal.fields.push_back({"Allow", allowed});
   return refusal;
 }
@@ -218,7 +217,7 @@ Answer answer_to(const HttpRequest& request, const Facts& facts) {
   const auto route = std::ranges::find_if(
       kRoutes, [&](const Route& each) { return each.path == request.path && each.method == method_of(request); });
   if (route != kRoutes.end()) return route->answer(request, facts);
-  return problem(404, "Not here", request.path + " is not known; /api/v1/openapi.json lists all");
+  return problem(404, "Not found", request.path + " is not known; /api/v1/openapi.json lists all paths");
 }
 
 }  // namespace yuragi::daemon::web

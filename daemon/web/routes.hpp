@@ -72,7 +72,7 @@ std::span<const Route> routes();
 /// Returns the refusal (405) of a method that a path does not take, or nullopt. HEAD counts as GET. Pure.
 std::optional<HttpResponse> method_refusal(const HttpRequest& request);
 
-/// Answers a request that is_known_host() and, where it changes something, is_same_origin() has let through. Pure.
+/// Answers a request that is_known_host() and, if it changes something, is_same_origin() has let through. Pure.
 Answer answer_to(const HttpRequest& request, const Facts& facts);
 
 }  // namespace yuragi::daemon::web

@@ -46,7 +46,7 @@ double mono_s() {
   return seconds(steady_clock::now().time_since_epoch());
 }
 
-/// A question that the daemon is carrying out: answered by its reply, or, where that does not come, when it is given
+/// A question that the daemon is carrying out: answered by its reply, or, if that does not come, when it is given
 /// up.
 struct Pending {
   Pending(asio::io_context& io, HttpReply to_client) : given_up(io), reply(std::move(to_client)) {}
@@ -76,7 +76,7 @@ HttpResponse history_answer(const Result<std::string, Failure>& read, bool is_tr
   if (read) return {.body = *read};
   const Failure& failure = read.error();
   if (failure.kind == FailureKind::kUnavailable) return ask_again(failure.message);
-  const std::string why = is_trusted ? failure.message : "this machine itself is told why";
+  const std::string why = is_trusted ? failure.message : "the reason is shown only on the machine of the daemon";
   return failure.kind == FailureKind::kNoInput ? problem(404, "Nothing is recorded", why)
                                                : problem(500, "The recording cannot be read", why);
 }
@@ -86,7 +86,7 @@ HttpResponse revocation_answer(const Result<void, Failure>& saved) {
   if (saved) return {.body = "{\"message\": \"revoked\"}\n"};
   return problem(500, "Not saved",
                  "the session has ended, but it is valid again after a restart: " + saved.error().message +
-                     "; mend this and revoke it again");
+                     "; fix this and revoke it again");
 }
 
 }  // namespace
@@ -157,7 +157,7 @@ class WebServer::Thread {
     if (!is_known_host(request.host, settings_.hosts)) {
       return reply(problem(421, "Not this machine's name",
                            "\"" + request.host +
-                               "\" is no name of this machine: call it by its address, or add that "
+                               "\" is not a name of this machine: use its address, or add that "
                                "name to [http] hosts"));
     }
     if (auto refusal = method_refusal(request)) return reply(std::move(*refusal));
@@ -169,7 +169,7 @@ class WebServer::Thread {
       return reply(problem(403, "Another page's request", "only pages of this daemon may change something"));
     // A form of somebody else's page cannot send this type without being asked first.
     if (!only_reads && !request.content_type.starts_with("application/json"))
-      return reply(problem(415, "Not JSON", "the body is to be JSON: Content-Type: application/json"));
+      return reply(problem(415, "Not JSON", "the body must be JSON: Content-Type: application/json"));
 
     const double utc_s = seconds(std::chrono::system_clock::now().time_since_epoch());
     const Trust trust{
@@ -178,7 +178,7 @@ class WebServer::Thread {
     const std::string address = client_address(request, settings_.proxies);
     if (trust.takes_token && !trusted && shows_credentials(request)) {
       ++counts_.refused_tokens;
-      log_.warn("http: {} shows a token or session that is not valid", address);
+      log_.warn("http: {} sent a token or session that is not valid", address);
     }
     if (const auto session = session_shown(request, trust, utc_s);
         session && pairings_.note_use(*session, address, utc_s))
@@ -244,9 +244,10 @@ class WebServer::Thread {
     ++counts_.changes;
     log_.info("http: {} revokes the session {}", address, id);
     const auto pending = wait_for_reply(
-        std::move(reply), problem(503, "Not saved yet",
-                                  "the session has ended, but the disk does not take it: it is valid again if the "
-                                  "daemon is restarted before"));
+        std::move(reply),
+        problem(503, "Not saved yet",
+                "the session has ended, but the disk does not respond: the session is valid again if the "
+                "daemon restarts before this is saved"));
     pairings_file_.save(pairings_,
                         [io = std::weak_ptr(io_), asked = std::weak_ptr(pending)](const Result<void, Failure>& saved) {
                           const auto alive = io.lock();
@@ -258,9 +259,10 @@ class WebServer::Thread {
   }
 
   void ask(Question question, bool is_local, HttpReply reply) {
-    if (!settings_.ask) return reply(problem(503, "Not here", "this daemon takes no requests"));
-    const auto pending = wait_for_reply(
-        std::move(reply), problem(503, "No reply", "the daemon does not reply: it hangs, or has far too much to do"));
+    if (!settings_.ask) return reply(problem(503, "Not here", "this daemon accepts no requests"));
+    const auto pending =
+        wait_for_reply(std::move(reply),
+                       problem(503, "No reply", "the daemon does not reply: it hangs, or its machine is overloaded"));
     // The reply comes on another thread, perhaps when the question has been given up or this object is gone.
     settings_.ask(question.control, is_local,
                   [io = std::weak_ptr(io_), asked = std::weak_ptr(pending),
@@ -276,7 +278,7 @@ class WebServer::Thread {
   void read_history(unsigned hours, bool is_trusted, HttpReply reply) {
     if (!settings_.history) return reply(nothing_recorded());
     const auto pending =
-        wait_for_reply(std::move(reply), ask_again("the recording is still being read; it is kept when it is there"));
+        wait_for_reply(std::move(reply), ask_again("the recording is still being read; ask again in some seconds"));
     settings_.history(hours, [io = std::weak_ptr(io_), asked = std::weak_ptr(pending),
                               is_trusted](Result<std::string, Failure> read) {
       const auto alive = io.lock();
@@ -287,7 +289,7 @@ class WebServer::Thread {
     });
   }
 
-  /// What is waited for, with the answer where it does not come in time.
+  /// What is waited for, with the answer if it does not come in time.
   std::shared_ptr<Pending> wait_for_reply(HttpReply reply, HttpResponse otherwise) {
     const auto pending = std::make_shared<Pending>(*io_, std::move(reply));
     pending->given_up.expires_after(settings_.patience);

@@ -38,7 +38,7 @@ struct WebSettings {
   std::function<void(const wire::Control& control, bool is_local, std::function<void(wire::ControlReply)> reply)> ask =
       {};
   /// Reads the wind of the last hours as JSON and calls `reply` once, on any thread. Called on the web server's own;
-  /// must not wait. Fails with kNoInput where there is none, with kUnavailable where it is to be asked again. Empty:
+  /// must not wait. Fails with kNoInput if there is none, with kUnavailable if it is to be asked again. Empty:
   /// nothing is recorded.
   std::function<void(unsigned hours, std::function<void(Result<std::string, Failure>)> reply)> history = {};
   /// The last lines of the log, oldest first. Called on the web server's own thread; must not wait. Empty: there is
@@ -46,7 +46,7 @@ struct WebSettings {
   LogTail log = {};
   /// How many exceptions were contained. Called on the web server's own thread; must not wait. Empty: not counted.
   FaultCounter faults = {};
-  /// After so long without news of the daemon the page says that it hangs, and a question is given up.
+  /// After this time without news from the daemon the page shows that it hangs, and a request is given up.
   Nanoseconds patience = std::chrono::seconds(5);
 };
 
@@ -56,14 +56,14 @@ struct WebSettings {
 /// Thread-safe: everything but construction, close() and destruction.
 class WebServer final : public stream::Transport {
  public:
-  /// Listens and begins to answer. Throws FailureError (kUnavailable) where that is not possible.
+  /// Listens and begins to answer. Throws FailureError (kUnavailable) if that is not possible.
   explicit WebServer(WebSettings settings);
   ~WebServer() override;
 
   /// Where it listens: "127.0.0.1:7480".
   std::string local_endpoint() const;
 
-  /// Trusts whoever shows this token from now on.
+  /// Trusts clients with this token from now on.
   void set_token(const Secret& token);
 
   std::string name() const override { return "http " + local_endpoint(); }
@@ -71,7 +71,7 @@ class WebServer final : public stream::Transport {
   void publish_scenes(stream::SharedBytes scenes) override;
   void publish_sensors(stream::SharedBytes here, stream::SharedBytes elsewhere) override;
   std::size_t client_count() const override;
-  /// Those who ask from elsewhere are told less, and may ask at any time.
+  /// Clients on other machines get less, and can ask at any time.
   bool has_untrusted_clients() const override;
   void close() override;
 

@@ -201,7 +201,7 @@ class Accept(unittest.TestCase):
         done = subprocess.run([YURAGI, "accept", "--config", config, "--ask", "--out", self.page], capture_output=True,
                               stdin=subprocess.DEVNULL, text=True, timeout=HANG_S, check=False)
         self.assertEqual(done.returncode, 64)
-        self.assertIn("nobody at a terminal", done.stderr)
+        self.assertIn("--ask needs a terminal", done.stderr)
 
     def test_a_vane_is_held_to_the_north(self):
         config = self.config('name = "north"\ndriver = "synthetic"\ndirection = 0\nturbulence = 0',

@@ -93,7 +93,7 @@ def campbell_toa5():
     return Sample("Campbell TOA5", "\n".join(lines) + "\n",
                   lambda text: readings((moment(r[0], "%Y-%m-%d %H:%M:%S"), number(r[2], missing=("NAN",)), float(r[3]), float(r[5]))
                                         for r in table(text, skip=4)), refused=2,
-                  told=("as the row of units says",), weather={"air_temperature_c": None})
+                  told=("from the row of units",), weather={"air_temperature_c": None})
 
 
 @sample
@@ -106,7 +106,7 @@ def hobo():
         lines.append(f'{i + 1},{local:%m/%d/%y %I:%M:%S %p},{m.speed},{m.gust},{m.direction}.0,{m.temperature}')
     return Sample("HOBO", "\ufeff" + "\n".join(lines) + "\n",
                   lambda text: [(moment(r[1], "%m/%d/%y %I:%M:%S %p", zone), float(r[2]), float(r[4]), float(r[3]))
-                                for r in table(text, skip=2)], told=("in -07:00 as the file says", "the month comes first"))
+                                for r in table(text, skip=2)], told=("in -07:00 as the file states", "the month comes first"))
 
 
 @sample
@@ -119,7 +119,7 @@ def open_meteo():
         lines.append(f"{m.utc.astimezone(zone):%Y-%m-%dT%H:%M},{m.temperature},{m.speed},{m.direction},{m.gust}")
     return Sample("open-meteo", "\n".join(lines) + "\n",
                   lambda text: [(moment(r[0], "%Y-%m-%dT%H:%M", zone), float(r[2]) * KMH, float(r[3]), float(r[4]) * KMH)
-                                for r in table(text, skip=4)], units="km/h", told=("in +02:00 as the file says",))
+                                for r in table(text, skip=4)], units="km/h", told=("in +02:00 as the file states",))
 
 
 @sample
@@ -164,7 +164,7 @@ def knmi():
             utc = moment(r[1], "%Y%m%d") + datetime.timedelta(hours=int(r[2]))
             yield utc, int(r[5]) * 0.1, number(r[3], missing=("990",)), int(r[6]) * 0.1
     return Sample("KNMI, hourly", "\n".join(lines) + "\n", lambda text: list(read(text)), units="0.1 m/s",
-                  told=("as the lines before the header say",))
+                  told=("from the lines before the header",))
 
 
 @sample
@@ -209,7 +209,7 @@ def ndbc():
             if r[6] != "99.0":
                 yield moment(" ".join(r[:5]), "%Y %m %d %H %M"), float(r[6]), number(r[5], missing=("999",)), float(r[7])
     return Sample("NDBC", "\n".join(lines) + "\n", lambda text: list(read(text)), refused=2,
-                  told=("99 in \"WSPD\" is taken as no value", "as the row of units says"))
+                  told=("99 in \"WSPD\" is treated as a missing value", "from the row of units"))
 
 
 @sample
@@ -262,7 +262,7 @@ def wunderground_page():
     return Sample("Weather Underground, page", "\n".join(lines) + "\n",
                   lambda text: [(moment(r[0] + " " + r[1], "%Y/%m/%d %I:%M %p"), float(r[4].split()[0]) * MPH,
                                  POINTS.index(r[3]) * 22.5 if r[3] != "Calm" else None, float(r[5].split()[0]) * MPH) for r in table(text)],
-                  options=("--direction", "Wind"), units="mph", told=("as its fields say",))
+                  options=("--direction", "Wind"), units="mph", told=("from its fields",))
 
 
 @sample
@@ -334,7 +334,7 @@ def vaisala():
         lines.append(f"{m.utc:%Y-%m-%d}\t{m.utc:%H:%M:%S}\t{m.direction}\t{m.speed}\t{m.gust}\t{m.temperature}\t50.1\t1009.3")
     return Sample("Vaisala WXT, logged", "\n".join(lines) + "\n",
                   lambda text: [(moment(r[0] + r[1], "%Y-%m-%d%H:%M:%S"), float(r[3]), float(r[2]), float(r[4])) for r in table(text, "\t", 2)],
-                  told=("as the row of units says",))
+                  told=("from the row of units",))
 
 
 @sample
@@ -355,7 +355,7 @@ def nrel_midc():
         lines.append(f"{local:%m/%d/%Y},{local:%H:%M},{m.speed},{m.gust},{m.direction}.1")
     return Sample("NREL MIDC", "\n".join(lines) + "\n",
                   lambda text: [(moment(r[0] + r[1], "%m/%d/%Y%H:%M", zone), float(r[2]), float(r[4]), float(r[3])) for r in table(text)],
-                  told=("in -07:00 as the file says",))
+                  told=("in -07:00 as the file states",))
 
 
 @sample
@@ -368,7 +368,7 @@ def nsrdb():
         lines.append(f"{local.year},{local.month},{local.day},{local.hour},{local.minute},{m.temperature},{m.direction},{m.speed}")
     return Sample("NREL NSRDB", "\n".join(lines) + "\n",
                   lambda text: [(datetime.datetime(*map(int, r[:5]), tzinfo=zone).astimezone(UTC), float(r[7]), float(r[6]), None)
-                                for r in table(text, skip=3)], told=("in -07 as the file says", "as the lines before the header say"))
+                                for r in table(text, skip=3)], told=("in -07 as the file states", "from the lines before the header"))
 
 
 @sample
@@ -437,7 +437,7 @@ def kestrel():
         lines.append(f"{m.utc:%Y-%m-%d %H:%M:%S},{m.direction},{m.speed},{'***' if i == 3 else '0.1'},1.0,{m.temperature},51.0")
     return Sample("Kestrel 5500", "\n".join(lines) + "\n",
                   lambda text: [(moment(r[0], "%Y-%m-%d %H:%M:%S"), float(r[2]) * KNOT, float(r[1]), None) for r in table(text, skip=5)],
-                  units="kn", told=("as the row of units says",))
+                  units="kn", told=("from the row of units",))
 
 
 @sample

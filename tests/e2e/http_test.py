@@ -209,7 +209,7 @@ class Http(unittest.TestCase):
             http = f'[http]\nlisten = "{address}"\ntoken_file = "{token_file}"\n'
             file = self.write_config(http + '[[sensor]]\nname = "roof"\ndriver = "synthetic"\n' + SMALL_MEADOW)
             daemon = self.enterContext(Program(YURAGI, "run", "--config", file, "--listen", "127.0.0.1:0"))
-            daemon.wait_for(r"token_file: .* nobody changes anything.* it is tried again")
+            daemon.wait_for(r"token_file: .* all changes are refused.* it is tried again")
             daemon.wait_for(r"the page and HTTP are not served: .*; it is tried again")
             stream = daemon.wait_for(r"listening on (\S+)").group(1)
             status = subprocess.run([YURAGI, "status", "--connect", stream], capture_output=True, text=True)
@@ -219,7 +219,7 @@ class Http(unittest.TestCase):
         hide = {"scene": "meadow", "shown": False, "over_s": 0}
         self.assertEqual(self.ask("/api/v1/scenes", hide)[0], 401, "nobody has the token")
         subprocess.run([YURAGI, "token", "--config", file, "--new"], capture_output=True, check=True)
-        daemon.wait_for(r"the token in .* is used from now on")
+        daemon.wait_for(r"the token in .* is valid from now on")
         self.wait_for("/healthz", 200, "all is well")
         with open(token_file, encoding="ascii") as secret_file:
             bearer = "Bearer " + secret_file.read().strip()

@@ -63,8 +63,8 @@ WITHOUT_A_TABLE = {
 # Commands with --json: their arguments, and where in the table a text stands that the JSON must hold, too.
 TABLES = {
     "status": (["--connect", "ADDRESS"], [r"^  - (sensor garden is \w+)", r"^scene (\S+) ", r"^(made-up|garden|played) +(\S+) "]),
-    "doctor": (["--config", "CONFIG", "--connect", "ADDRESS"], [r"^(ok|warning|error) +(?!clock)(\S+) +(\S.*)$", r"mend it: (.*)$"]),
-    "accept": (["--config", "ALONE", "--for", "4", "--force", "--out", "PAGE"], [r"^(made-up) +(\w+) ", r"^  - (its readings are made up.*)$"]),
+    "doctor": (["--config", "CONFIG", "--connect", "ADDRESS"], [r"^(ok|warning|error) +(?!clock)(\S+) +(\S.*)$", r"fix: (.*)$"]),
+    "accept": (["--config", "ALONE", "--for", "4", "--force", "--out", "PAGE"], [r"^(made-up) +(\w+) ", r"^  - (its readings are synthetic.*)$"]),
     "sensors list": ([], [r'^    driver = "(\w+)"']),
     "sensors probe modbus": (["MODBUS", "--id", "1-2"], [r"^#   fits (\S+) "]),
     "sensors describe": ([], [r"^(\w+) +(.*)$"]),
@@ -73,7 +73,7 @@ TABLES = {
     "describe": ([], [r"^(\[.*?\])  # (.*)$", r"^  (\w+) {2,}(\S.*)$"]),
     "verify": (["WIND"], [r"^(\S+): sound; (\d+) readings"]),
     "spectrum": (["--frequency", "0.01,0.1,1"], [r"^([\d.]+) ([\d.e-]+)$"]),
-    "reload": (["--connect", "ADDRESS"], [r"^takes a restart: (.*)$"]),
+    "reload": (["--connect", "ADDRESS"], [r"^needs a restart: (.*)$"]),
     "token": (["--config", "CONFIG"], [r"^pairing code: (\S+),"]),
     "scene list": (["--connect", "ADDRESS"], [r"^(\S+) +(\w+) "]),
     "scene values": (["--connect", "ADDRESS"], [r"^(\S+) \((\w+)\)$", r"^  (\w+) +([\d.]+)\b"]),

@@ -112,9 +112,9 @@ monitor = "{v["monitor"]}"
         faults = [  # what is prepared, what is configured, the beginning of the finding, a part of it and of the remedy
             ("token missing", None, {"token": self.path("none")}, "[http] token_file", "is missing", "yuragi token"),
             ("token of others", ("token", 0o600, 0o640), {}, "[http] token_file", "may not read it", "sudo chgrp nogroup"),
-            ("token at home", None, {"token": "/home/nobody-there/token"}, "[http] token_file", "sees /home", "sudo cp"),
-            ("stream port taken", None, {"stream": taken}, "[stream] listen", "cannot be listened on", "ss -lntup"),
-            ("page port taken", None, {"page": taken}, "[http] listen", "cannot be listened on", "ss -lntup"),
+            ("token at home", None, {"token": "/home/nobody-there/token"}, "[http] token_file", "cannot see /home", "sudo cp"),
+            ("stream port taken", None, {"stream": taken}, "[stream] listen", "cannot listen here", "ss -lntup"),
+            ("page port taken", None, {"page": taken}, "[http] listen", "cannot listen here", "ss -lntup"),
             ("recording's folder missing", None, {"recording": self.path("none/a.windlog")}, "[recording] file", "is missing",
              "sudo install -d -o nobody -g nogroup"),
             ("recording's folder of others", ("recordings", 0o755, 0o777), {}, "[recording] file", "may not write it",
@@ -165,7 +165,7 @@ monitor = "{v["monitor"]}"
             done = run("reload", "--connect", address)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("applied: [shaping] floor: 0.5 -> 1.5\n", done.stdout)
-            self.assertIn(f"at the next start: [recording] file: {self.path('none')}: is missing; mend it: sudo install", done.stdout)
+            self.assertIn(f"at the next start: [recording] file: {self.path('none')}: is missing; fix: sudo install", done.stdout)
             daemon.wait_for("reload: at the next start: .*none: is missing")
 
 

@@ -269,10 +269,10 @@ class Reload(RunningDaemon):
             done = reload("--connect", self.address)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(done.stdout.splitlines(), [
-                "takes a restart: seed: 1 -> 2", "takes a restart: [animation] rate: 60.0 -> 30.0",
-                "takes a restart: [wind] handover: 3.0 -> 5.0", "takes a restart: sensor roof: [sensor.blend] x: left out -> 2.0"])
+                "needs a restart: seed: 1 -> 2", "needs a restart: [animation] rate: 60.0 -> 30.0",
+                "needs a restart: [wind] handover: 3.0 -> 5.0", "needs a restart: sensor roof: [sensor.blend] x: left out -> 2.0"])
         self.assertEqual(daemon.end(), 0)
-        self.assertEqual(daemon.text().count("warning reload: these changes take a restart: seed: 1 -> 2; "), 2)
+        self.assertEqual(daemon.text().count("warning reload: these changes need a restart: seed: 1 -> 2; "), 2)
 
     def test_without_a_file_it_says_so_and_a_file_of_another_is_not_meant(self):
         daemon = self.start(YURAGI, "run", "--listen", "127.0.0.1:0")
@@ -376,7 +376,7 @@ class Reload(RunningDaemon):
         frames.more(60)
         self.write(playing_at(4, "loop = true\n"))
         done = reload("--connect", self.address)
-        self.assertEqual(done.stdout, "applied: sensor tape: rate: 10.0 -> 4.0\ntakes a restart: sensor tape: loop: false -> true\n")
+        self.assertEqual(done.stdout, "applied: sensor tape: rate: 10.0 -> 4.0\nneeds a restart: sensor tape: loop: false -> true\n")
         frames.more(20)  # the order is carried out by the sensor's next poll
         done = subprocess.run([YURAGI, "player", "status", "--connect", self.address], capture_output=True, text=True, timeout=HANG_S,
                               check=True)

@@ -168,7 +168,7 @@ class Secrets(unittest.TestCase):
         self.assertEqual(done.stdout, f"{odd}: 1 secret taken out\n{old}: 2 secrets taken out\n")
         self.assertIn("none.windlog: there is no such recording", done.stderr)
         self.assertRegex(done.stderr, r"another program \(process \d+\) records to \S*/live.windlog: end it, or choose another file")
-        self.assertIn("odd.windlog: 1 configuration in it cannot be read as TOML", done.stderr)
+        self.assertIn("odd.windlog: 1 configuration cannot be read as TOML", done.stderr)
         self.assertNotIn(PASSWORD, done.stdout + done.stderr)
         self.assertEqual(recorder.end(), 0)
         self.assertEqual(run("clean-secrets", live).returncode, 0)

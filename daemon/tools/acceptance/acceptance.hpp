@@ -16,7 +16,7 @@ namespace yuragi::daemon::tools::acceptance {
 /// What was measured of one sensor that alone made the wind.
 struct SensorMeasured {
   wire::SensorStatus status{};              ///< at the end
-  double measured_s = 0.0;                  ///< since its first reading, or in all where it had none
+  double measured_s = 0.0;                  ///< since its first reading, or in all if it had none
   std::optional<double> first_reading_s{};  ///< after it was opened
   std::optional<double> least_speed_m_s{};  ///< of the readings that were seen, two a second
   std::optional<double> mean_speed_m_s{};
@@ -51,7 +51,7 @@ SensorVerdict judge(const SensorMeasured& sensor, std::span<const double> mean_s
 /// What the calibrated readings of a simulated sensor are to be.
 struct ExpectedWind {
   double speed_m_s = 0.0;
-  double speed_tolerance_m_s = 0.0;  ///< from the resolution of what the device says
+  double speed_tolerance_m_s = 0.0;  ///< from the resolution of the device's messages
   double direction_deg = 0.0;        ///< for a sensor that measures it
   double direction_tolerance_deg = 0.0;
 };
@@ -91,10 +91,11 @@ struct Acceptance {
   std::vector<NorthCheck> north_checks{};
 };
 
-/// Were only simulated devices measured? Then it proves configuration and software, and is no hand-over.
+/// Returns true if only simulated devices were measured: that proves configuration and software, but is not a
+/// hand-over.
 bool is_rehearsal(const Acceptance& acceptance);
 
-/// The gravest of all verdicts and checks; what was not simulated has none. A remark where nothing was measured.
+/// The gravest of all verdicts and checks; what was not simulated has none. A remark if nothing was measured.
 Outcome outcome_of(const Acceptance& acceptance);
 
 /// A table for a terminal, with remarks below each sensor.

@@ -29,12 +29,13 @@ class VerdictBuilder {
 
 void judge_readings(VerdictBuilder& verdict, const SensorMeasured& sensor) {
   const wire::SensorStatus& status = sensor.status;
-  if (status.simulated) verdict.remark("its readings are made up: no device was measured");
+  if (status.simulated) verdict.remark("its readings are synthetic: no device was measured");
   if (status.replayed) verdict.remark("it plays a recording: no device was measured");
   if (!is_believed(status.state))
     verdict.fail(
         fmt::format("its readings are not used at the end: {}: {}", name_of(status.state), status.state_reason));
-  // What others say, or the sensor of other things, is no fault: a hub tells its own state between two winds.
+  // Messages of others, or of this sensor about other things, are not faults: a hub sends its own state between two
+  // winds.
   const std::string_view not_mine = name_of(drivers::decode::Refusal::kNotMine);
   const double refused = std::accumulate(
       status.refused.begin(), status.refused.end(), 0.0,
@@ -46,7 +47,7 @@ void judge_readings(VerdictBuilder& verdict, const SensorMeasured& sensor) {
 
 void judge_change(VerdictBuilder& verdict, const SensorMeasured& sensor) {
   if (sensor.least_speed_m_s && sensor.least_speed_m_s == sensor.largest_speed_m_s) {
-    verdict.remark(fmt::format("it read {:.2f} m/s all the time: see that it turns, or ask again in a wind",
+    verdict.remark(fmt::format("it read {:.2f} m/s all the time: check that it turns, or repeat this in wind",
                                *sensor.least_speed_m_s));
   }
 }
@@ -60,7 +61,7 @@ void judge_way_to_pose(VerdictBuilder& verdict, const SensorMeasured& sensor) {
                              100.0 * sensor.largest_live_weight));
   }
   if (!sensor.median_delay_s) {
-    verdict.remark("the way from a reading to a pose could not be timed: too few readings");
+    verdict.remark("the delay from a reading to a pose could not be measured: too few readings");
   } else if (*sensor.median_delay_s > kLongestMedianDelay_s) {
     verdict.remark(fmt::format("from a reading to a pose it takes {:.0f} ms", 1e3 * *sensor.median_delay_s));
   }

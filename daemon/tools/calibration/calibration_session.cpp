@@ -214,7 +214,7 @@ void CalibrationSession::finish(std::vector<settings::ConfigChange> wanted, cons
   }
 }
 
-/// Has the daemon that was started with this file, if it runs, read it again; says what came of it.
+/// Has the daemon that was started with this file, if it runs, read it again; prints the result.
 void CalibrationSession::apply_in_daemon() {
   const std::string address = request_.connect.value_or(config_.stream.listen);
   const auto report = stream::ask_to_reload(address, settings::absolute_path(request_.config_file),
@@ -238,7 +238,7 @@ std::vector<double> indicated_speeds_m_s(const SensorReadings& collected,
 
 ReferencePairs pair_with_reference(const CalibrationSession& session, const CollectedReadings& collected,
                                    double least_block_s) {
-  // Only where both heights are known; else the sensors are assumed to be side by side.
+  // Only if both heights are known; else the sensors are assumed to be side by side.
   const wind::judging::Calibration& calibration = session.calibration();
   wind::judging::Calibration reference = session.reference()->calibration;
   const bool has_heights =

@@ -45,7 +45,7 @@ class CalibrationSession {
   CalibrationDialog& dialog() { return dialog_; }
 
   /// Collects the readings of one stretch: those of the sensor first, then of the reference. `preparation`: what a
-  /// person has to do before; not shown where the source is a recording.
+  /// person has to do before; not shown if the source is a recording.
   CollectedReadings collect(const std::string& preparation);
 
   /// Shows the changes and their `effect`, asks for confirmation, writes them, and has a running daemon apply them.
@@ -81,7 +81,7 @@ std::vector<double> indicated_speeds_m_s(const SensorReadings& collected,
                                          const wind::judging::Calibration& calibration);
 
 /// Sensor and reference (collect() with one), as means over blocks that are long enough for the slower of the two, at
-/// least `least_block_s`. The readings of the reference are calibrated, and scaled to the sensor's height where both
+/// least `least_block_s`. The readings of the reference are calibrated, and scaled to the sensor's height if both
 /// heights are known.
 struct ReferencePairs {
   double block_s = 0.0;

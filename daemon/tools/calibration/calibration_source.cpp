@@ -46,7 +46,7 @@ class LiveStretch {
     collected_[sensor].readings.push_back({seconds(clock_.now().mono - begun_), reading});
   }
 
-  /// Is it over? Fails where a sensor stays silent; `link_of`: the last report of its link.
+  /// Returns true if it is over. Fails if a sensor stays silent; `link_of`: the last report of its link.
   template <class LinkOf>
   Result<bool, Failure> is_over(const LinkOf& link_of) {
     const double now_s = seconds(clock_.now().mono - begun_);
@@ -124,14 +124,14 @@ const wire::SensorStatus* find_status(const wire::Sensors& all, const settings::
   return found != all.sensors.end() ? &*found : nullptr;
 }
 
-/// A client of the daemon, subscribed to the sensors. Nothing where no daemon replies.
+/// A client of the daemon, subscribed to the sensors. Nullopt if no daemon replies.
 std::optional<stream::StreamClient> connect_to_daemon(const std::string& address) {
   auto client = stream::StreamClient::connect(address, kDaemonConnectTimeout);
   if (!client || !client->subscribe({.poses = false, .sensors = true, .client = "calibrate"})) return std::nullopt;
   return std::move(*client);
 }
 
-/// The daemon's next message about its sensors. Fails where the connection ends.
+/// The daemon's next message about its sensors. Fails if the connection ends.
 Result<wire::Sensors, Failure> next_sensors(stream::StreamClient& client, const std::string& address) {
   for (;;) {
     auto message = client.receive(kDaemonSilence);

@@ -50,19 +50,19 @@ class CalibrationSource {
   virtual std::string description() const = 0;
   virtual bool is_live() const = 0;
 
-  /// Collects readings from now on; live, the duration begins with the last sensor's first reading. Fails where a
+  /// Collects readings from now on; live, the duration begins with the last sensor's first reading. Fails if a
   /// sensor stays silent, the daemon ends, or the recording is damaged. Always ends in bounded time.
   virtual Result<CollectedReadings, Failure> collect(const Stretch& stretch, const Progress& progress) = 0;
 };
 
-/// Live readings: from the running daemon at `address` where it has all of these sensors, else from the devices
-/// themselves. `sensors` and `clock` must outlive it. Fails where a daemon has the sensors, but does not send raw
+/// Live readings: from the running daemon at `address` if it has all of these sensors, else from the devices
+/// themselves. `sensors` and `clock` must outlive it. Fails if a daemon has the sensors, but does not send raw
 /// readings.
 Result<std::unique_ptr<CalibrationSource>, Failure> make_live_source(std::vector<const settings::SensorConfig*> sensors,
                                                                      const std::string& address,
                                                                      const drivers::sensor::Clock& clock);
 
-/// A recording. Fails where it cannot be read or has not all of these sensors.
+/// A recording. Fails if it cannot be read or has not all of these sensors.
 Result<std::unique_ptr<CalibrationSource>, Failure> make_recorded_source(
     std::vector<const settings::SensorConfig*> sensors, const std::filesystem::path& file);
 

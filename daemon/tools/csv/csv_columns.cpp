@@ -38,7 +38,7 @@ std::string time_stem(std::string_view name) {
   return stem;
 }
 
-/// The zone that the name of a time's column says: "GMT-07:00", "UTC"; or that of American standard times.
+/// Returns the zone in the name of a time's column: "GMT-07:00", "UTC"; or that of American standard times.
 std::optional<std::string> zone_in_name(std::string_view name) {
   const std::string text = lower(name);
   for (const std::string_view word : {"utc", "gmt"}) {
@@ -147,7 +147,7 @@ class ColumnChoice {
     }
   }
 
-  /// One that says that it is in UTC, before one that may be in local time.
+  /// Prefers a column that is marked as UTC to one that may be in local time.
   std::optional<std::size_t> find_time_column(CsvRole role) const {
     for (const bool is_utc_wanted : {true, false}) {
       for (const std::string_view usual : usual_names(role)) {
@@ -246,7 +246,7 @@ class ColumnChoice {
     }
   }
 
-  /// Components are searched for only where there is no speed, and vice versa.
+  /// Components are searched for only if there is no speed, and vice versa.
   void choose_wind() {
     guess(CsvRole::kGust);
     const bool wants_components = is_given(CsvRole::kU) || is_given(CsvRole::kV);
@@ -273,8 +273,8 @@ class ColumnChoice {
   Result<CsvColumns, Failure> checked() {
     if (columns_.time_parts.empty()) {
       return Failure{"no column looks like a time; the columns are " + listed(header_) +
-                     "; name it with --time COLUMN (and --date COLUMN, where the date is in another), or leave lines "
-                     "out before the header with --skip N"};
+                     "; name it with --time COLUMN (and --date COLUMN, if the date is in another), or skip lines "
+                     "before the header with --skip N"};
     }
     if (!columns_.at(CsvRole::kSpeed) && (!columns_.at(CsvRole::kU) || !columns_.at(CsvRole::kV))) {
       return Failure{"no column looks like a wind speed, nor two like u and v; the columns are " + listed(header_) +

@@ -24,7 +24,7 @@ struct CsvColumn {
   std::string name;             ///< as in the header
   std::size_t index = 0;        ///< in the header, from 0
   std::optional<CsvUnit> unit;  ///< of its numbers; empty: not known
-  std::string unit_source;      ///< what says so: "by its name"
+  std::string unit_source;      ///< where that is from: "by its name"
 };
 
 /// The columns of a file.
@@ -40,11 +40,11 @@ struct CsvColumns {
   std::optional<CsvColumn>& at(CsvRole role) { return by_role[static_cast<std::size_t>(role)]; }
 };
 
-/// The names that the user gave, by role; empty where none.
+/// The names that the user gave, by role; empty if none.
 using CsvColumnNames = std::array<std::string, kCsvRoleCount>;
 
 /// Finds the columns: by the given names, ignoring case, and otherwise by the names that loggers commonly use. `row`:
-/// the fields of the first row, where there is one: they settle whether a time needs its date from another column, and
+/// the fields of the first row, if there is one: they settle whether a time needs its date from another column, and
 /// whether a column without a name has times. Fails, with a list of the columns, without a time, without a speed or
 /// both u and v, or with two columns of one name.
 Result<CsvColumns, Failure> choose_columns(const std::vector<std::string>& header, const CsvColumnNames& given,

@@ -23,10 +23,10 @@ struct CsvExportReport {
 };
 
 /// Writes readings as CSV (kExportedHeader): UTC in ISO 8601 to the nanosecond, log time, numbers with as many
-/// digits as give the same number when read, always with a decimal point; empty where there is no value. `yuragi
+/// digits as give the same number when read, always with a decimal point; empty if there is no value. `yuragi
 /// import` reads the same readings from it.
 ///
-/// `out` is not closed. `progress` is called now and then with the number of rows. Fails as the reader does, or where
+/// `out` is not closed. `progress` is called now and then with the number of rows. Fails as the reader does, or if
 /// `out` cannot be written to. Thread-safe: yes, with separate readers.
 Result<CsvExportReport, Failure> export_csv(drivers::windlog::WindlogReader& reader, const CsvExportRange& range,
                                             std::FILE* out, const std::function<void(std::size_t)>& progress = {});

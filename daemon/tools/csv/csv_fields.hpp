@@ -24,10 +24,10 @@ struct CsvFields {
 /// Takes the rows of a file apart. Thread-safe: no.
 class CsvRowSplitter {
  public:
-  /// Fails where a condition names a column that is not there.
+  /// Fails if a condition names a column that is missing.
   static Result<CsvRowSplitter, Failure> make(const CsvLayout& layout, const CsvImportOptions& options);
 
-  /// The fields of a line, which is changed and must outlive them; false where a condition does not hold.
+  /// The fields of a line, which is changed and must outlive them; false if a condition does not hold.
   Result<bool, Failure> split(std::span<char> line, CsvFields& fields);
 
  private:

@@ -42,7 +42,7 @@ class Import {
       const Place place{lines.place(), lines.number()};
       if (!lines.next()) break;
       if (places.size() == kMostPlaces) {
-        return Failure{name_ + ": has its newest row first and is too long to be turned round; sort it by time"};
+        return Failure{name_ + ": its newest row comes first, and it is too long to be reversed; sort it by time"};
       }
       places.push_back(place);
     }
@@ -131,9 +131,10 @@ Result<CsvImportReport, Failure> import_csv(CsvInput& input, const std::string& 
   if (!survey) return failed(survey.error());
   if (!input.is_whole()) {
     survey->notes.push_back(
-        "formats and marks are those of the first 32 MiB: standard input is not read twice, a file would be");
+        "formats and marks were found in the first 32 MiB only: standard input cannot be read twice; a file can");
     if (survey->is_newest_first) {
-      return failed({"the newest row comes first: that takes the file itself, standard input is not read twice"});
+      return failed(
+          {"the newest row comes first: give the name of the file, because standard input cannot be read twice"});
     }
   }
 

@@ -20,7 +20,7 @@ struct CsvImportReport {
   std::vector<std::string> notes;    ///< what was settled, guessed or left out besides, a line each
   std::size_t rows = 0;              ///< below the header, without those that a condition leaves out
   std::size_t taken = 0;
-  std::size_t quantities = 0;               ///< rows that said something besides the wind
+  std::size_t quantities = 0;               ///< rows with something besides the wind
   std::vector<std::string> first_refusals;  ///< "FILE:LINE: what is wrong", at most kMaxRefusalsListed
 
   std::size_t refused() const { return rows - taken; }
@@ -36,12 +36,12 @@ struct CsvSinks {
 
 /// Reads a CSV file with a header: each row is a reading with UTC, and with a monotonic time that begins at zero. Rows
 /// that are not valid readings, or go back in time, are refused and counted; a file with its newest row first is read
-/// from its end. A decimal comma is understood where the delimiter is another character.
+/// from its end. A decimal comma is understood if the delimiter is another character.
 ///
-/// `name` is the file name in messages. The input may contain any bytes; it is read twice where it can be gone back in,
-/// and is otherwise kept as far as CsvInput::kMostKept. Memory does not depend on the file's length, but for 24 bytes a
-/// row of a file with its newest row first. Fails where the header, the dates or the units are not understood (the
-/// message names the option that helps), where a line is longer than kLongestLine, or at the first refused row if
+/// `name` is the file name in messages. The input may contain any bytes; it is read twice if it can be rewound,
+/// and is otherwise kept as far as CsvInput::kMostKept. Memory does not depend on the file's length, except for 24
+/// bytes a row of a file with its newest row first. Fails if the header, the dates or the units are not understood (the
+/// message names the option that helps), if a line is longer than kLongestLine, or at the first refused row if
 /// `strict`. Thread-safe: yes, with separate streams.
 Result<CsvImportReport, Failure> import_csv(CsvInput& input, const std::string& name, const CsvImportOptions& options,
                                             const CsvSinks& sinks);

@@ -24,7 +24,7 @@ class CsvInput {
   std::istream& first_pass();
   /// The whole stream from its beginning.
   std::istream& second_pass();
-  /// Has the first pass all of it?
+  /// Returns true if the first pass has all of it.
   bool is_whole() const { return is_whole_; }
 
  private:
@@ -37,7 +37,7 @@ class CsvInput {
   std::unique_ptr<std::istream> stream_;         ///< over one of them
 };
 
-/// The first lines of an input, comments and empty ones too, as many as a header is looked for in. Fails where one of
+/// The first lines of an input, comments and empty ones too, as many as a header is looked for in. Fails if one of
 /// them is too long.
 Result<std::vector<std::string>, Failure> first_lines(CsvInput& input, const std::string& name);
 

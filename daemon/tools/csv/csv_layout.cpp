@@ -61,7 +61,7 @@ void read_key(Preamble& preamble, std::string_view key, std::string_view value) 
   }
 }
 
-/// "FH : hourly mean wind speed (in 0.1 m/s)" says the unit of a column.
+/// "FH : hourly mean wind speed (in 0.1 m/s)" gives the unit of a column.
 void read_legend(CsvColumns& columns, std::string_view key, std::string_view text) {
   for (std::size_t role = 0; role < kCsvRoleCount; ++role) {
     auto& column = columns.by_role[role];
@@ -73,7 +73,7 @@ void read_legend(CsvColumns& columns, std::string_view key, std::string_view tex
     if (unit.starts_with("in ")) unit.remove_prefix(3);
     if (const auto found = find_unit(dimension_of(static_cast<CsvRole>(role)), unit)) {
       column->unit = found;
-      column->unit_source = "as the lines before the header say";
+      column->unit_source = "from the lines before the header";
     }
   }
 }
@@ -197,7 +197,7 @@ class LayoutSearch {
       if (!column) continue;
       if (const auto unit = find_unit(dimension_of(static_cast<CsvRole>(role)), row[column->index])) {
         column->unit = unit;
-        column->unit_source = "as the row of units says";
+        column->unit_source = "from the row of units";
       }
     }
   }
@@ -227,7 +227,7 @@ class LayoutSearch {
       auto& column = layout.columns.at(role);
       if (!column || column->unit) continue;
       column->unit = preamble.speed_unit;
-      column->unit_source = "as the lines before the header say";
+      column->unit_source = "from the lines before the header";
     }
   }
 
@@ -243,7 +243,7 @@ class LayoutSearch {
       most = fields.size();
     }
     if (std::ranges::any_of(split(lines_[begin], delimiter(lines_[begin])), is_number_or_date)) {
-      return Failure{first.message + "; where the file has no header, --header NAMES gives it one"};
+      return Failure{first.message + "; if the file has no header, name the columns with --header NAMES"};
     }
     if (best == begin) return first;
     const auto tried = layout_at(best, split(lines_[best], delimiter(lines_[best])), false);

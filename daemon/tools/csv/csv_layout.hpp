@@ -15,7 +15,7 @@ struct CsvLayout {
   std::vector<std::string> header;
   std::size_t first_row = 0;       ///< the number of its line, from 1
   std::vector<std::string> row;    ///< the first one's fields
-  CsvColumns columns;              ///< with units and zone as name, row of units or preamble say
+  CsvColumns columns;              ///< with units and zone from name, row of units or preamble
   std::vector<std::string> notes;  ///< what was understood of the lines around the header
 };
 

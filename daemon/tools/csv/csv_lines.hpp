@@ -18,7 +18,7 @@ class CsvLines {
   /// `in` must outlive this. `comment`: what comment lines begin with; 0: there are none.
   CsvLines(std::istream& in, char comment);
 
-  /// Goes to the next line; false where there is none, or where it is longer than kLongestLine.
+  /// Goes to the next line; false if there is none, or if it is longer than kLongestLine.
   bool next();
   /// The line that next() read; valid until the next call, and may be modified (split_csv_line).
   std::span<char> line() { return {buffer_.data(), size_}; }
@@ -44,7 +44,7 @@ class CsvLines {
 
 /// Splits a line into fields: a delimiter of ' ' stands for any number of blanks and tabs. The fields are without
 /// spaces around them and without enclosing quotes (RFC 4180: a delimiter within quotes is text, and a quote within
-/// them is doubled). False where a quote is not closed. Works in place: `fields` point into the line.
+/// them is doubled). False if a quote is not closed. Works in place: `fields` point into the line.
 bool split_csv_line(std::span<char> line, char delimiter, std::vector<std::string_view>& fields);
 
 }  // namespace yuragi::daemon::tools::csv

@@ -9,15 +9,15 @@ namespace yuragi::daemon::tools::csv {
 
 /// Which statistic of an interval a column is, by its name.
 enum class CsvStatistic : std::uint8_t {
-  kMean,   ///< or nothing is said
+  kMean,   ///< or not stated
   kMax,    ///< the greatest
   kOther,  ///< the least, a standard deviation: not used
 };
 
-/// What the name of a column says: "wind_speed_10m_Max (km/h)" is the greatest "windspeed", and ends with "km", "h".
+/// The parts of the name of a column: "wind_speed_10m_Max (km/h)" is the greatest "windspeed", and ends with "km", "h".
 struct CsvName {
   std::string stem;                     ///< its words without statistic, height and what is in unit_words
-  std::vector<std::string> unit_words;  ///< at its end, where they are a unit of any dimension
+  std::vector<std::string> unit_words;  ///< at its end, if they are a unit of any dimension
   CsvStatistic statistic = CsvStatistic::kMean;
 };
 

@@ -14,13 +14,13 @@ namespace yuragi::daemon::tools::csv {
 
 /// The unit of directions in a CSV file.
 enum class CsvDirectionUnit : std::uint8_t {
-  kAuto,  ///< radians if the column's name says so, or else degrees
+  kAuto,  ///< radians if the column's name states it, or else degrees
   kDegrees,
   kRadians,
   kPoint16,  ///< 0 to 15, clockwise from north, 22.5 degrees each; names (NNE) are always understood
 };
 
-/// Rows are taken where this column has this text.
+/// Rows are taken if this column has this text.
 struct CsvCondition {
   std::string column;
   std::string value;
@@ -29,8 +29,8 @@ struct CsvCondition {
 struct CsvImportOptions {
   CsvColumnNames columns;  ///< the user's names; empty ones are guessed
   CsvTimeFormat time_format = CsvTimeFormat::kAuto;
-  std::optional<CsvZone> zone;       ///< of times that name none; empty: as the file says, or else UTC
-  std::optional<CsvUnit> unit;       ///< of speed, gust, u, v and w; empty: as the file says, or else m/s
+  std::optional<CsvZone> zone;       ///< of times that name none; nullopt: given in the file, or else UTC
+  std::optional<CsvUnit> unit;       ///< of speed, gust, u, v and w; nullopt: given in the file, or else m/s
   std::optional<CsvUnit> gust_unit;  ///< of the gust alone
   CsvDirectionUnit direction_unit = CsvDirectionUnit::kAuto;
   bool direction_is_toward = false;      ///< directions are where the wind blows to

@@ -6,9 +6,9 @@
 
 namespace yuragi::daemon::tools::csv {
 
-/// Writes what stations said besides the wind as CSV: time_utc (the beginning of the second, in ISO 8601), sensor, and
-/// a column for each of wind::kStationQuantities, empty where it was not told. `CsvExportReport::skipped` counts rows
-/// that cannot be such. `out` is not closed. Fails as the reader does, or where `out` cannot be written to.
+/// Writes what stations reported besides the wind as CSV: time_utc (the beginning of the second, in ISO 8601), sensor,
+/// and a column for each of wind::kStationQuantities, empty if it was not reported. `CsvExportReport::skipped` counts
+/// rows that cannot be such. `out` is not closed. Fails as the reader does, or if `out` cannot be written to.
 /// Thread-safe: yes, with separate readers.
 Result<CsvExportReport, Failure> export_quantities_csv(const drivers::windlog::WindlogReader& reader,
                                                        const CsvExportRange& range, std::FILE* out);

@@ -25,13 +25,14 @@ inline constexpr std::size_t kMostResampledRows = 10'000'000;
 /// - speed_m_s: the arithmetic mean of the speeds;
 /// - direction_deg: where the mean vector comes from, of the readings that have a direction; empty without a wind;
 /// - gust_m_s: the largest gust or speed;
-/// - count: the number of readings. Where it is 0 the other values are empty; nothing is interpolated.
+/// - count: the number of readings. If it is 0, the other values are empty; nothing is interpolated.
 ///
 /// The means of speed and direction are those of WMO-No. 8, Guide to Instruments and Methods of Observation, Volume I,
 /// chapter 5 (measurement of surface wind): scalar for the speed, vectorial for the direction. Its gust is the largest
-/// mean of 3 s; here it is what the device tells, or its largest reading, whatever the device averages over.
+/// mean of 3 s; here it is the gust that the device reports, or its largest reading, with the averaging time of the
+/// device.
 ///
-/// Memory does not depend on the recording's length. Fails as export_csv() does, and (kUsage) where there would be more
+/// Memory does not depend on the recording's length. Fails as export_csv() does, and (kUsage) if there would be more
 /// than kMostResampledRows.
 Result<CsvExportReport, Failure> resample_csv(drivers::windlog::WindlogReader& reader, const CsvExportRange& range,
                                               Nanoseconds interval, std::FILE* out,

@@ -13,7 +13,7 @@ namespace yuragi::daemon::tools::csv {
 /// The meanings that a column of a CSV file can have.
 enum class CsvRole : std::uint8_t {
   kTime,
-  kDate,  ///< the day, where the time stands in another column
+  kDate,  ///< the day, if the time stands in another column
   kElapsed,
   kSpeed,
   kDirection,
@@ -31,7 +31,7 @@ enum class CsvRole : std::uint8_t {
 };
 inline constexpr std::size_t kCsvRoleCount = 16;
 
-/// The roles of what stations say besides the wind, in the order of wind::kStationQuantities.
+/// The roles of what stations report besides the wind, in the order of wind::kStationQuantities.
 inline constexpr std::array<CsvRole, 6> kQuantityRoles = {CsvRole::kVerticalSpeed, CsvRole::kTemperature,
                                                           CsvRole::kPressure,      CsvRole::kHumidity,
                                                           CsvRole::kRainTotal,     CsvRole::kRainRate};

@@ -38,7 +38,7 @@ Failure refusal(std::string_view what, std::string_view text) {
 Result<CsvRowReader, Failure> CsvRowReader::make(const CsvLayout& layout, const CsvSurvey& survey,
                                                  const CsvImportOptions& options) {
   CsvRowReader reader(layout, survey, options);
-  reader.zone_source_ = "since nothing says a zone; --zone changes that";
+  reader.zone_source_ = "because the file names no zone; --zone changes that";
   if (options.zone) {
     reader.zone_ = *options.zone;
     reader.zone_source_ = "by --zone";
@@ -46,7 +46,7 @@ Result<CsvRowReader, Failure> CsvRowReader::make(const CsvLayout& layout, const 
     const auto zone = CsvZone::parse(*layout.columns.zone);
     if (!zone) return zone.error();
     reader.zone_ = *zone;
-    reader.zone_source_ = "as the file says";
+    reader.zone_source_ = "as the file states";
   }
   return reader;
 }
@@ -87,7 +87,7 @@ Result<CsvRow, Failure> CsvRowReader::read(const CsvFields& fields) {
   if (!wind::is_plausible(reading)) {
     return Failure{"impossible wind: " + std::to_string(reading.speed_m_s) + " m/s" +
                    (reading.gust_m_s ? ", gust " + std::to_string(*reading.gust_m_s) + " m/s" : "") +
-                   " (is the unit right? --unit; or a mark for no value? --missing)"};
+                   " (check --unit; if it is a mark for no value, add --missing)"};
   }
 
   // The time comes last: only an accepted row advances it.
@@ -107,7 +107,7 @@ Result<Instant, Failure> CsvRowReader::read_time(const CsvFields& fields) {
     utc -= *written->utc_offset;
   } else {
     const auto known = zone_.to_utc(written->clock, last_utc_);
-    if (!known) return refusal("a time that was left out in " + zone_.name() + " (is --zone right?):", text);
+    if (!known) return refusal("a time that does not exist in " + zone_.name() + " (check --zone):", text);
     utc = *known;
   }
 
@@ -182,10 +182,10 @@ Result<void, Failure> CsvRowReader::read_wind(const CsvFields& fields, wind::Win
 Result<void, Failure> CsvRowReader::read_packed_wind(std::string_view text, wind::WindReading& reading) {
   std::string copy(text);
   std::vector<std::string_view> parts;
-  if (!split_csv_line(copy, ',', parts) || parts.size() != 5) return refusal("not a wind of NOAA's:", text);
+  if (!split_csv_line(copy, ',', parts) || parts.size() != 5) return refusal("not a wind in NOAA's format:", text);
   const auto direction = parse_number(parts[0], CsvDimension::kNone);
   const auto speed = parse_number(parts[3], CsvDimension::kNone);
-  if (!direction || !speed) return refusal("not a wind of NOAA's:", text);
+  if (!direction || !speed) return refusal("not a wind in NOAA's format:", text);
   constexpr double kNoDirection = 999.0;
   constexpr double kNoSpeed = 9999.0;
   constexpr double kTenth = 0.1;
@@ -202,7 +202,7 @@ CsvDirectionUnit CsvRowReader::direction_unit() const {
                                                                    : CsvDirectionUnit::kDegrees;
 }
 
-/// Nothing where the field is none, which does not make the speed beside it wrong.
+/// Nullopt if the field is not a direction; the speed beside it is still valid.
 std::optional<double> CsvRowReader::read_direction(std::string_view text) {
   if (is_missing(CsvRole::kDirection, text)) {
     if (!text.empty()) ++missing_[static_cast<std::size_t>(CsvRole::kDirection)];
@@ -259,7 +259,7 @@ std::optional<wind::StationQuantities> CsvRowReader::read_quantities(const CsvFi
 
 std::string CsvRowReader::describe_time() const {
   std::string text(name_of(survey_.time_format));
-  if (survey_.time_format == CsvTimeFormat::kSeconds) return text + ", counted from 1970, since there is no date";
+  if (survey_.time_format == CsvTimeFormat::kSeconds) return text + ", counted from 1970, because there is no date";
   if (!is_calendar(survey_.time_format)) return text;
   if (zoned_ > 0) text += ", with zones of their own";
   if (unzoned_ > 0) text += ", in " + zone_.name() + " " + zone_source_;
@@ -313,25 +313,26 @@ std::vector<std::string> CsvRowReader::notes() const {
   std::vector<std::string> lines;
   for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
     if (missing_[index] == 0) continue;
-    lines.push_back(fmt::format("{}: {} left empty, by a mark for none", name_of(static_cast<CsvRole>(index)),
+    lines.push_back(fmt::format("{}: {} left empty, marked as missing", name_of(static_cast<CsvRole>(index)),
                                 count_text(missing_[index], "value")));
   }
   for (const auto& [text, count] : odd_directions_) {
     lines.push_back(
-        fmt::format("direction: {} is none and was left empty, {} times; the speed was taken", text, count));
+        fmt::format("direction: {} is not a direction and was left empty, {} times; the speed was used", text, count));
   }
   if (implausible_quantities_ > 0) {
-    lines.push_back("weather: " + count_text(implausible_quantities_, "value") + " left out, which cannot be");
+    lines.push_back("weather: " + count_text(implausible_quantities_, "value") +
+                    " left out, because they are impossible");
   }
   if (same_time_ > 0) {
     lines.push_back("the same time as the one before: " + count_text(same_time_, "reading") +
                     ", kept a nanosecond apart; are the times rounded?");
   }
   if (went_back_ > 0 && unzoned_ > 0) {
-    lines.push_back(
-        count_text(went_back_, "row") +
-        " go back in time: at a change to winter time, --zone (Europe/Berlin, say) puts that right; of several "
-        "stations, --where COLUMN=VALUE takes one");
+    lines.push_back(count_text(went_back_, "row") +
+                    " go back in time: if the clock changed to winter time, add --zone (such as Europe/Berlin); if "
+                    "there are several "
+                    "stations, choose one with --where COLUMN=VALUE");
   }
   return lines;
 }

@@ -16,7 +16,7 @@
 
 namespace yuragi::daemon::tools::csv {
 
-/// What a row says.
+/// The content of a row.
 struct CsvRow {
   wind::WindReading reading;
   std::optional<wind::StationQuantities> quantities;  ///< at the reading's time, as far as they are plausible
@@ -25,11 +25,11 @@ struct CsvRow {
 /// Converts the rows of one CSV file to readings. Thread-safe: no.
 class CsvRowReader {
  public:
-  /// Fails where the file names a zone that is none.
+  /// Fails if the file names an unknown zone.
   static Result<CsvRowReader, Failure> make(const CsvLayout& layout, const CsvSurvey& survey,
                                             const CsvImportOptions& options);
 
-  /// The reading in a row, or why it is refused. To be called in the order of time.
+  /// The reading in a row, or why it is refused. Call it in the order of time.
   Result<CsvRow, Failure> read(const CsvFields& fields);
 
   /// How each column was understood, a line each; complete after the last row.

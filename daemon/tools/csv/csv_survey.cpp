@@ -56,7 +56,7 @@ struct NumberTally {
 
 /// Above this median a wind in m/s is a storm all the time.
 constexpr double kStrangeMedian_m_s = 12.0;
-/// A single value above this, far above all others, is none.
+/// A single value above this, far above all others, is not a value.
 constexpr double kStrangeSpeed_m_s = 60.0;
 
 class Survey {
@@ -163,22 +163,22 @@ class Survey {
     if (ambiguous_.empty() && day_first.count == month_first.count) return settle_as(CsvTimeFormat::kDayFirst);
     if (day_first.count != month_first.count) {
       const bool is_day_first = day_first.count > month_first.count;
-      result_.notes.push_back(fmt::format("dates: the {} comes first, since a number above 12 stands in its place",
+      result_.notes.push_back(fmt::format("dates: the {} comes first, because a number above 12 is in its place",
                                           is_day_first ? "day" : "month"));
       return settle_as(is_day_first ? CsvTimeFormat::kDayFirst : CsvTimeFormat::kMonthFirst);
     }
     if (dotted_ == day_first.count) {
-      result_.notes.emplace_back("dates: the day comes first, as it does where dots separate");
+      result_.notes.emplace_back("dates: the day comes first, because dots separate the numbers");
       return settle_as(CsvTimeFormat::kDayFirst);
     }
     if ((day_first.back == 0) != (month_first.back == 0)) {
       const bool is_day_first = day_first.back == 0;
-      result_.notes.push_back(fmt::format("dates: the {} comes first, since times would go back otherwise",
+      result_.notes.push_back(fmt::format("dates: the {} comes first, because times would go back otherwise",
                                           is_day_first ? "day" : "month"));
       return settle_as(is_day_first ? CsvTimeFormat::kDayFirst : CsvTimeFormat::kMonthFirst);
     }
-    return Failure{"which number of \"" + ambiguous_ +
-                   "\" is the day? All rows can be read either way; say --time-format day-first or month-first"};
+    return Failure{"the order of day and month is not clear in \"" + ambiguous_ +
+                   "\", nor in any other row; add --time-format day-first or month-first"};
   }
 
   void settle_marks() {
@@ -191,13 +191,13 @@ class Survey {
                             *numbers.greatest * column.unit->factor > kStrangeSpeed_m_s;
       if (numbers.is_far_above_others() && (numbers.times > 1 || is_storm)) {
         result_.missing_mark[index] = numbers.greatest;
-        result_.notes.push_back(
-            fmt::format("{} in \"{}\" is taken as no value: it comes {} and is far above all others (the next is {})",
-                        *numbers.greatest, column.name,
-                        numbers.times == 1 ? "once" : fmt::format("{} times", numbers.times), *numbers.next));
+        result_.notes.push_back(fmt::format(
+            "{} in \"{}\" is treated as a missing value: it occurs {} and is far above all others (the next is {})",
+            *numbers.greatest, column.name, numbers.times == 1 ? "once" : fmt::format("{} times", numbers.times),
+            *numbers.next));
       } else {
         result_.notes.push_back(
-            fmt::format("{} in \"{}\" is taken as it is; where it stands for no value, say --missing {}",
+            fmt::format("{} in \"{}\" is used as a value; if it marks a missing value, add --missing {}",
                         *numbers.greatest, column.name, *numbers.greatest));
       }
     }
@@ -206,17 +206,17 @@ class Survey {
   Result<void, Failure> check_units() {
     const auto& speed = layout_.columns.at(CsvRole::kSpeed);
     if (speed && speed->unit_source == kAssumedUnit) {
-      constexpr const char* kSayUnit = "say --unit m/s, km/h, kn, mph or ft/s";
+      constexpr const char* kSayUnit = "add --unit with m/s, km/h, kn, mph or ft/s";
       if (2 * strong_ > moving_) {
         return Failure{
-            fmt::format("nothing says the unit of \"{}\", and in m/s most of its rows would be above {} m/s; {}",
+            fmt::format("no unit is given for column \"{}\", and in m/s most of its rows would be above {} m/s; {}",
                         speed->name, kStrangeMedian_m_s, kSayUnit)};
       }
       for (const CsvRole role : {CsvRole::kTemperature, CsvRole::kPressure}) {
         const auto& other = layout_.columns.at(role);
         if (!other || (other->unit->name != "F" && other->unit->name != "inHg")) continue;
-        return Failure{fmt::format("nothing says the unit of \"{}\", and \"{}\" is in {}; {}", speed->name, other->name,
-                                   other->unit->name, kSayUnit)};
+        return Failure{fmt::format("no unit is given for column \"{}\", and \"{}\" is in {}; {}", speed->name,
+                                   other->name, other->unit->name, kSayUnit)};
       }
     }
     if (gusty_ < 3 || 2 * weak_gusts_ <= gusty_) return {};
@@ -228,7 +228,7 @@ class Survey {
       result_.notes.push_back(found);
       return {};
     }
-    return Failure{found + "; say --gust-unit and --unit"};
+    return Failure{found + "; add --gust-unit and --unit"};
   }
 
   const CsvLayout& layout_;

@@ -12,7 +12,7 @@
 
 namespace yuragi::daemon::tools::csv {
 
-/// What only all rows together tell.
+/// What only all rows together show.
 struct CsvSurvey {
   CsvTimeFormat time_format = CsvTimeFormat::kIso;
   bool is_newest_first = false;
@@ -21,7 +21,7 @@ struct CsvSurvey {
 };
 
 /// Reads all rows of `in` to settle the format of times (which of 3/4/2023 is the day?), marks for missing values, and
-/// whether the units can be right. Fails, with the option that helps, where they cannot be settled. Thread-safe: yes,
+/// whether the units can be right. Fails, with the option that helps, if they cannot be settled. Thread-safe: yes,
 /// with separate streams.
 Result<CsvSurvey, Failure> survey_rows(std::istream& in, const CsvLayout& layout, const CsvImportOptions& options);
 

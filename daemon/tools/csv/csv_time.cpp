@@ -98,7 +98,7 @@ class CalendarText {
     return clock;
   }
 
-  /// Z, UTC, GMT, +02:00, +0200, +02, UTC+2; false where something else stands there.
+  /// Z, UTC, GMT, +02:00, +0200, +02, UTC+2; false if something else stands there.
   bool take_zone(std::optional<Nanoseconds>& offset) {
     skip_blanks();
     if (rest_.empty()) return true;
@@ -238,7 +238,7 @@ class CalendarText {
     return std::chrono::sys_days(date);
   }
 
-  /// AM and PM; false where the hour is none of them.
+  /// AM and PM; false if the hour is none of them.
   bool take_half_of_day(int& hour) {
     std::string_view rest = rest_;
     while (rest.starts_with(' ')) rest.remove_prefix(1);

@@ -26,7 +26,7 @@ inline constexpr std::size_t kCsvTimeFormatCount = 10;
 
 std::string_view name_of(CsvTimeFormat format);
 
-/// Does a format say a date and a time of day, and so a moment only together with a zone?
+/// Returns true for a format of date and time of day, which gives a moment only together with a zone.
 constexpr bool is_calendar(CsvTimeFormat format) {
   return format == CsvTimeFormat::kIso || format == CsvTimeFormat::kDayFirst || format == CsvTimeFormat::kMonthFirst ||
          format == CsvTimeFormat::kCompact;
@@ -35,22 +35,22 @@ constexpr bool is_calendar(CsvTimeFormat format) {
 /// A time as it is written.
 struct CsvTime {
   UtcTime clock;                          ///< what the clock showed, as if it were UTC
-  std::optional<Nanoseconds> utc_offset;  ///< how far it was ahead of UTC, where the text says so
+  std::optional<Nanoseconds> utc_offset;  ///< how far it was ahead of UTC, if the text states it
   bool operator==(const CsvTime&) const = default;
 };
 
-/// The format of a number of seconds, milliseconds ... by its size; nothing if it is no number.
+/// The format of a number of seconds, milliseconds ... by its size; nullopt if it is not a number.
 std::optional<CsvTimeFormat> guess_count_format(std::string_view text);
 
 /// A decimal number times 10^decimals, exactly: ("1.25", 9) and ("1,25", 9) are 1250000000. Further digits are cut off.
-/// Nothing if the text is not a number, or does not fit into 64 bits.
+/// Nullopt if the text is not a number, or does not fit into 64 bits.
 std::optional<std::int64_t> parse_decimal(std::string_view text, int decimals);
 
-/// Nothing if the text is not a time of this format (not kAuto), or outside the range of a recording. Zones: Z, UTC,
+/// Nullopt if the text is not a time of this format (not kAuto), or outside the range of a recording. Zones: Z, UTC,
 /// GMT, +02:00, +0200, UTC+2. An hour of 24 is the next day's first. Years of two digits are 1970 to 2069.
 std::optional<CsvTime> parse_time(std::string_view text, CsvTimeFormat format);
 
-/// Does the text say a day, be it as a calendar's or as seconds since 1970? A time of day alone does not.
+/// Returns true if the text has a day, as a date or as seconds since 1970; a time of day alone has none.
 bool has_date(std::string_view text);
 
 }  // namespace yuragi::daemon::tools::csv

@@ -41,7 +41,7 @@ void set_where_unknown(CsvLayout& layout, CsvRole role, std::string_view unit, c
   if (column->unit) column->unit_source = source;
 }
 
-/// What weewx writes says which system of units it is in: 1 US, 16 metric, 17 metric with m/s (weewx, "Units").
+/// Takes the units from the system of units that weewx writes: 1 US, 16 metric, 17 metric with m/s (weewx, "Units").
 void use_weewx_system(CsvLayout& layout) {
   for (std::size_t i = 0; i < std::min(layout.header.size(), layout.row.size()); ++i) {
     if (joined(words_of(layout.header[i])) != "usunits") continue;
@@ -80,7 +80,7 @@ void use_unit_beside(CsvLayout& layout, CsvRole role, CsvRole beside) {
   column->unit_source = "as \"" + known->name + "\" beside it";
 }
 
-/// "5.4 mph": the fields say it themselves.
+/// "5.4 mph": the fields name it themselves.
 void use_unit_of_fields(CsvLayout& layout) {
   for (std::size_t index = 0; index < kCsvRoleCount; ++index) {
     auto& column = layout.columns.by_role[index];
@@ -88,7 +88,7 @@ void use_unit_of_fields(CsvLayout& layout) {
     const auto number = parse_number(layout.row[column->index], dimension_of(static_cast<CsvRole>(index)));
     if (!number || !number->unit) continue;
     column->unit = number->unit;
-    column->unit_source = "as its fields say";
+    column->unit_source = "from its fields";
   }
 }
 

@@ -16,7 +16,7 @@ struct NamedUnit {
   CsvUnit unit;
 };
 
-/// The words of drivers/decode, in lower case and without punctuation, and what only tables say.
+/// The words of drivers/decode, in lower case and without punctuation, and those of tables only.
 std::span<const NamedUnit> speed_units() {
   static const auto kPlainWords = [] {
     std::array<std::string, drivers::decode::kSpeedWords.size()> plain;

@@ -28,8 +28,8 @@ struct CsvUnit {
   double offset = 0.0;
 };
 
-/// The unit that a text is, whatever its case and punctuation ("km/h", "[m s-1]", "degC", "0.1 m/s"); nothing where it
-/// is no unit of this dimension. Thread-safe: yes.
+/// Returns the unit that a text names, in any case and punctuation ("km/h", "[m s-1]", "degC", "0.1 m/s"); nullopt
+/// if it is not a unit of this dimension. Thread-safe: yes.
 std::optional<CsvUnit> find_unit(CsvDimension dimension, std::string_view text);
 
 /// The unit of speed that a text is.
@@ -37,7 +37,7 @@ inline std::optional<CsvUnit> find_speed_unit(std::string_view text) {
   return find_unit(CsvDimension::kSpeed, text);
 }
 
-/// The unit that is taken where nothing says one: the dimension's own.
+/// Returns the unit that is assumed if none is given: the dimension's own.
 CsvUnit base_unit(CsvDimension dimension);
 
 }  // namespace yuragi::daemon::tools::csv

@@ -13,7 +13,7 @@ bool is_one_of(double value, std::initializer_list<double> marks) {
   return std::ranges::any_of(marks, [value](double mark) { return std::abs(value - mark) < 1e-6 * mark; });
 }
 
-/// Is it a value that such a column has in earnest? In base units.
+/// Returns true if it is a realistic value for such a column, in base units.
 bool can_be(CsvRole role, double base) {
   constexpr double kGreatestSpeed_m_s = 60.0;
   switch (dimension_of(role)) {

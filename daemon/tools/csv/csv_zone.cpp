@@ -22,10 +22,11 @@ Result<CsvZone, Failure> CsvZone::parse(std::string_view text) {
     zone.zone_ = date::locate_zone(zone.name_);
     return zone;
   } catch (const std::exception&) {
-    return Failure{"\"" + zone.name_ +
-                       "\" is no time zone; allowed: UTC, an offset such as +02:00, or a place such as Europe/Berlin "
-                       "(timedatectl list-timezones)",
-                   FailureKind::kUsage};
+    return Failure{
+        "\"" + zone.name_ +
+            "\" is not a time zone; allowed: UTC, an offset such as +02:00, or a place such as Europe/Berlin "
+            "(timedatectl list-timezones)",
+        FailureKind::kUsage};
   }
 }
 

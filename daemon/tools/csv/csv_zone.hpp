@@ -23,7 +23,7 @@ class CsvZone {
   static Result<CsvZone, Failure> parse(std::string_view text);
 
   /// When the clock showed this time. An hour that comes twice, at the change to winter time, is the first one, or the
-  /// second where the first would not be after `last`. Nothing for an hour that is left out in spring.
+  /// second if the first would not be after `last`. Nullopt for an hour that is skipped in spring.
   std::optional<UtcTime> to_utc(UtcTime clock, std::optional<UtcTime> last) const;
 
   const std::string& name() const { return name_; }

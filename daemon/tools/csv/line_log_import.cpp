@@ -125,10 +125,10 @@ class LogImport {
       if (!written) return Failure{"no time before the message"};
       if (written->utc_offset) return written->clock - *written->utc_offset;
       const auto utc = options_.zone.value_or(CsvZone()).to_utc(written->clock, last_);
-      if (!utc) return Failure{"a time that was left out in the zone; is --zone right?"};
+      if (!utc) return Failure{"a time that does not exist in the zone; check --zone"};
       return *utc;
     }
-    if (!clock_.now()) return Failure{"nothing has said the time yet"};
+    if (!clock_.now()) return Failure{"no time has been received yet"};
     return *clock_.now();
   }
 
@@ -208,8 +208,8 @@ Result<CsvImportReport, Failure> import_line_log(CsvInput& input, const std::str
   const bool has_start = options.start && options.interval;
   if (!has_leading_times && !contents.has_clock && !has_start) {
     return Failure{name +
-                   ": nothing says the time, neither before the messages nor in RMC or ZDA; say --start "
-                   "2023-06-25T22:00:00Z --interval 1 (or --time-format day-first or month-first, where a time stands "
+                   ": no time was found, neither before the messages nor in RMC or ZDA; add --start "
+                   "2023-06-25T22:00:00Z --interval 1 (or --time-format day-first or month-first, if a time stands "
                    "before them)"};
   }
   auto report = LogImport(name, options, sinks, source, has_leading_times).run(input.second_pass());
@@ -219,7 +219,7 @@ Result<CsvImportReport, Failure> import_line_log(CsvInput& input, const std::str
     if (each != source) columns.push_back(fmt::format("not taken: {} ({} of them; --sentence)", each, count));
   }
   columns.push_back(has_start           ? "time from --start and --interval"
-                    : has_leading_times ? fmt::format("time from before the messages, in {} where it names no zone",
+                    : has_leading_times ? fmt::format("time from before the messages, in {} if it names no zone",
                                                       options.zone.value_or(CsvZone()).name())
                                         : "time from RMC, ZDA, GLL or GGA, which may be up to their interval old");
   report->columns = std::move(columns);

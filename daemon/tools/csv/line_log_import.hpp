@@ -14,22 +14,21 @@ namespace yuragi::daemon::tools::csv {
 struct LineLogOptions {
   CsvTimeFormat time_format = CsvTimeFormat::kAuto;
   std::optional<CsvZone> zone;          ///< of times that name none; empty: UTC
-  std::optional<UtcTime> start;         ///< of the first reading, where the log has no times
-  std::optional<Nanoseconds> interval;  ///< from one reading to the next, where the log has no times
+  std::optional<UtcTime> start;         ///< of the first reading, if the log has no times
+  std::optional<Nanoseconds> interval;  ///< from one reading to the next, if the log has no times
   std::string sentence;                 ///< take this one ("MWD"); empty: the best that the log has
   std::string sensor = "imported";
   bool strict = false;
 };
 
-/// Do the first lines of a file look like a log of messages (NMEA 0183, Gill, FT, UMB, keys), and not like a table?
+/// Returns true if the first lines of a file look like a log of messages (NMEA 0183, Gill, FT, UMB, keys), not a table.
 bool looks_like_line_log(const std::vector<std::string>& lines);
 
 /// Reads a log of an anemometer's messages, one a line: each reading has the time that the logger wrote before it, or
-/// the one that the log's own RMC, ZDA, GLL or GGA said last, or `start` and a number of `interval`s. A device says one
-/// measurement in several sentences: one of them is taken, of those that it says often the one whose angle is from
-/// north.
+/// the last one of the log's own RMC, ZDA, GLL or GGA, or `start` and a number of `interval`s. A device sends one
+/// measurement in several sentences: one of them is taken, of the frequent ones the one whose angle is from north.
 ///
-/// Fails, with the option that helps, where no line has a wind, and where nothing says the time. Otherwise as
+/// Fails, with the option that helps, if no line has a wind or no time is found. Otherwise as
 /// import_csv().
 Result<CsvImportReport, Failure> import_line_log(CsvInput& input, const std::string& name,
                                                  const LineLogOptions& options, const CsvSinks& sinks);

@@ -14,13 +14,13 @@ namespace yuragi::daemon::tools::csv {
 /// An anemometer's message in a line of a log.
 struct LineLogMessage {
   std::string_view prefix;  ///< what the logger wrote before it
-  std::string source;       ///< "MWV R of WI", "Gill of Q", "keys"; empty where the message is refused
+  std::string source;       ///< "MWV R of WI", "Gill of Q", "keys"; empty if the message is refused
   Result<drivers::decode::DecodedWind, drivers::decode::Refusal> wind;
   std::optional<wind::StationQuantities> quantities;  ///< without its time
 };
 
-/// Finds and decodes the message in a line: NMEA 0183, FT, UMB, Gill, or keys ("speed=4.2 direction=270"). Nothing
-/// where there is none. The views point into the line.
+/// Finds and decodes the message in a line: NMEA 0183, FT, UMB, Gill, or keys ("speed=4.2 direction=270"). Nullopt
+/// if there is none. The views point into the line.
 std::optional<LineLogMessage> find_message(std::string_view line);
 
 }  // namespace yuragi::daemon::tools::csv

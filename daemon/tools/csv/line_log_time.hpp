@@ -8,13 +8,13 @@
 
 namespace yuragi::daemon::tools::csv {
 
-/// The clock that a log of NMEA 0183 has in itself: RMC and ZDA say date and time, GLL and GGA the time of the day of
+/// The clock that a log of NMEA 0183 has in itself: RMC and ZDA have date and time, GLL and GGA the time of the day of
 /// the last date. Source: gpsd www/NMEA.adoc. Thread-safe: no.
 class NmeaClock {
  public:
-  /// Takes a line, whatever it is; true where it set the clock.
+  /// Takes any line; true if it set the clock.
   bool take(std::string_view line);
-  /// The last time that was said; nothing before the first date.
+  /// The last received time; nullopt before the first date.
   std::optional<UtcTime> now() const { return now_; }
 
  private:
@@ -25,7 +25,7 @@ class NmeaClock {
 };
 
 /// The time that a logger wrote before a message: "2023-06-25 22:00:00.5,", "[1687730400.25] ", "1687730400153;A;", or
-/// the "c:" of an NMEA 4 tag block. Nothing where it is no time with a date. `format`: kAuto takes ISO 8601, digits and
+/// the "c:" of an NMEA 4 tag block. Nullopt if it is not a time with a date. `format`: kAuto takes ISO 8601, digits and
 /// Unix times, but no dates of which day and month could be either.
 std::optional<CsvTime> leading_time(std::string_view prefix, CsvTimeFormat format);
 

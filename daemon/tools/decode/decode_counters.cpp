@@ -14,7 +14,7 @@ namespace {
 struct CounterReply {
   std::optional<std::uint32_t> count;
   std::optional<double> volts;        ///< of the vane's wiper, if there is a vane
-  std::optional<double> reference_v;  ///< across the vane's potentiometer, where the reply contains it
+  std::optional<double> reference_v;  ///< across the vane's potentiometer, if the reply contains it
 };
 
 /// Converts counts and voltages to wind, reply by reply.

@@ -184,7 +184,7 @@ const std::array kFormatsWithOptions = {
                .is_text = true,
                .longest_line = drivers::decode::marine::kLongestDelta,
                .unit = "a line",
-               .devices = "Signal K deltas; what is said of the angle alone is a reading of its own",
+               .devices = "Signal K deltas; a message with the angle alone is its own reading",
                .example = "signalk deltas.log",
                .make = make_signalk_unit_decoder},
     UnitFormat{.name = "wmr100",
@@ -253,7 +253,7 @@ const std::array kFormatsWithOptions = {
     UnitFormat{.name = "modbus:PROFILE",
                .is_text = false,
                .unit = "request | response, of RTU with their checksums or of TCP",
-               .devices = "Modbus anemometers: a response alone does not say which register it answers",
+               .devices = "Modbus anemometers: a response alone does not show which register it answers",
                .example = "modbus:renke-rs-fsjt-n01 --hex bus.hex",
                .make = make_modbus_unit_decoder},
 };

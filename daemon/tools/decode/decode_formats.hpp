@@ -24,11 +24,11 @@ namespace yuragi::daemon::tools::decode {
 /// One received message: a line, a report, a reply.
 struct RawUnit {
   drivers::decode::ByteSpan bytes;
-  drivers::decode::ByteSpan request;  ///< what it replies to; empty where that is not known
+  drivers::decode::ByteSpan request;  ///< what it replies to; empty if that is not known
 };
 
-/// The content of a message. Of a counter: its count and its analogue input; the wind is empty unless the options say
-/// how to convert them.
+/// The content of a message. Of a counter: its count and its analogue input; the wind is empty unless the options
+/// define the conversion.
 struct UnitReading {
   drivers::decode::DecodedWind wind;
   std::optional<std::uint32_t> count;
@@ -48,7 +48,7 @@ class UnitDecoder {
   using Sink = std::function<void(const Outcome&)>;
 
   virtual ~UnitDecoder() = default;
-  /// Calls `sink` with each reading in the message, or with the refusal. Need not call it where a frame of the format
+  /// Calls `sink` with each reading in the message, or with the refusal. Need not call it if a frame of the format
   /// spans several messages.
   virtual void take(const RawUnit& unit, const Sink& sink) = 0;
   /// Called at the end of the input.
@@ -73,9 +73,9 @@ struct UnitDecoderOptions {
   int speed_slave = 0;      ///< modbus; 0 takes the profile's
   int direction_slave = 0;  ///< modbus; 0 takes the profile's
 
-  // mcc1208, labjack. Two counts give a speed only where the time between them is known.
+  // mcc1208, labjack. Two counts give a speed only if the time between them is known.
   std::optional<double> interval_s;          ///< from one reply to the next
-  drivers::decode::usb::CupCalibration cup;  ///< used where there is an interval
+  drivers::decode::usb::CupCalibration cup;  ///< used if there is an interval
   drivers::decode::usb::LabjackInput input = drivers::decode::usb::LabjackInput::kLowVoltage;
   std::optional<double>
       vane_reference_v;  ///< voltage across the vane's potentiometer; the input then measures its wiper

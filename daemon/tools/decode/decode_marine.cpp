@@ -1,4 +1,4 @@
-// `yuragi decode nmea2000` and `signalk`: lines of which some say what holds for those that follow, or several winds.
+// `yuragi decode nmea2000` and `signalk`: lines of which some apply to the following ones, or have several winds.
 #include <algorithm>
 #include <array>
 
@@ -29,7 +29,7 @@ class Nmea2000UnitDecoder final : public UnitDecoder {
   marine::BusLineDecoder lines_;
 };
 
-/// A server says speed and angle one after the other: each is shown as it comes.
+/// A server sends speed and angle one after the other: each is shown as it comes.
 class SignalKUnitDecoder final : public UnitDecoder {
  public:
   void take(const RawUnit& unit, const Sink& sink) override {

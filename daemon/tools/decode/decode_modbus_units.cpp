@@ -15,7 +15,7 @@ struct RequestedRegisters {
   drivers::decode::modbus::ModbusRequest request;
 };
 
-/// Parses a request to read registers, of RTU or TCP by its format. Nothing for anything else.
+/// Parses a request to read registers, of RTU or TCP by its format. Nullopt for anything else.
 std::optional<RequestedRegisters> requested_registers_of(drivers::decode::ByteSpan bytes) {
   constexpr std::size_t kRtuRequest = 8;
   constexpr std::size_t kTcpRequest = 12;
@@ -42,7 +42,7 @@ std::optional<RequestedRegisters> requested_registers_of(drivers::decode::ByteSp
   return reads && is_possible ? std::optional(requested) : std::nullopt;
 }
 
-/// The part of a reply that belongs to `quantity`; empty where it was not requested.
+/// The part of a reply that belongs to `quantity`; empty if it was not requested.
 std::span<const std::uint16_t> registers_of(const drivers::decode::modbus::ModbusQuantity& quantity,
                                             const drivers::decode::modbus::ModbusRequest& request,
                                             const drivers::decode::modbus::ModbusRegisters& registers) {

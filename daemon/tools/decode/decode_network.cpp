@@ -1,4 +1,5 @@
-// What stations and gateways in the local network say. Of several stations the first one is read, as by the drivers.
+// The messages of stations and gateways in the local network. Of several stations the first one is read, as by the
+// drivers.
 #include <optional>
 #include <string>
 #include <string_view>

@@ -11,7 +11,7 @@ namespace yuragi::daemon::tools::decode {
 
 /// Parses bytes in hexadecimal digits, as dumps and manuals print them: two digits a byte, of
 /// either case, with or without "0x" in front, and with blanks, tabs, commas, colons or hyphens between bytes. Empty
-/// for an empty text; nothing for anything else.
+/// for an empty text; nullopt for anything else.
 std::optional<std::vector<std::uint8_t>> parse_hex(std::string_view text);
 
 /// "d4 36 0e"

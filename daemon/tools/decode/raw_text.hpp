@@ -12,7 +12,7 @@ namespace yuragi::daemon::tools::decode {
 std::string raw_text(const wire::RawTrace& trace);
 
 /// Messages in the format that `yuragi decode --hex` reads: a line of hexadecimal digits for each received message, as
-/// "request | response" where a message was sent just before. Thread-safe: no.
+/// "request | response" if a message was sent just before. Thread-safe: no.
 class RawHexLines {
  public:
   /// The line of this message; empty for one that was sent, which is kept until its reply.

@@ -22,7 +22,7 @@ struct ReadUnit {
 };
 
 /// Splits an input, which may arrive in blocks of any size, into messages: lines, as the drivers do (LineAssembler), or
-/// one message for each line of hexadecimal digits ("request | response" where there are two). Blank lines of the
+/// one message for each line of hexadecimal digits ("request | response" if there are two). Blank lines of the
 /// latter and those that begin with '#' are skipped. Memory is bounded. Thread-safe: no.
 class UnitReader {
  public:

@@ -18,7 +18,7 @@ struct Examination {
   std::optional<std::filesystem::path> config_file;  ///< none: the built-in configuration
   std::optional<settings::Config> config;            ///< none: it has errors
   std::string config_error;                          ///< those, a line for each
-  std::optional<sensors::DaemonStatus> daemon;       ///< the one that runs, where one does
+  std::optional<sensors::DaemonStatus> daemon;       ///< the one that runs; nullopt: none
 };
 
 /// Looks at the devices that the configuration names, permissions, clock, disk, ports, graphics, versions and limits of

@@ -27,7 +27,7 @@ struct DeviceFacts {
   bool is_used = false;                ///< the running daemon has readings from this sensor; it was not touched then
   bool is_there = false;
   std::string trouble{};  ///< why it cannot be used; of the network: why it cannot be reached
-  std::string remedy{};   ///< what the driver says to do about that; may be empty
+  std::string remedy{};   ///< what to do about that, from the driver; may be empty
 };
 
 /// Who asks, and which groups the sensors' devices belong to.
@@ -40,7 +40,7 @@ struct GroupFacts {
 
 struct ClockFacts {
   UtcTime now{};
-  std::optional<bool> is_synchronised{};  ///< by the kernel; none: it does not tell
+  std::optional<bool> is_synchronised{};  ///< by the kernel; nullopt: not known
 };
 
 /// The folder of a recording.
@@ -67,7 +67,7 @@ struct PortFacts {
 struct ConfigFacts {
   std::string file{};                  ///< empty: the built-in configuration
   std::string error{};                 ///< what is wrong with it, a line for each; empty: nothing
-  std::vector<std::string> exposed{};  ///< secrets that others can read, as settings::exposed_secrets() says
+  std::vector<std::string> exposed{};  ///< secrets that others can read, from settings::exposed_secrets()
 };
 
 struct DisplayFacts {

@@ -25,7 +25,7 @@ std::string findings_text(std::span<const Finding> findings) {
   std::string text;
   for (const Finding& finding : findings) {
     text += fmt::format("{:<8} {:<14} {}\n", name_of(finding.verdict), finding.area, finding.text);
-    if (!finding.remedy.empty()) text += fmt::format("{:<23} mend it: {}\n", "", finding.remedy);
+    if (!finding.remedy.empty()) text += fmt::format("{:<23} fix: {}\n", "", finding.remedy);
   }
   const auto count = [&](Verdict verdict) {
     return static_cast<std::uint64_t>(std::ranges::count(findings, verdict, &Finding::verdict));

@@ -17,19 +17,19 @@ std::string_view name_of(Verdict verdict);
 struct Finding {
   Verdict verdict = Verdict::kOk;
   std::string area;    ///< one word: "sensor", "disk", "clock"
-  std::string text;    ///< what is so, or what is wrong
-  std::string remedy;  ///< the command that mends it, or what else to do; empty where nothing is wrong
+  std::string text;    ///< the state, or what is wrong
+  std::string remedy;  ///< the command that fixes it, or what else to do; empty if nothing is wrong
 
   bool operator==(const Finding&) const = default;
 };
 
-/// The gravest of the verdicts; kOk where there are no findings.
+/// The gravest of the verdicts; kOk if there are no findings.
 Verdict gravest(std::span<const Finding> findings);
 
 /// A line for each finding, with its remedy below, and how many are grave on the last line.
 std::string findings_text(std::span<const Finding> findings);
 
-/// {"verdict": "ok", "warning" or "error", "findings": [{"area", "verdict", "text", "remedy"}]}; remedy is null where
+/// {"verdict": "ok", "warning" or "error", "findings": [{"area", "verdict", "text", "remedy"}]}; remedy is null if
 /// there is none.
 nlohmann::ordered_json findings_json(std::span<const Finding> findings);
 

@@ -49,7 +49,7 @@ std::string_view title_of(const std::optional<EndpointKind>& kind) {
   return "";
 }
 
-/// Where a device is not there, or cannot be reached: what shows why.
+/// Returns the command that shows why a device is missing or cannot be reached.
 std::string remedy_for_absent(const DeviceFacts& device) {
   switch (device.kind.value_or(EndpointKind::kFile)) {
     case EndpointKind::kSerialPort:
@@ -80,7 +80,7 @@ Finding judge(const DeviceFacts& device) {
   if (device.is_used) return ok("sensor", what + ": the running daemon has readings from it");
   if (!device.kind) return ok("sensor", what);
   if (!device.is_there) {
-    const std::string why = device.trouble.empty() ? "is not there" : device.trouble;
+    const std::string why = device.trouble.empty() ? "was not found" : device.trouble;
     return error("sensor", what + ": " + why, remedy_for_absent(device));
   }
   if (!device.trouble.empty()) {
@@ -115,7 +115,7 @@ Finding judge(const ClockFacts& clock) {
   const std::time_t seconds = std::chrono::floor<std::chrono::seconds>(clock.now.time_since_epoch()).count();
   const std::string time = fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(seconds));
   if (year < kFirstPlausibleYear || year > kLastPlausibleYear) {
-    return error("clock", "it says " + time + ", which cannot be: recordings and opening hours would be wrong",
+    return error("clock", "it shows " + time + ", which is impossible: recordings and opening hours would be wrong",
                  "sudo timedatectl set-ntp true; without a network: sudo timedatectl set-time 'YYYY-MM-DD hh:mm:ss'");
   }
   if (clock.is_synchronised == false) {
@@ -127,7 +127,7 @@ Finding judge(const ClockFacts& clock) {
 
 Finding judge(const DiskFacts& disk) {
   if (!disk.is_there) {
-    return error("disk", disk.folder + ": there is no such folder for the recording",
+    return error("disk", disk.folder + ": the folder for the recording does not exist",
                  fmt::format("sudo install -d -o yuragi -g yuragi -m 750 {}", disk.folder));
   }
   if (!disk.is_writable) {
@@ -136,15 +136,15 @@ Finding judge(const DiskFacts& disk) {
                              disk.folder));
   }
   if (!disk.free_bytes) {
-    return warning("disk", disk.folder + ": its free space cannot be asked for", fmt::format("df -h {}", disk.folder));
+    return warning("disk", disk.folder + ": its free space cannot be determined", fmt::format("df -h {}", disk.folder));
   }
   const double spare_bytes = *disk.free_bytes - disk.least_free_bytes;
   const std::string text = fmt::format("{}: {:.1f} GB free, about {:.1f} MB a day", disk.folder,
                                        1e-9 * *disk.free_bytes, 1e-6 * disk.bytes_a_day);
   if (spare_bytes <= 0.0) {
     return error("disk",
-                 fmt::format("{}, less than the {:.0f} MB that are to be left ([recording] min_free): nothing new is "
-                             "recorded once the oldest files are gone",
+                 fmt::format("{}, less than the {:.0f} MB to keep free ([recording] min_free): nothing new is "
+                             "recorded when the oldest files are deleted",
                              text, 1e-6 * disk.least_free_bytes),
                  fmt::format("sudo du -xsh {}/* | sort -h; delete or move what is not needed", disk.folder));
   }
@@ -159,9 +159,10 @@ Finding judge(const DiskFacts& disk) {
 Finding judge(const PortFacts& port) {
   if (!port.daemon.empty()) return ok("port", fmt::format("{}: {} answers", port.address, port.daemon));
   if (port.trouble.empty()) return ok("port", port.address + " is free; no daemon runs");
-  const std::string remedy = port.is_in_use ? fmt::format("sudo ss -ltnp 'sport = :{}'", port.port)
-                                            : std::string("ip address; write one of this machine's in [stream] listen");
-  return error("port", fmt::format("{} cannot be listened on: {}", port.address, port.trouble), remedy);
+  const std::string remedy = port.is_in_use
+                                 ? fmt::format("sudo ss -ltnp 'sport = :{}'", port.port)
+                                 : std::string("ip address; write an address of this machine in [stream] listen");
+  return error("port", fmt::format("cannot listen on {}: {}", port.address, port.trouble), remedy);
 }
 
 std::vector<Finding> judge(const ConfigFacts& config) {
@@ -176,7 +177,7 @@ std::vector<Finding> judge(const ConfigFacts& config) {
   }
   if (findings.empty()) {
     findings.push_back(
-        ok("configuration", config.file.empty() ? "the built-in one: made-up wind" : config.file + ": no errors"));
+        ok("configuration", config.file.empty() ? "the built-in one: synthetic wind" : config.file + ": no errors"));
   }
   return findings;
 }
@@ -184,7 +185,7 @@ std::vector<Finding> judge(const ConfigFacts& config) {
 std::vector<Finding> judge(const DisplayFacts& display) {
   std::vector<Finding> findings;
   if (display.graphics.empty()) {
-    findings.push_back(warning("graphics", "the kernel has no graphics device (/dev/dri): the viewer draws by the CPU",
+    findings.push_back(warning("graphics", "the kernel has no graphics device (/dev/dri): the viewer draws on the CPU",
                                "lspci -k | grep -A 3 -i vga; sudo apt install firmware-misc-nonfree"));
   } else if (!display.graphics_trouble.empty()) {
     findings.push_back(warning("graphics",
@@ -194,13 +195,14 @@ std::vector<Finding> judge(const DisplayFacts& display) {
     findings.push_back(ok("graphics", fmt::format("{}", fmt::join(display.graphics, ", "))));
   }
   if (!display.viewer) {
-    findings.push_back(warning("display", "yuragi-viewer is not installed here: the wall needs it on its own machine",
+    findings.push_back(warning("display",
+                               "yuragi-viewer is not installed here: it is needed on the machine of the wall",
                                "sudo apt install ./yuragi_VERSION_amd64.deb"));
   } else if (!display.has_display) {
-    findings.push_back(warning("display", "no X server and no Wayland compositor runs: the viewer has nowhere to draw",
+    findings.push_back(warning("display", "no X server and no Wayland compositor runs: the viewer cannot draw",
                                "sudo systemctl enable --now yuragi-viewer@7"));
   } else {
-    findings.push_back(ok("display", "there is one"));
+    findings.push_back(ok("display", "an X server or a Wayland compositor runs"));
   }
   return findings;
 }
@@ -209,9 +211,9 @@ std::vector<Finding> judge(const VersionFacts& versions) {
   std::vector<Finding> findings = {ok("version", fmt::format("{}; {}; {}; {}", versions.program, versions.system,
                                                              versions.kernel, fmt::join(versions.libraries, ", ")))};
   if (versions.viewer && *versions.viewer != "yuragi-viewer " + versions.version) {
-    findings.push_back(warning(
-        "version", fmt::format("{} beside {}: they are of different versions", *versions.viewer, versions.program),
-        "install both from one package: sudo apt install ./yuragi_VERSION_amd64.deb"));
+    findings.push_back(warning("version",
+                               fmt::format("{} and {} are different versions", *versions.viewer, versions.program),
+                               "install both from one package: sudo apt install ./yuragi_VERSION_amd64.deb"));
   }
   if (!versions.daemon.empty() && versions.daemon != versions.program) {
     findings.push_back(warning("version",
@@ -240,10 +242,10 @@ std::vector<Finding> judge(const LimitFacts& limits) {
                                                 limits.needed_open_files)));
   }
   if (limits.available_memory_bytes && *limits.available_memory_bytes < kLittleMemory_bytes) {
-    findings.push_back(
-        warning("limits",
-                fmt::format("{:.0f} MB of memory are left", 1e-6 * static_cast<double>(*limits.available_memory_bytes)),
-                "ps -eo rss,comm --sort -rss | head"));
+    findings.push_back(warning(
+        "limits",
+        fmt::format("only {:.0f} MB of memory are free", 1e-6 * static_cast<double>(*limits.available_memory_bytes)),
+        "ps -eo rss,comm --sort -rss | head"));
   }
   return findings;
 }

@@ -46,7 +46,7 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-/// The first line of a file that begins with `key`, without it; empty where there is none.
+/// The first line of a file that begins with `key`, without it; empty if there is none.
 std::string line_of(const fs::path& file, const std::string& key) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
@@ -87,7 +87,7 @@ ClockFacts probe_clock() {
   ClockFacts facts{.now = std::chrono::system_clock::now()};
   timex state{};
   if (adjtimex(&state) >= 0) facts.is_synchronised = (state.status & STA_UNSYNC) == 0;
-  // Written by systemd-timesyncd, which also counts where the kernel does not tell (in a container).
+  // Written by systemd-timesyncd, which also counts if the kernel does not report it (in a container).
   std::error_code ignored;
   if (fs::exists("/run/systemd/timesync/synchronized", ignored)) facts.is_synchronised = true;
   return facts;

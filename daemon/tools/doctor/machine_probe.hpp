@@ -8,7 +8,8 @@
 
 namespace yuragi::daemon::tools::doctor {
 
-// Each looks at one thing of this machine, and changes nothing. What cannot be looked at is told as not known.
+// Each function inspects one thing of this machine, and changes nothing. What cannot be inspected is returned as
+// unknown.
 
 /// Bytes of a recording for each reading, its index included.
 inline constexpr double kBytesPerReading = 48.0;

@@ -33,7 +33,7 @@ std::optional<ProgramOutput> program_output(std::vector<std::string> command, Na
                                             std::size_t most_bytes) {
   const auto program = find_program(command.front());
   if (!program) return std::nullopt;
-  // The shell joins both outputs, and says the exit code last.
+  // The shell joins both outputs, and prints the exit code last.
   constexpr std::string_view kMark = "\nexit code ";
   std::vector<std::string> words = {"/bin/sh", "-c", "\"$@\" 2>&1; printf '\\nexit code %d' $?", "sh", *program};
   words.insert(words.end(), command.begin() + 1, command.end());

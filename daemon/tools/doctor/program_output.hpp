@@ -8,17 +8,17 @@
 
 namespace yuragi::daemon::tools::doctor {
 
-/// The path of a program beside this one, or in the system's own folders, or an absolute path; nothing where there is
+/// The path of a program beside this one, or in the system's own folders, or an absolute path; nullopt if there is
 /// none.
 std::optional<std::string> find_program(const std::string& name);
 
 struct ProgramOutput {
   std::string text;    ///< standard output and error
-  int exit_code = -1;  ///< -1: it was ended because it took too long or said too much
+  int exit_code = -1;  ///< -1: it was ended because it took too long or printed too much
 };
 
 /// Runs a program of the system, found in the system's own folders or beside this program, without a shell's
-/// expansion of its arguments, and returns what it says, at most `most_bytes` of it; nothing where there is no such
+/// expansion of its arguments, and returns its output, at most `most_bytes` of it; nullopt if there is no such
 /// program. Waits for `timeout` at most.
 std::optional<ProgramOutput> program_output(std::vector<std::string> command, Nanoseconds timeout,
                                             std::size_t most_bytes = 4'000'000);

@@ -375,7 +375,7 @@ std::vector<std::string> next_start_warnings(const settings::Config& running, co
   }
   std::vector<std::string> warnings;
   for (const Finding& finding : rehearse_configuration(rehearsal))
-    warnings.push_back(fmt::format("at the next start: {}; mend it: {}", finding.text, finding.remedy));
+    warnings.push_back(fmt::format("at the next start: {}; fix: {}", finding.text, finding.remedy));
   return warnings;
 }
 

@@ -39,7 +39,7 @@ void look_at(PathFacts& path);
 std::vector<Finding> rehearse_configuration(const Rehearsal& rehearsal);
 
 /// What a daemon that runs with one configuration and reads another one would meet with it at its next start: as its
-/// unit if that is installed and names this file, else as this process. Texts, each with what mends it.
+/// unit if that is installed and names this file, else as this process. Texts, each with how to fix it.
 std::vector<std::string> next_start_warnings(const settings::Config& running, const settings::Config& next,
                                              const std::string& config_file);
 

@@ -19,7 +19,7 @@
 namespace yuragi::daemon::tools::doctor {
 namespace {
 
-/// Empty where the driver has no such key, or it is not given.
+/// Empty if the driver has no such key, or it is not given.
 std::string text_or_empty(const ParameterValues& values, std::string_view name) {
   const auto found = values.all().find(name);
   if (found == values.all().end()) return {};
@@ -32,7 +32,7 @@ std::string in_small_letters(std::string text) {
   return text;
 }
 
-/// What the keys that choose one of several equal devices say; empty: any.
+/// The values of the keys that choose one of several equal devices; empty: any.
 std::string chosen_text(const settings::SensorConfig& sensor) {
   std::string text;
   for (const char* const key : {"station", "device", "path", "serial", "port", "host_api"}) {

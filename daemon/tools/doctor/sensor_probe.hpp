@@ -13,12 +13,12 @@
 
 namespace yuragi::daemon::tools::doctor {
 
-/// The devices that a sensor's configuration names, as nobody has looked at them yet: two for a vane on a line of its
+/// The devices that a sensor's configuration names, not yet inspected: two for a vane on a line of its
 /// own. Pure.
 std::vector<DeviceFacts> named_devices(const settings::SensorConfig& sensor);
 
-/// Could `found`, which a driver has found, be the device that this sensor's configuration chooses? Only keys that both
-/// give are compared; a sound card is chosen by a part of its name, in any case. Pure.
+/// Returns true if `found`, which a driver has found, can be the device that this sensor's configuration chooses. Only
+/// keys that both give are compared; a sound card is chosen by a part of its name, in any case. Pure.
 bool is_chosen(const settings::SensorConfig& sensor, const sensors::DeviceFinding& found);
 
 /// The groups that open the devices of a configuration: dialout, plugdev, audio. Pure.

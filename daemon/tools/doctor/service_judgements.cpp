@@ -27,7 +27,7 @@ bool is_in_any(const std::string& path, const auto& folders) {
   return std::ranges::any_of(folders, [&](std::string_view folder) { return is_in(path, folder); });
 }
 
-/// May the unit's user do that with a node, by its mode?
+/// Returns true if the unit's user may do that with a node, by its mode.
 bool may(const ServiceUnit& unit, const Node& node, std::uint32_t rights) {
   if (unit.user_id == 0U || node.has_acl) return true;
   // systemd gives it to the user when the service starts.
@@ -81,7 +81,7 @@ std::string move_away(const PathFacts& path, const ServiceUnit& unit) {
   return fmt::format("sudo cp {} {}/, and write that path into the configuration", path.node.path, place);
 }
 
-/// Nothing if the service sees the path.
+/// Nullopt if the service sees the path.
 std::optional<Finding> hidden(const PathFacts& path, const ServiceUnit& unit) {
   constexpr std::array<std::string_view, 3> kHomes = {"/home", "/root", "/run/user"};
   constexpr std::array<std::string_view, 2> kTmps = {"/tmp", "/var/tmp"};
@@ -91,11 +91,11 @@ std::optional<Finding> hidden(const PathFacts& path, const ServiceUnit& unit) {
   };
   const std::string named = fmt::format("{}: {}: ", path.what, path.node.path);
   if (unit.hides_home && is_hidden(kHomes)) {
-    return service(Verdict::kError, named + unit.name + " sees /home and /root as empty (ProtectHome=)",
+    return service(Verdict::kError, named + unit.name + " cannot see /home and /root (ProtectHome=)",
                    move_away(path, unit));
   }
   if (unit.has_own_tmp && is_hidden(kTmps)) {
-    return service(Verdict::kError, named + unit.name + " has a /tmp of its own (PrivateTmp=)", move_away(path, unit));
+    return service(Verdict::kError, named + unit.name + " has its own /tmp (PrivateTmp=)", move_away(path, unit));
   }
   return std::nullopt;
 }
@@ -104,7 +104,7 @@ std::string remedy_for_missing(const PathFacts& path, const ServiceUnit& unit) {
   switch (path.use) {
     case PathUse::kReadSecret:
       return fmt::format(
-          "make it: `yuragi token --config FILE --new` for a token; then sudo chown root:{0} {1}; "
+          "create it (a token: `yuragi token --config FILE --new`); then sudo chown root:{0} {1}; "
           "sudo chmod 640 {1}",
           group_of(unit), path.node.path);
     case PathUse::kWriteFolder:
@@ -143,7 +143,7 @@ std::string remedy_for_rights(const PathFacts& path, const ServiceUnit& unit) {
                      path.use == PathUse::kList ? "rx" : "r", node.path);
 }
 
-/// Nothing if the service may write there, as far as its unit and the disk decide.
+/// Nullopt if the service may write there, as far as its unit and the disk decide.
 std::optional<Finding> write_protected(const PathFacts& path, const ServiceUnit& unit) {
   const Node& node = path.node;
   const std::string named = fmt::format("{}: {}: ", path.what, node.path);
@@ -194,7 +194,7 @@ std::vector<Finding> judge(const PathFacts& path, const ServiceUnit& unit) {
   const std::string named = fmt::format("{}: {}: ", path.what, node.path);
   if (auto finding = hidden(path, unit)) return {*finding};
   if (node.is_unseen) {
-    return {service(Verdict::kWarning, named + "only root may look at it: its rights are not judged",
+    return {service(Verdict::kWarning, named + "only root may look at it: its permissions are not checked",
                     "the same command with sudo")};
   }
   const bool is_made = std::ranges::find(unit.folders, node.path) != unit.folders.end();
@@ -203,7 +203,7 @@ std::vector<Finding> judge(const PathFacts& path, const ServiceUnit& unit) {
     const bool is_device = path.use == PathUse::kDevice;
     std::vector<Finding> findings = {
         service(is_device ? Verdict::kWarning : Verdict::kError,
-                named + (is_device ? "is not plugged in: its rights are not judged" : "is missing"),
+                named + (is_device ? "is not plugged in: its permissions are not checked" : "is missing"),
                 remedy_for_missing(path, unit))};
     if (auto finding = is_written(path.use) ? write_protected(path, unit) : std::nullopt) findings.push_back(*finding);
     return findings;
@@ -230,8 +230,8 @@ std::vector<Finding> judge(const ListenFacts& listen, const ServiceUnit& unit) {
       return {service(
           Verdict::kError,
           fmt::format("{}{} may not listen on ports below {}", named, who(unit), listen.first_unprivileged_port),
-          unit.name.empty() ? fmt::format("write a port from {} on", listen.first_unprivileged_port)
-                            : fmt::format("write a port from {} on; or {}AmbientCapabilities="
+          unit.name.empty() ? fmt::format("choose port {} or a higher one", listen.first_unprivileged_port)
+                            : fmt::format("choose port {} or a higher one; or {}AmbientCapabilities="
                                           "CAP_NET_BIND_SERVICE and CapabilityBoundingSet="
                                           "CAP_NET_BIND_SERVICE",
                                           listen.first_unprivileged_port, edit(unit)))};
@@ -241,7 +241,7 @@ std::vector<Finding> judge(const ListenFacts& listen, const ServiceUnit& unit) {
   // The running service gives it up before it is started again.
   const bool is_the_service = !unit.name.empty() && listen.listener && listen.listener == unit.user_id;
   if (listen.trouble.empty() || is_the_service) return {};
-  return {service(Verdict::kError, named + "cannot be listened on: " + listen.trouble,
+  return {service(Verdict::kError, named + "cannot listen here: " + listen.trouble,
                   listen.listener ? fmt::format("sudo ss -lntup 'sport = :{}'", listen.port)
                                   : std::string("ip address; write an address of this machine"))};
 }
@@ -262,7 +262,7 @@ std::vector<Finding> judge(const ProgramFacts& program, const ServiceUnit& unit)
 std::vector<Finding> judge(const MonitorFacts& monitor) {
   const std::string named = fmt::format("[[output]] {}: monitor {}", monitor.output, monitor.monitor);
   if (!monitor.present) {
-    return {service(Verdict::kOk, named + ": not looked for, because no display can be asked here", {})};
+    return {service(Verdict::kOk, named + ": not checked, because no display can be reached from here", {})};
   }
   const bool is_number = monitor.monitor.find_first_not_of("0123456789") == std::string::npos;
   const bool is_there = is_number ? monitor.monitor.size() < 4 &&
@@ -270,7 +270,7 @@ std::vector<Finding> judge(const MonitorFacts& monitor) {
                                   : std::ranges::find(*monitor.present, monitor.monitor) != monitor.present->end();
   if (is_there) return {};
   return {service(Verdict::kError,
-                  fmt::format("{} is not there; there {}: {}", named, monitor.present->size() == 1 ? "is" : "are",
+                  fmt::format("{} is not connected; there {}: {}", named, monitor.present->size() == 1 ? "is" : "are",
                               monitor.present->empty() ? "none" : fmt::format("{}", fmt::join(*monitor.present, ", "))),
                   "connect it and switch it on; yuragi-viewer --list-monitors shows the names")};
 }

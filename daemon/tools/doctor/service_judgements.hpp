@@ -8,8 +8,8 @@
 
 namespace yuragi::daemon::tools::doctor {
 
-// What the program of a unit will meet, whoever asks. Each returns findings for what is wrong, and none otherwise.
-// Pure.
+// What the program of a unit will meet, independent of the current user. Each returns findings for what is wrong, and
+// none otherwise. Pure.
 
 /// The unit itself: its user and its groups.
 std::vector<Finding> judge(const ServiceUnit& unit);

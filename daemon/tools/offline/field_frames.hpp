@@ -30,7 +30,7 @@ void make_spectral_frames(wind::field::SpectralWindField& field, const wind::fie
                           const FieldFrames& frames, const UseField& use);
 
 /// The frames of the live wind over the ground, as the daemon with this configuration would have estimated it while the
-/// recording was made: the estimator takes its readings one by one from the beginning on. Fails where the recording
+/// recording was made: the estimator takes its readings one by one from the beginning on. Fails if the recording
 /// cannot be read, or ends before the last frame.
 Result<void, Failure> make_recorded_frames(const std::filesystem::path& recording,
                                            const drivers::windlog::PlaybackOptions& playback,

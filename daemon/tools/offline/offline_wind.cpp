@@ -6,17 +6,17 @@
 namespace yuragi::daemon::tools::offline {
 namespace {
 
-/// The readings for the estimator: each at its log time, without those in the gaps, and averaged where a slower sensor
+/// The readings for the estimator: each at its log time, without those in the gaps, and averaged if a slower sensor
 /// is simulated.
 class PlayedReadings {
  public:
   PlayedReadings(drivers::windlog::WindlogPlayback& playback, const OfflineWindOptions& options)
       : playback_(playback), options_(options) {}
 
-  /// Nothing at the end, or where the recording cannot be read.
+  /// Nullopt at the end, or if the recording cannot be read.
   std::optional<wind::WindReading> next() { return options_.sensor_interval_s ? next_mean() : next_single(); }
 
-  /// Why it cannot be read; nothing if it can.
+  /// Why it cannot be read; nullopt if it can.
   const std::optional<Failure>& failure() const { return failure_; }
 
  private:

@@ -40,7 +40,7 @@ struct OfflineWindResult {
 
 /// Runs an estimator over recordings, as fast as possible: source i takes each reading of `playbacks[i]` at its own log
 /// time, and `use` is called with the state of each tick, from log time 0 to the last reading or `until_s`. The options
-/// of the sensor apply to each source. Fails where a recording cannot be read.
+/// of the sensor apply to each source. Fails if a recording cannot be read.
 Result<OfflineWindResult, Failure> run_offline(std::span<drivers::windlog::WindlogPlayback> playbacks,
                                                wind::blend::BlendedEstimator& estimator,
                                                const OfflineWindOptions& options,

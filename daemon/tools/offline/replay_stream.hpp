@@ -14,9 +14,9 @@ namespace yuragi::daemon::tools::offline {
 
 /// A replay in lock-step as the stream that a daemon sends (pose.fbs): a Hello and the Scenes, then a Frame for each
 /// tick, none left out, with the recording's clock as its UTC. The light and the cameras come as Sensors without any
-/// sensor, at first and when another camera is on. A ControlReply of one player says at first how much is left.
+/// sensor, at first and when another camera is on. A ControlReply of one player first gives the remaining length.
 ///
-/// So whoever reads gets the same bytes every time, as fast as he takes them. Thread-safe: no.
+/// So a reader gets the same bytes every time, as fast as it takes them. Thread-safe: no.
 class ReplayStream {
  public:
   /// Takes the bytes of whole messages; may wait. What it throws ends the replay.
@@ -25,7 +25,7 @@ class ReplayStream {
   /// `config`: what is replayed.
   ReplayStream(const settings::Config& config, Write write);
 
-  /// Throws ConfigError where the scenes are larger than a client takes.
+  /// Throws ConfigError if the scenes are larger than a client takes.
   void write(const ReplayTick& tick);
 
  private:

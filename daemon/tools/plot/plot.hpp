@@ -62,7 +62,7 @@ inline constexpr int kTimeAxisRight_px = 24;
 
 enum class PlotBackground : std::uint8_t { kWhite, kNone };
 
-/// Draws the panels below one another into `file` (.png or .svg), which is replaced, with gnuplot. Fails where the name
+/// Draws the panels below one another into `file` (.png or .svg), which is replaced, with gnuplot. Fails if the name
 /// has another extension, the file cannot be written, or gnuplot is not installed.
 Result<void, Failure> draw_plot(const std::string& file, std::span<const PlotPanel> panels, int width_px = 1000,
                                 PlotBackground background = PlotBackground::kWhite);

@@ -25,7 +25,7 @@ std::string map_script(const std::string& file, bool is_svg, const PlotMap& map)
                  "set cblabel {} noenhanced\nset palette defined (0 '#0b2c5f', 1 '#2f7f8f', 2 '#9fce8f', 3 '#fdf6c0')\n"
                  "set tics out nomirror\nset format '%g'\nset size ratio -1\n",
                  plot_text(map.value_label));
-  // To the edges of the outermost samples, even where arrows reach further.
+  // To the edges of the outermost samples, even if arrows reach further.
   const std::size_t rows = map.columns > 0 ? map.values.size() / map.columns : 0;
   const auto edges = [](double first, double step, std::size_t count) {
     const double from = first - 0.5 * step;

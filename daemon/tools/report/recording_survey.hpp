@@ -24,12 +24,12 @@ inline constexpr double kBridgedIntervals = 3.0;
 struct SensorSurvey {
   std::string name;
   std::string driver;
-  double unchanged_for_s = 0.0;  ///< it spoke on change only: a silence of up to so long is none; 0: it did not
+  double unchanged_for_s = 0.0;  ///< it sent only changes: a silence of up to this is not a gap; 0: it did not
   std::uint64_t readings = 0;
   std::uint64_t directed = 0;     ///< with a direction
   std::uint64_t gusts = 0;        ///< with a gust of the sensor's own
   double interval_s = 0.0;        ///< the median of the first 100 000; 0 for fewer than two readings
-  double step_s = 0.0;            ///< the mean interval within runs; 0 where there is no run
+  double step_s = 0.0;            ///< the mean interval within runs; 0 if there is no run
   std::uint64_t longest_run = 0;  ///< samples of `step_s` in the longest run
 };
 

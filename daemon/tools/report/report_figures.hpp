@@ -14,7 +14,7 @@ namespace yuragi::daemon::tools::report {
 inline constexpr std::array<std::string_view, kRecordedStates> kRecordedStateColors = {"#3fa66b", "#9a9a9a", "#e0a100",
                                                                                        "#d9662b", "#3d7edb", "#c2453d"};
 
-/// The figures of one sensor, each an SVG element for a page; empty where there is nothing to draw.
+/// The figures of one sensor, each an SVG element for a page; empty if there is nothing to draw.
 struct SensorFigures {
   std::string series;  ///< speed, gust, direction and state over time
   std::string rose;
@@ -24,7 +24,7 @@ struct SensorFigures {
 };
 
 /// Draws them with gnuplot, except the rose. `scratch`: an unused file name in a writable folder.
-/// Fails where gnuplot is not installed or cannot draw. Realtime-safe: no.
+/// Fails if gnuplot is not installed or cannot draw. Realtime-safe: no.
 Result<SensorFigures, Failure> draw_figures(const RecordingNumbers& recording, const SensorNumbers& sensor,
                                             const std::filesystem::path& scratch);
 

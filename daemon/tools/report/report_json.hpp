@@ -6,7 +6,7 @@
 
 namespace yuragi::daemon::tools::report {
 
-/// The report's numbers for machines: JSON, with the unit in each key, null where something is not known, times in
+/// The report's numbers for machines: JSON, with the unit in each key, null if something is not known, times in
 /// seconds of log time and in UTC (ISO 8601). `source`: the recording's name. Invalid UTF-8 in names is replaced.
 std::string report_json(const RecordingNumbers& recording, const std::string& source);
 

@@ -11,9 +11,9 @@
 #include "engine/base/compass.hpp"
 #include "engine/base/time.hpp"
 
-// All that a report says of a recording, as numbers: plain values, without drawing or text. Times `..._s` are log time
-// (windlog_reader.hpp) since the recording's first reading. Speeds are as recorded, before calibration. All statistics
-// but counts are of the readings that ReadingJudge believes.
+// The content of a report about a recording, as numbers: plain values, without drawing or text. Times `..._s` are log
+// time (windlog_reader.hpp) since the recording's first reading. Speeds are as recorded, before calibration. All
+// statistics but counts are of the readings that ReadingJudge believes.
 
 namespace yuragi::daemon::tools::report {
 
@@ -95,7 +95,7 @@ struct SpeedDistribution {
   double class_m_s = 0.5;     ///< width of a class; the first begins at 0
   std::vector<double> share;  ///< up to the last class that is not empty
   /// Weibull's shape k and scale c by the method of moments, k = (sd / mean)^-1.086 (Justus, Hargraves, Mikhail and
-  /// Graber 1978, Methods for estimating wind speed frequency distributions). Nothing where the wind did not vary.
+  /// Graber 1978, Methods for estimating wind speed frequency distributions). Nullopt if the wind did not vary.
   std::optional<double> weibull_shape;
   std::optional<double> weibull_scale_m_s;
   double p10_m_s = 0.0, p50_m_s = 0.0, p90_m_s = 0.0, p99_m_s = 0.0;  ///< to within 0.05 m/s
@@ -121,7 +121,7 @@ struct VonKarmanFit {
   double speed_m_s = 0.0;     ///< U: root mean square of the segments' mean speeds
   double intensity = 0.0;     ///< TI = sigma / U
   double time_scale_s = 0.0;  ///< T = L / U
-  /// L. Nothing where the octaves do not contain the bend of the spectrum, so that L is not determined.
+  /// L. Nullopt if the octaves do not contain the bend of the spectrum, so that L is not determined.
   std::optional<double> length_m;
   double rms_db = 0.0;  ///< residual of the octaves
   double from_hz = 0.0, to_hz = 0.0;
@@ -136,7 +136,7 @@ struct PowerLawFit {
   double from_hz = 0.0, to_hz = 0.0;
 };
 
-/// The spectrum of the wind along its mean direction, or of the speed where a reading has no direction. Welch's method:
+/// The spectrum of the wind along its mean direction, or of the speed if a reading has no direction. Welch's method:
 /// Hann windows overlapping by half, each turned into its own mean wind and detrended (Welch 1967, The use of fast
 /// Fourier transform for the estimation of power spectra). One-sided; its integral is the variance.
 struct SpectrumNumbers {
@@ -159,7 +159,7 @@ struct SpectrumNumbers {
 struct BlockNumbers {
   std::uint64_t blocks = 0;                    ///< whole ones in a wind of at least 1 m/s
   std::optional<double> turbulence_intensity;  ///< mean of sd / mean
-  std::optional<double> gust_factor;           ///< mean of highest 3 s mean / mean; where the interval is at most 1.5 s
+  std::optional<double> gust_factor;           ///< mean of highest 3 s mean / mean; if the interval is at most 1.5 s
 };
 
 /// The SiteSpectrum that the daemon would fit to a fast sensor.
@@ -180,11 +180,11 @@ struct SensorNumbers {
   double first_s = 0.0, last_s = 0.0;
   UtcTime first{}, last{};
   double interval_s = 0.0;       ///< the median; 0 for fewer than two readings
-  double unchanged_for_s = 0.0;  ///< it spoke on change only: a silence of up to so long is none; 0: it did not
+  double unchanged_for_s = 0.0;  ///< it sent only changes: a silence of up to this is not a gap; 0: it did not
   double mean_m_s = 0.0, deviation_m_s = 0.0, min_m_s = 0.0, max_m_s = 0.0;
   double max_at_s = 0.0;
   std::optional<double> reported_gust_m_s;  ///< the strongest gust reported by the sensor itself
-  std::optional<double> gust_3s_m_s;        ///< the highest mean over 3 s, where the interval is at most 1.5 s
+  std::optional<double> gust_3s_m_s;        ///< the highest mean over 3 s, if the interval is at most 1.5 s
   std::optional<double> direction_deg;      ///< of the mean vector
   std::optional<double> steadiness;         ///< length of the mean vector over the mean speed, 0 to 1
   std::optional<double> integral_time_s;    ///< of the speed: its autocorrelation, integrated to its first zero
@@ -197,11 +197,11 @@ struct SensorNumbers {
   std::vector<DirectionPoint> directions;
   WindRose rose;
   SpeedDistribution distribution;
-  std::optional<std::array<HourOfDay, 24>> diurnal;  ///< where there is more than a day
+  std::optional<std::array<HourOfDay, 24>> diurnal;  ///< if there is more than a day
   BlockNumbers blocks;
   std::optional<SpectrumNumbers> spectrum;
   std::string why_no_spectrum;    ///< for a person
-  double assumed_length_m = 0.0;  ///< integral length of the gusts where the spectrum does not determine it
+  double assumed_length_m = 0.0;  ///< integral length of the gusts if the spectrum does not determine it
   std::optional<SiteNumbers> site;
 };
 

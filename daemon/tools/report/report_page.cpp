@@ -39,7 +39,7 @@ void add_warnings(PageWriter& page, const RecordingNumbers& recording) {
   }
 }
 
-/// UTC, and local time where it differs.
+/// UTC, and local time if it differs.
 std::string both_times(UtcTime moment) {
   if (local_offset(moment) == Nanoseconds{0}) return utc_text(moment) + " (local time is the same)";
   return fmt::format("{}<br>{}", utc_text(moment), local_text(moment));
@@ -88,7 +88,7 @@ std::string report_page(const RecordingNumbers& recording, std::span<const Senso
       "<body>\n<h1>Wind recording {}</h1>\n",
       page_text(source), kReportStyle, page_text(source));
   if (recording.readings == 0) {
-    page.add("<p class=\"lead\">This recording, or the part of it that was asked for, holds no readings.</p>\n");
+    page.add("<p class=\"lead\">This recording, or the selected part of it, has no readings.</p>\n");
     add_warnings(page, recording);
   } else {
     for (const SensorNumbers& sensor : recording.sensors) {

@@ -4,7 +4,7 @@
 
 namespace yuragi::daemon::tools::report {
 
-/// The style sheet: dark where the reader's system is, light in print.
+/// The style sheet: dark if the reader's system is, light in print.
 inline constexpr std::string_view kReportStyle = R"css(
 :root { color-scheme: light dark; --ink: #1c2733; --quiet: #5b6875; --paper: #ffffff; --card: #f4f7fa; --line: #d5dde5;
         --accent: #2f7fc1; --warn: #fff3d6; }

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMostBytes = 200;
 constexpr std::string_view kReplacement = "\xef\xbf\xbd";
 
-/// How many bytes the UTF-8 sequence at the beginning has; 0 where there is none that is valid.
+/// How many bytes the UTF-8 sequence at the beginning has; 0 if there is none that is valid.
 std::size_t sequence_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const unsigned first = byte(0);

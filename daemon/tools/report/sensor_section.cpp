@@ -296,9 +296,9 @@ void add_states(PageWriter& page, const RecordingNumbers& recording, const Senso
       recording.stale_intervals, sensor.believed, sensor.readings, sensor.spikes);
   if (sensor.unchanged_for_s > 0.0) {
     page.add(
-        "<p class=\"quiet\">This one was set to speak on change only (on_change): a silence of up to {} says that the "
+        "<p class=\"quiet\">This sensor sends only changes (on_change): a silence of up to {} means that the wind "
         "wind "
-        "is unchanged, and is no gap.</p>\n",
+        "is unchanged, and is not a gap.</p>\n",
         settings::duration_text(sensor.unchanged_for_s));
   }
   const auto is_gap = [](const StateEvent& event) { return event.state == RecordedState::kStale; };

@@ -19,7 +19,7 @@ constexpr double kDay_s = 86400.0;
 constexpr std::uint64_t kLeastSegment = 64;
 constexpr std::uint64_t kMostSegment = 1 << 15;
 constexpr double kLongestSegment_s = 4100.0;
-/// The autocorrelation is that of half an hour, where runs are long enough.
+/// The autocorrelation is that of half an hour, if runs are long enough.
 constexpr double kCorrelationBlock_s = 1800.0;
 constexpr double kMostCorrelationSamples = 1 << 17;
 /// With a smaller part of readings with a direction only the speed is analysed.

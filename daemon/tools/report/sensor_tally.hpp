@@ -38,7 +38,7 @@ class SensorTally {
   /// Takes the sensor's next reading, in the order of log time.
   void add(Nanoseconds log_time, const wind::WindReading& reading);
 
-  /// The numbers; to be called once, after the last reading.
+  /// The numbers; call it once, after the last reading.
   SensorNumbers finish();
 
  private:

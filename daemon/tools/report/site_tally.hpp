@@ -13,10 +13,10 @@ class SiteTally {
   /// `prior`: of the slow source that is to be corrected. `interval_s`: the sensor's.
   SiteTally(const wind::turbulence::TurbulencePrior& prior, double interval_s);
 
-  /// The next believed reading; `wind`: with the last known direction; empty where there is none yet.
+  /// The next believed reading; `wind`: with the last known direction; empty if there is none yet.
   void add(double time_s, double speed_m_s, const std::optional<wind::WindVector>& wind);
 
-  /// Nothing where the sensor is too slow, or was never live for long enough.
+  /// Nullopt if the sensor is too slow, or was never live for long enough.
   std::optional<SiteNumbers> numbers() const;
 
  private:

@@ -13,14 +13,14 @@ namespace yuragi::daemon::tools::report {
 /// A sample of an evenly spaced series.
 struct EvenSample {
   double speed_m_s = 0.0;
-  std::optional<wind::WindVector> wind;  ///< nothing: its direction is not known
+  std::optional<wind::WindVector> wind;  ///< nullopt: its direction is not known
 };
 
-/// Estimates a spectrum (SpectrumNumbers says how) from a series of any length, segment by segment, in bounded memory.
-/// Thread-safe: no.
+/// Estimates a spectrum (SpectrumNumbers describes how) from a series of any length, segment by segment, in bounded
+/// memory. Thread-safe: no.
 class WelchSpectrum {
  public:
-  /// `segment`: samples of a segment, a power of two. `is_of_speed`: of the speed, even where samples have a direction.
+  /// `segment`: samples of a segment, a power of two. `is_of_speed`: of the speed, even if samples have a direction.
   WelchSpectrum(std::size_t segment, double step_s, bool is_of_speed);
 
   /// The next sample of the series.
@@ -29,7 +29,7 @@ class WelchSpectrum {
   /// The series is interrupted: the next sample begins a new run.
   void interrupt() { samples_.clear(); }
 
-  /// The spectrum with its fits; nothing without a whole segment.
+  /// The spectrum with its fits; nullopt without a whole segment.
   std::optional<SpectrumNumbers> numbers() const;
 
  private:
@@ -54,8 +54,8 @@ class IntegralTime {
   void add(double speed_m_s);
   void interrupt() { samples_.clear(); }
 
-  /// The autocorrelation about the blocks' means, summed by the trapezium rule up to its first zero; nothing without a
-  /// whole block, or where the wind did not vary.
+  /// The autocorrelation about the blocks' means, summed by the trapezium rule up to its first zero; nullopt without a
+  /// whole block, or if the wind did not vary.
   std::optional<double> seconds() const;
 
  private:

@@ -15,7 +15,7 @@
 namespace yuragi::daemon::tools::sensors {
 namespace {
 
-/// ", 1.52 ms a tick, 82 % of the animation's work"; empty where it is not known.
+/// ", 1.52 ms a tick, 82 % of the animation's work"; empty if it is not known.
 std::string cost_text(const wire::SceneState& scene, const std::optional<wire::AnimationStatus>& animation) {
   if (!animation || !scene.shown) return {};
   const auto cost = std::ranges::find(animation->scenes, scene.name, &wire::SceneCost::scene);

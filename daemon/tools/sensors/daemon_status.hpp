@@ -10,7 +10,7 @@
 
 namespace yuragi::daemon::tools::sensors {
 
-/// What a running daemon tells of itself.
+/// The state of a running daemon.
 struct DaemonStatus {
   std::string address;   ///< where it answered
   std::string software;  ///< "yuragi 0.2.0"

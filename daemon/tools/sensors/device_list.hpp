@@ -22,8 +22,8 @@ std::vector<DeviceFinding> find_devices(std::span<const drivers::sensor::DriverD
 std::vector<DeviceFinding> find_devices_in_network(std::span<const drivers::sensor::DriverDescription* const> drivers,
                                                    const drivers::sensor::NetworkSearch& search);
 
-/// The findings, for a person: each device with the TOML to paste into a configuration, and, where it cannot be opened,
-/// why and what to do. Says so where nothing was found. `drivers` are those that were searched with.
+/// The findings, for a person: each device with the TOML to paste into a configuration, and, if it cannot be opened,
+/// why and what to do; or that nothing was found. `drivers` are those that were searched with.
 std::string device_list(std::span<const DeviceFinding> findings,
                         std::span<const drivers::sensor::DriverDescription* const> drivers);
 

@@ -13,7 +13,7 @@
 namespace yuragi::daemon::tools::sensors {
 namespace {
 
-/// Are recordings the only live sensors?
+/// Returns true if recordings are the only live sensors.
 bool is_replayed(const std::vector<wire::SensorStatus>& sensors) {
   const auto speaks = [](const wire::SensorStatus& sensor) { return is_believed(sensor.state); };
   return std::ranges::any_of(sensors, speaks) &&
@@ -32,7 +32,7 @@ std::string_view wind_source(const wire::Sensors& sensors) {
   return "?";
 }
 
-/// In capitals for trouble, and where it is not the present wind.
+/// In capitals for trouble, and if it is not the present wind.
 std::string state_text(wind::judging::SensorState state) {
   std::string text(name_of(state));
   const bool is_quiet = state == wind::judging::SensorState::kLive || state == wind::judging::SensorState::kSimulated ||
@@ -54,7 +54,7 @@ std::string short_number(double value) {
   return fmt::format("{:.{}f}", value, value < 9.95 ? 1 : 0);
 }
 
-/// The place of the wind on top of the table, and when its gusts reach the middle of the scenes; empty where that is 0.
+/// The place of the wind on top of the table, and when its gusts reach the middle of the scenes; empty if that is 0.
 std::string place_of_wind(const wind::WindState& wind) {
   if (!wind.is_place_configured && wind.upwind_m == 0.0) return {};
   std::string text = wind.is_place_configured ? "at the sensors, " : "at the windward edge, ";
@@ -68,7 +68,7 @@ std::string place_of_wind(const wind::WindState& wind) {
   return text;
 }
 
-/// How far gusts are alike at the site; empty where that is not known.
+/// How far gusts are alike at the site; empty if that is not known.
 std::string reach_text(const wire::Sensors& sensors) {
   const auto one = [](const std::optional<double>& times, std::string_view where) {
     return times ? fmt::format("{:.2f} times as far {} the wind", *times, where) : std::string();
@@ -95,7 +95,7 @@ std::string service_text(const wire::Sensors& sensors) {
       sensors.tick_lateness ? "; ticks " + lateness_text(*sensors.tick_lateness) : "");
 }
 
-/// How the recording does; empty where nothing is recorded.
+/// How the recording does; empty if nothing is recorded.
 std::string recorder_text(const wire::Sensors& sensors) {
   if (!sensors.recorder) return {};
   const wire::RecorderStatus& recorder = *sensors.recorder;

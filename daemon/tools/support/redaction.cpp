@@ -14,7 +14,7 @@
 namespace yuragi::daemon::tools::support {
 namespace {
 
-/// A shorter one is taken out only where it stands alone: it would tear words apart.
+/// A shorter one is taken out only if it stands alone: it would tear words apart.
 constexpr std::size_t kShortSecret = 4;
 
 /// Beginnings of what names a secret, in small letters.
@@ -48,7 +48,7 @@ std::size_t end_of_value(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// Where the value begins that the word at `at` names; npos where it names none, or the place of one.
+/// Where the value begins that the word at `at` names; npos if it names none, or the place of one.
 std::size_t value_named_at(std::string_view text, std::size_t at) {
   std::size_t begin = at;
   while (begin > 0 && is_word(text[begin - 1])) --begin;

@@ -12,9 +12,9 @@ namespace yuragi::daemon::tools::support {
 /// names. What cannot be read is passed over. For Redaction and for nothing else.
 std::vector<std::string> known_secrets(const settings::Config& config);
 
-/// Takes secrets out of a text for strangers to read: each of those that are known, wherever it stands, and what looks
+/// Takes secrets out of a text for strangers to read: each of those that are known, in any place, and what looks
 /// like one: the value behind a word such as password, passphrase, token or psk and a = or :, and the user and password
-/// in a URL. Secret::kWithheld stands in their place. The name of a file or variable with a secret in it
+/// in a URL. Secret::kWithheld replaces them. The name of a file or variable with a secret in it
 /// (password_file, password_env) stays. Thread-safe: its const functions are.
 class Redaction {
  public:

@@ -70,28 +70,28 @@ std::string file_text(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The text of the configuration without its secrets. One that is no TOML is left out: where its secrets stand is not
+/// The text of the configuration without its secrets. One that is not TOML is left out: where its secrets stand is not
 /// known.
 std::string configuration_text(const fs::path& file) {
   try {
     const auto withheld = settings::withhold_in_configuration(settings::read_config_text(file));
-    return withheld ? withheld->text : "# Left out: it is no TOML, so that its secrets cannot be found.\n";
+    return withheld ? withheld->text : "# Left out: it is not TOML, so its secrets cannot be found.\n";
   } catch (const settings::ConfigError& error) {
     return fmt::format("# It cannot be read: {}\n", error.what());
   }
 }
 
 constexpr const char* kReadme =
-    "What whoever helps needs to know of a Yuragi installation, made by `yuragi support-bundle` at {}.\n"
-    "Passwords and the like are taken out: \"(secret)\" stands in their place. Read it before you send it.\n"
+    "What a helper needs to know of a Yuragi installation, made by `yuragi support-bundle` at {}.\n"
+    "Passwords and other secrets are replaced by \"(secret)\". Read it before you send it.\n"
     "\n"
     "configuration.toml       the configuration as it is written\n"
     "configuration-full.toml  the same with every default\n"
-    "doctor.txt, doctor.json  what is wrong, and what mends it\n"
+    "doctor.txt, doctor.json  what is wrong, and how to fix it\n"
     "status.txt, status.json  how the running daemon does\n"
     "journal-*.txt            the last lines of the log\n"
     "recording.txt            which sessions and how many readings the recording has\n"
-    "recording-last-hour.csv  its last readings, where they were asked for (--readings)\n"
+    "recording-last-hour.csv  its last readings, if they were requested (--readings)\n"
     "others                   the system: kernel, packages, disks, devices\n";
 
 void add_status(std::map<std::string, std::string>& files, const BundleRequest& request) {
@@ -165,16 +165,16 @@ Result<void, Failure> pack(const std::map<std::string, std::string>& files, cons
     std::ofstream out(fs::path(place) / folder / name, std::ios::binary);
     out << text;
     out.close();
-    if (!out) return failure("no room in " + place);
+    if (!out) return failure("no space left in " + place);
   }
   const int descriptor = open(archive.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kOwnerAndGroup);
   if (descriptor < 0) return failure(std::generic_category().message(errno));
-  fchmod(descriptor, kOwnerAndGroup);  // whatever the umask
+  fchmod(descriptor, kOwnerAndGroup);  // independent of the umask
   close(descriptor);
   const auto said = doctor::program_output({"tar", "--create", "--gzip", "--file", fs::absolute(archive), "--directory",
                                             place, "--owner=0", "--group=0", folder},
                                            kPackTimeout);
-  if (!said) return failure("there is no tar; sudo apt install tar");
+  if (!said) return failure("tar is not installed; sudo apt install tar");
   if (said->exit_code != 0) return failure(said->text);
   return {};
 }

@@ -29,8 +29,8 @@ struct BundleRequest {
 };
 
 /// The files of a bundle: texts by name. Every secret of the configuration is taken out of all of them (Redaction).
-/// Reads the configuration, the recording and what the system's programs say; a program that is not installed gives no
-/// file.
+/// Reads the configuration, the recording and the output of the system's programs; a program that is not installed
+/// gives no file.
 std::map<std::string, std::string> bundle_files(const BundleRequest& request);
 
 /// Packs texts as a folder into a new .tar.gz at `archive`, readable by its owner and group (0640), which must not be

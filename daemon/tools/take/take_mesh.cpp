@@ -25,7 +25,7 @@ float length_of(const Vector& v) {
 Vector moved(const Vector& from, float by, const Vector& along) {
   return {from[0] + by * along[0], from[1] + by * along[1], from[2] + by * along[2]};
 }
-/// Of length 1 and across `along`: `wish`, or where that is along it, any.
+/// Of length 1 and across `along`: `wish`, or if that is along it, any.
 Vector across(const Vector& along, const Vector& wish) {
   for (const Vector& candidate :
        {cross(along, wish), cross(along, {1.0F, 0.0F, 0.0F}), cross(along, {0.0F, 0.0F, 1.0F})}) {

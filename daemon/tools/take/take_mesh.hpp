@@ -18,7 +18,7 @@ struct TakeVertex {
 
 struct TakeJoint {
   std::optional<std::size_t> number =
-      {};                         ///< of the skeleton's joint (pose::Kinematics::joint()); nothing: stands still
+      {};                         ///< of the skeleton's joint (pose::Kinematics::joint()); nullopt: stands still
   std::array<float, 3> rest_m{};  ///< where it is while the vertices are at rest
 };
 
@@ -34,7 +34,7 @@ struct TakeMesh {
 /// Pure.
 TakeMesh take_mesh_of(const pose::Skeleton& skeleton, std::size_t every);
 
-/// About the smallest `every` with which the mesh has at most so many joints; nothing where there is none.
+/// About the smallest `every` with which the mesh has at most so many joints; nullopt if there is none.
 std::optional<std::size_t> every_within(const pose::Skeleton& skeleton, std::size_t most_joints);
 
 }  // namespace yuragi::daemon::tools::take

@@ -1,4 +1,4 @@
-// What changes something: carried out, paired for where that is needed, and told.
+// Changes something: sends the request, pairs the browser if needed, and shows the result.
 import { by_id, set_text } from "./element";
 import { Pairing } from "./pairing";
 import { ask, Refused } from "./request";
@@ -10,7 +10,7 @@ export class Change {
 
   constructor(private readonly pairing: Pairing) {}
 
-  /** Asks for it; undefined where it was not done, which the person has been told. */
+  /** Sends the request; undefined if it was not carried out, which the page then shows. */
   async make<T>(path: string, body: object): Promise<T | undefined> {
     try {
       return await ask<T>(path, body);

@@ -1,4 +1,4 @@
-// Elements of the page. What others wrote (names, reasons) only ever becomes text.
+// Elements of the page. Text from outside (names, reasons) only ever becomes text.
 
 type Child = Node | string;
 
@@ -28,7 +28,7 @@ export function by_id(id: string): HTMLElement {
   return found;
 }
 
-/** Sets a text where it differs, so that nothing is laid out or read out again for nothing. */
+/** Sets a text if it differs, to avoid needless layout and announcements. */
 export function set_text(node: Node, text: string): void {
   if (node.textContent !== text) node.textContent = text;
 }

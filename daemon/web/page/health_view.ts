@@ -1,4 +1,4 @@
-// How the daemon itself does.
+// The health of the daemon itself.
 import { element, set_text } from "./element";
 import { Animation, GustReach, Lateness, Recorder, Status } from "./status";
 import { bytes_text, milliseconds_text } from "./wording";

@@ -32,7 +32,7 @@ export class HistoryView {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
-  /** Without a recording there is nothing to ask for. */
+  /** Without a recording no history is requested. */
   show(is_recorded: boolean): void {
     if (is_recorded === this.is_recorded) return;
     this.is_recorded = is_recorded;

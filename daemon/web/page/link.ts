@@ -1,4 +1,4 @@
-// The connection to the daemon: its state over the WebSocket /ws where it has one, else asked for twice a second.
+// The connection to the daemon: its state over the WebSocket /ws if it has one, otherwise requested twice a second.
 import { ask, Refused } from "./request";
 import { Status } from "./status";
 
@@ -8,7 +8,7 @@ const SILENCE_MS = 2500; // of a WebSocket that speaks ten times a second
 
 export interface Listener {
   news(status: Status): void;
-  /** The daemon answers, but says nothing of its state. */
+  /** The daemon replies, but without its state. */
   refused(refusal: Refused): void;
   /** It does not answer. */
   lost(): void;
@@ -16,13 +16,13 @@ export interface Listener {
 
 const after = (time_ms: number) => new Promise((resolve) => setTimeout(resolve, time_ms));
 
-/** Does the daemon say that it has /ws? */
+/** Returns true if the daemon states that it has /ws. */
 async function has_web_socket(): Promise<boolean> {
   const description = await ask<{ paths: object }>("/api/v1/openapi.json");
   return "/ws" in description.paths;
 }
 
-/** Hears the WebSocket until it ends. */
+/** Receives from the WebSocket until it ends. */
 function hear(listener: Listener): Promise<void> {
   return new Promise((resolve) => {
     const socket = new WebSocket((location.protocol === "https:" ? "wss://" : "ws://") + location.host + "/ws");
@@ -46,7 +46,7 @@ function hear(listener: Listener): Promise<void> {
   });
 }
 
-/** Never ends. Each failure is told at once. */
+/** Never ends. Each failure is reported at once. */
 export async function listen(listener: Listener): Promise<never> {
   for (;;) {
     try {

@@ -1,4 +1,4 @@
-// The last lines of the daemon's log, while somebody looks at them.
+// The last lines of the daemon's log, while they are visible.
 import { element, set_text } from "./element";
 import { ask, Refused } from "./request";
 import { LogLine } from "./status";
@@ -27,8 +27,8 @@ export class LogView {
       this.say(lines.length > 0 ? "" : "Nothing was logged.");
       this.show(lines);
     } catch (error) {
-      if (error instanceof Refused) this.say(error.status === 401 ? "The log is for a browser that is paired." : error.message);
-      // Otherwise the link says what is wrong.
+      if (error instanceof Refused) this.say(error.status === 401 ? "Only a paired browser may read the log." : error.message);
+      // Otherwise the link shows what is wrong.
     }
   }
 

@@ -1,4 +1,4 @@
-// The page: what the daemon says goes into the views; a clock keeps ages true between its news.
+// The page: the daemon's state goes into the views; a clock keeps ages correct between two states.
 import { Change } from "./change";
 import { by_id, element, set_text } from "./element";
 import { HealthView } from "./health_view";
@@ -54,7 +54,7 @@ function show_verdict(): void {
   if (document.title !== `${title} – Yuragi`) document.title = `${title} – Yuragi`;
 }
 
-/** What was said before is true no longer. */
+/** The previous state is no longer valid. */
 function forget(what: Knowledge): void {
   if (knowledge.kind === "news") {
     wind.clear();
@@ -89,7 +89,7 @@ async function ask_for_lists(): Promise<void> {
     scenes.show(shown.scenes);
     players.show(playing.players);
   } catch {
-    // The link says what is wrong.
+    // The link shows what is wrong.
   }
 }
 

@@ -1,4 +1,4 @@
-// The dialog for the code that lets this browser in.
+// The dialog for the code that pairs this browser.
 import { by_id, set_text } from "./element";
 import { ask, Refused } from "./request";
 
@@ -17,7 +17,7 @@ export class Pairing {
     this.dialog.addEventListener("close", () => this.end(false));
   }
 
-  /** Opens it; true once this browser is paired, false where the person leaves it. */
+  /** Opens it; true once this browser is paired, false if the dialog is cancelled. */
   open(why = ""): Promise<boolean> {
     this.end(false);
     this.code.value = "";

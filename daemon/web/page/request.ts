@@ -2,7 +2,7 @@
 
 const PATIENCE_MS = 2500;
 
-/** A daemon that answered, but not with what was asked for. */
+/** The daemon replied, but refused the request. */
 export class Refused extends Error {
   constructor(
     readonly status: number,
@@ -12,7 +12,7 @@ export class Refused extends Error {
   }
 }
 
-/** The JSON of its answer. Throws Refused, or any other error where no answer came. */
+/** The JSON of its answer. Throws Refused, or any other error if no reply came. */
 export async function ask<T>(path: string, body?: object, patience_ms = PATIENCE_MS + (body ? PATIENCE_MS : 0)): Promise<T> {
   const abort = new AbortController();
   const patience = setTimeout(() => abort.abort(), patience_ms);
@@ -34,7 +34,7 @@ async function detail_of(answer: Response): Promise<string> {
     const problem = (await answer.clone().json()) as { detail?: unknown };
     if (typeof problem.detail === "string") return problem.detail;
   } catch {
-    // It is no JSON: a server in front of the daemon says so.
+    // Not JSON: it is from a server in front of the daemon.
   }
   return `${answer.status} ${answer.statusText}`.trim();
 }

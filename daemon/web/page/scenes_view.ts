@@ -17,7 +17,7 @@ export class ScenesView {
   private readonly all = element("fieldset");
   private readonly every = element("button", { type: "button", class: "every" });
   private scenes: Scene[] = [];
-  private is_busy = false; // a change is on its way: what the daemon said before it is old
+  private is_busy = false; // a change is on its way: earlier states of the daemon are outdated
 
   constructor(place: HTMLElement, private readonly change: Change) {
     const list = element("ul", { class: "rows" });

@@ -63,7 +63,7 @@ export function verdict_of(knowledge: Knowledge): Verdict {
     }
     case "refused": {
       const text = knowledge.needs_pairing ? "This browser may not see anything until it is paired" : `No news: ${knowledge.why}`;
-      return { light: "lost", text, announcement: knowledge.needs_pairing ? text : "No news of the daemon" };
+      return { light: "lost", text, announcement: knowledge.needs_pairing ? text : "No news from the daemon" };
     }
     case "news": {
       const sensor = leading_sensor(knowledge.status);

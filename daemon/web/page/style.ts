@@ -1,4 +1,4 @@
-// What the style sheet says, for canvases, which know none.
+// Values of the style sheet, for canvases, which have none.
 
 /** The value of a variable: "#67d3c8". */
 export function color(name: string): string {

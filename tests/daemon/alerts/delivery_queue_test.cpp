@@ -81,7 +81,8 @@ TEST(DeliveryQueue, TriesAgainAndLetsNoEndOvertakeItsBeginning) {
   queue.push(news_of("a"));
   queue.push(news_of("a", false));
   const auto lines = log.wait_for(4);
-  EXPECT_THAT(lines, ElementsAre("a: nobody is there; it is tried again", "a began", "a: was told at last", "a ended"));
+  EXPECT_THAT(lines,
+              ElementsAre("a: nobody is there; it is tried again", "a began", "a: was sent after all", "a ended"));
 }
 
 TEST(DeliveryQueue, TriesOnceWhereThatIsAsked) {
@@ -126,7 +127,7 @@ TEST(DeliveryQueue, HoldsOnlySoMany) {
   may_go_on.set_value();
   const auto lines = log.wait_for(7);
   EXPECT_EQ(lines[3], "first");
-  EXPECT_THAT(lines[5], HasSubstr("3 messages not told"));
+  EXPECT_THAT(lines[5], HasSubstr("3 messages not sent"));
   EXPECT_EQ(lines[6], "3");
 }
 

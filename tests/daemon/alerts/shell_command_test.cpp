@@ -64,7 +64,7 @@ TEST(ShellCommand, SaysHowItFailed) {
 }
 
 TEST(ShellCommand, IsKilledWhenItTakesTooLong) {
-  EXPECT_EQ(why_not("sleep 1000 & sleep 1000", 10ms), "was killed, as it had not ended after 0 s");
+  EXPECT_EQ(why_not("sleep 1000 & sleep 1000", 10ms), "was killed because it had not ended after 0 s");
 }
 
 /// Runs a command that holds a named pipe open for writing, as its background job does. True: nobody holds it any more.
@@ -88,7 +88,7 @@ TEST(ShellCommand, WhatItHasStartedEndsWithIt) {
 TEST(ShellCommand, GivesTheFirst64KiBOfItsOutput) {
   EXPECT_EQ(output_of("echo one; echo two >&2"), "one\ntwo\n");
   EXPECT_EQ(output_of("head -c 1000000 /dev/zero | tr '\\0' x"), std::string(64UL * 1024, 'x'));
-  EXPECT_EQ(why_not("yes", 100ms), "was killed, as it had not ended after 0 s");
+  EXPECT_EQ(why_not("yes", 100ms), "was killed because it had not ended after 0 s");
 }
 
 TEST(ShellCommand, InheritsNothing) {

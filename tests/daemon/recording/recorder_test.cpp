@@ -881,7 +881,7 @@ TEST(Recorder, BelievesAClockThatIsKnownToBeSynchronized) {
   recorder.record(7 * kDay + 1s, 40 * kDay);
   EXPECT_FALSE(recorder.status().clock_doubt);
   ASSERT_EQ(recorder.reports().size(), 2U);
-  EXPECT_EQ(recorder.reports()[1], "the clock is no longer doubted");
+  EXPECT_EQ(recorder.reports()[1], "the clock is trusted again");
 }
 
 TEST(Recorder, ADoubtedClockHoldsUpNoRuleOfSpace) {

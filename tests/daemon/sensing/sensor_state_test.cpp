@@ -67,7 +67,7 @@ TEST(SensorState, NothingExplainsTheSilenceOfADeviceThatHasGone) {
   evidence.report.is_overdue = true;
   evidence.report.age_s = 600.0;
   EXPECT_EQ(state_of(evidence), wind::judging::SensorState::kLive);
-  EXPECT_EQ(reason(evidence), "a reading every 1 s; none for 10 min, which says that nothing has changed");
+  EXPECT_EQ(reason(evidence), "a reading every 1 s; none for 10 min, which means that nothing has changed");
   evidence.link = wind::LinkState::kConnecting;
   EXPECT_EQ(state_of(evidence), wind::judging::SensorState::kDisconnected);
 }

@@ -11,7 +11,7 @@ TEST(FaultLog, TheFirstOfAKindIsLoggedAtOnce) {
   FaultLog log;
   const MonoTime now{1h};
   EXPECT_EQ(log.line_for("an HTTP request", "bad\x1b[2J", now),
-            "an HTTP request failed: bad?[2J; this is a fault of the program");
+            "an HTTP request failed: bad?[2J; this is a fault of the program, please report it");
   EXPECT_TRUE(log.line_for("a stream connection", "bad", now));
 }
 
@@ -27,7 +27,9 @@ TEST(FaultLog, FurtherOnesAreCountedAndLoggedOnceAMinute) {
     }
   }
   EXPECT_EQ(lines, 10);
-  EXPECT_EQ(last, "an HTTP request failed: bad (59 more since the last such line); this is a fault of the program");
+  EXPECT_EQ(last,
+            "an HTTP request failed: bad (59 more since the last such line); this is a fault of the program, please "
+            "report it");
 }
 
 TEST(FaultLog, FaultsAreCountedByKind_AndKindsAreBounded) {

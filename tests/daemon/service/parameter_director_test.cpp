@@ -248,7 +248,7 @@ TEST_F(ParameterTest, AsManyClientsAsLikeCannotMakeItKeepThemAll) {
   is_settling_ = true;
   for (std::size_t i = 0; i < Reload::kMostWaiting + 3; ++i) send("banner", {{"gain", "2"}});
   ASSERT_EQ(replies_.size(), 3U);
-  EXPECT_THAT(replies_[0].message, HasSubstr("too many ask at once"));
+  EXPECT_THAT(replies_[0].message, HasSubstr("too many requests at once"));
 }
 
 TEST_F(ParameterTest, AClientOfAnotherMachineSeesNoFolders) {

@@ -113,7 +113,7 @@ TEST(ConfigEdit, FindsTheSensorAmongOthersByNameOrDriver) {
             "[[sensor]]\ndriver = \"nmea\"\n[sensor.calibration]\nnorth_offset = 12.5\n"
             "[[sensor]]\ndriver = \"nmea\"\nname = \"roof\"\n");
   EXPECT_EQ(edited(two, north, "roof"), two + "[sensor.calibration]\nnorth_offset = 12.5\n");
-  EXPECT_THAT(edited(two, north, "mast"), HasSubstr("no [[sensor]] that is called \"mast\""));
+  EXPECT_THAT(edited(two, north, "mast"), HasSubstr("no [[sensor]] named \"mast\""));
   EXPECT_THAT(edited("", north, "synthetic"), HasSubstr("no [[sensor]]"));
 }
 

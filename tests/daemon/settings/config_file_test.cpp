@@ -74,7 +74,7 @@ TEST_F(ConfigFile, ASensorThatCouldNotBeOpenedBeforeStandsInNobodysWay) {
 
 TEST_F(ConfigFile, StaysWhereSomebodyHasChangedItMeanwhile) {
   write(wall_, "# somebody else's\n");
-  EXPECT_THAT(refusal(kOldWall, kNewWall), HasSubstr("has been changed meanwhile"));
+  EXPECT_THAT(refusal(kOldWall, kNewWall), HasSubstr("was changed by another program"));
 }
 
 TEST_F(ConfigFile, ThatIsNotThereIsTold) {

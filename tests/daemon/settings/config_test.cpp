@@ -152,7 +152,7 @@ TEST(Config, HasThePictureOfTheGround) {
   EXPECT_THAT([&] { load_config(file); },
               ThrowsMessage<ConfigError>(HasSubstr("wall.toml:2:16: look.ground_image: \"huge.png\" ")));
   EXPECT_THAT(mistakes_of("[look]\nground_image = \"mats.png\"\n[[scene]]\nkind = \"grass\"\n"),
-              HasSubstr("look.ground_image: is for a scene that is not there; add [[scene]] with kind = \"ground\""));
+              HasSubstr("look.ground_image: needs a scene that is missing; add [[scene]] with kind = \"ground\""));
 }
 
 TEST(Config, HasTheLookWithTheLineOfAMistake) {
@@ -191,15 +191,16 @@ TEST(Config, ACameraMayLookAtASceneThatIsThereByDefault) {
 }
 
 TEST(Config, TellsEachMistakeOfACameraWithItsPlace) {
-  EXPECT_EQ(mistakes_of("[camera]\nname = \"a\"\n"), "wall.toml:1:2: camera: is one table; write [[camera]] above it");
+  EXPECT_EQ(mistakes_of("[camera]\nname = \"a\"\n"),
+            "wall.toml:1:2: camera: is a single table; write its heading as [[camera]]");
   EXPECT_EQ(mistakes_of("[[camera]]\nheading = 10\n"),
             "wall.toml:1:1: camera.name: is missing; give each camera a name");
   EXPECT_EQ(mistakes_of("[[camera]]\nname = \"a\"\n[[camera]]\nname = \"a\"\n"),
-            "wall.toml:4:8: camera.name: \"a\" is used twice; give each camera a name");
+            "wall.toml:4:8: camera.name: \"a\" is used twice; give each camera a different name");
   EXPECT_EQ(mistakes_of("[[camera]]\nname = \"a\"\nfrom = \"dusk\"\n"),
             "wall.toml:3:8: camera.from: is \"dusk\"; allowed: a time of the day such as \"06:30\"");
   EXPECT_EQ(mistakes_of("[[camera]]\nname = \"a\"\nfrom = \"06:30\"\n[[camera]]\nname = \"b\"\nfrom = \"06:30\"\n"),
-            "wall.toml:6:8: camera.from: is that of the camera \"a\", too; only one can be on");
+            "wall.toml:6:8: camera.from: is also the start of the camera \"a\"; give each camera a different time");
   EXPECT_EQ(mistakes_of("[[camera]]\nname = \"a\"\nscene = \"tree\"\n[[scene]]\nkind = \"flag\"\nname = \"pole\"\n"),
             "wall.toml:3:9: camera.scene: is \"tree\"; allowed: the name of a scene: \"pole\"");
   EXPECT_THAT(mistakes_of("[[camera]]\nname = \"a\"\nfov = 180\n"), StartsWith("wall.toml:3:7: camera.fov: "));
@@ -238,19 +239,20 @@ TEST(Config, HasAlerts) {
 }
 
 TEST(Config, TellsEachMistakeOfAnAlertWithItsPlace) {
-  EXPECT_EQ(mistakes_of("[alert]\nname = \"a\"\n"), "wall.toml:1:2: alert: is one table; write [[alert]] above it");
+  EXPECT_EQ(mistakes_of("[alert]\nname = \"a\"\n"),
+            "wall.toml:1:2: alert: is a single table; write its heading as [[alert]]");
   EXPECT_EQ(mistakes_of("[[alert]]\ncommand = \"page\"\n"),
             "wall.toml:1:1: alert.name: is missing; give each alert a name");
   EXPECT_EQ(mistakes_of("[[alert]]\nname = \"a\"\ncommand = \"x\"\n[[alert]]\nname = \"a\"\ncommand = \"x\"\n"),
-            "wall.toml:5:8: alert.name: \"a\" is used twice; give each alert a name");
+            "wall.toml:5:8: alert.name: \"a\" is used twice; give each alert a different name");
   EXPECT_EQ(mistakes_of("[[alert]]\nname = \"a\"\n"),
-            "wall.toml:1:1: alert.command: tells nobody; give it a command or a webhook");
+            "wall.toml:1:1: alert.command: is missing, and webhook too, so nobody would be notified; set one of them");
   EXPECT_EQ(mistakes_of("[[alert]]\nname = \"a\"\ncommand = \"x\"\nsensor = \"rof\"\n"),
             "wall.toml:4:10: alert.sensor: is \"rof\"; allowed: the name of a [[sensor]] of this file");
   EXPECT_EQ(mistakes_of("[[alert]]\nname = \"a\"\ncommand = \"x\"\nwhen = \"no_frame\"\nsensor = \"roof\"\n"),
-            "wall.toml:5:10: alert.sensor: is for when = \"sensor_silent\" only");
+            "wall.toml:5:10: alert.sensor: applies only if when = \"sensor_silent\"; remove it");
   EXPECT_EQ(mistakes_of("[[alert]]\nname = \"a\"\nwebhook = \"ftp://there/\"\n"),
-            "wall.toml:3:11: alert.webhook: takes an URL that begins with http:// or https://");
+            "wall.toml:3:11: alert.webhook: must be a URL that begins with http:// or https://");
   EXPECT_THAT(mistakes_of("[[alert]]\nname = \"a\"\ncommand = \"x\"\nwhen = \"late\"\n"),
               StartsWith("wall.toml:4:8: alert.when: "));
   std::string many;
@@ -309,7 +311,7 @@ TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
               StartsWith("wall.toml:1:2: win: is not known here; allowed: seed, [stream]"));
   EXPECT_THAT(mistakes_of("wind = 3\n"), StartsWith("wall.toml:1:1: wind: is a value; write it as a table"));
   EXPECT_THAT(mistakes_of("[sensor]\ndriver = \"synthetic\"\n"),
-              StartsWith("wall.toml:1:2: sensor: is one table; write [[sensor]]"));
+              StartsWith("wall.toml:1:2: sensor: is a single table; write its heading as [[sensor]]"));
   EXPECT_THAT(mistakes_of("[[sensor]]\nspeed = 3\n"),
               testing::AllOf(HasSubstr("sensor.driver: is missing or not a text; allowed: one of "),
                              HasSubstr("\"synthetic\"")));
@@ -408,7 +410,7 @@ TEST(Config, WhatDoesNotFitTogetherInTheShapingIsToldAtItsPlace) {
   EXPECT_THAT(mistakes_of("[shaping]\nhours = \"25:00-18:00\"\n"),
               StartsWith("wall.toml:2:9: shaping.hours: has \"25:00-18:00\"; allowed: FROM-TO"));
   EXPECT_THAT(mistakes_of("[shaping]\nfloor = 1\nzone = \"Mars\"\n"),
-              StartsWith("wall.toml:3:8: shaping.zone: is \"Mars\", which is no time zone"));
+              StartsWith("wall.toml:3:8: shaping.zone: is \"Mars\", a time zone that this machine does not know"));
   EXPECT_THAT(mistakes_of("[shaping]\nceiling_most = 12\n"),
               StartsWith("wall.toml:2:16: shaping.ceiling_most: is 12; allowed: more than ceiling, which is 17"));
   EXPECT_THAT(mistakes_of("[shaping]\nceiling = 30\n"), StartsWith("wall.toml:1:1: shaping.ceiling_most: is 25"));
@@ -509,7 +511,7 @@ TEST(Config, WhereASensorStandsIsToldOrNotAndStaysSoWhenWrittenOut) {
   EXPECT_FALSE(source_of(default_config()).has_place);
 
   EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nlead = 20\n"),
-              StartsWith("wall.toml:4:8: sensor.blend.lead: is counted from where the sensor stands; give x or z"));
+              StartsWith("wall.toml:4:8: sensor.blend.lead: needs the position of the sensor; give x or z"));
   EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nx = 2000\n"),
               StartsWith("wall.toml:4:5: sensor.blend.x: is 2000; allowed: number from -1000 to 1000 m; left out: "));
   EXPECT_THAT(mistakes_of(sensor + "[sensor.blend]\nx = 0\nlead = -1\n"), HasSubstr("sensor.blend.lead: is -1"));
@@ -642,10 +644,11 @@ TEST(Config, ASecretIsNotWrittenByAnEdit) {
 TEST(Config, TwoSensorsThatReadTheSameAreNotOpened) {
   const std::string sensor = "[[sensor]]\ndriver = \"hid\"\nname = ";
   const Config config = parse_config(sensor + "\"roof\"\n" + sensor + "\"mast\"\n", "wall.toml");
-  EXPECT_THAT([&] { open_sensors(config.sensors); },
-              ThrowsMessage<ConfigError>("wall.toml:4:1: sensors \"roof\" and \"mast\" both read USB weather station: "
-                                         "leave one out, or give them different settings (one of: station, path, "
-                                         "serial)"));
+  EXPECT_THAT(
+      [&] { open_sensors(config.sensors); },
+      ThrowsMessage<ConfigError>("wall.toml:4:1: sensors \"roof\" and \"mast\" both read USB weather station: "
+                                 "remove one of the sensors, or give them different settings (one of: station, path, "
+                                 "serial)"));
 }
 
 class SecretExposure : public testing::Test {

@@ -230,7 +230,7 @@ TEST_P(SensorPairs, AreRefusedWhereTheyReadTheSame) {
           ThrowsMessage<ConfigError>(AllOf(StartsWith("wall.toml:"),
                                            HasSubstr("sensors \"roof\" and \"mast\" both " +
                                                      (pair.shared.starts_with("need ") ? pair.shared : "read ")),
-                                           HasSubstr(pair.shared), HasSubstr(": leave one out, or give "))));
+                                           HasSubstr(pair.shared), HasSubstr(": remove one of "))));
     } else {
       EXPECT_THROW(refuse_same_device(config.sensors), ConfigError);
     }

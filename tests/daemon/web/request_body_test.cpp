@@ -38,9 +38,9 @@ TEST(SceneBody, MistakesNameTheirKey) {
   EXPECT_THAT(mistake_in_scene("[1]"), HasSubstr("JSON object"));
   EXPECT_THAT(mistake_in_scene(R"({"scene":"a")"), HasSubstr("JSON object"));
   EXPECT_THAT(mistake_in_scene("{}"), HasSubstr("scene: is missing"));
-  EXPECT_THAT(mistake_in_scene(R"({"scene":1})"), HasSubstr("scene: is to be a text"));
-  EXPECT_THAT(mistake_in_scene(R"({"scene":"a","shown":"no"})"), HasSubstr("shown: is to be true or false"));
-  EXPECT_THAT(mistake_in_scene(R"({"scene":"a","over_s":-1})"), HasSubstr("over_s: is to be a number from 0 to 3600"));
+  EXPECT_THAT(mistake_in_scene(R"({"scene":1})"), HasSubstr("scene: must be a text"));
+  EXPECT_THAT(mistake_in_scene(R"({"scene":"a","shown":"no"})"), HasSubstr("shown: must be true or false"));
+  EXPECT_THAT(mistake_in_scene(R"({"scene":"a","over_s":-1})"), HasSubstr("over_s: must be a number from 0 to 3600"));
   EXPECT_THAT(mistake_in_scene(R"({"scene":"a","over_s":1e400})"), HasSubstr("JSON object"));
   EXPECT_THAT(mistake_in_scene(R"({"scene":"a","shon":true})"), HasSubstr("shon: is not known here"));
   EXPECT_THAT(mistake_in_scene(R"({"scene":")" + std::string(2000, 'a') + "\"}"), HasSubstr("at most 1024 bytes"));
@@ -57,10 +57,10 @@ TEST(PlayerBody, EveryAction) {
   EXPECT_EQ(player_command_of(R"({"action":"rate","rate":4})")->rate, 4.0);
 }
 TEST(PlayerBody, MistakesNameTheirKey) {
-  EXPECT_THAT(mistake_in_player("{}"), HasSubstr("action: is to be pause"));
-  EXPECT_THAT(mistake_in_player(R"({"action":"fly"})"), HasSubstr("action: is to be pause"));
-  EXPECT_THAT(mistake_in_player(R"({"action":"step","count":0})"), HasSubstr("count: is to be a number from 1"));
-  EXPECT_THAT(mistake_in_player(R"({"action":"rate","rate":1e9})"), HasSubstr("rate: is to be a number"));
+  EXPECT_THAT(mistake_in_player("{}"), HasSubstr("action: must be pause"));
+  EXPECT_THAT(mistake_in_player(R"({"action":"fly"})"), HasSubstr("action: must be pause"));
+  EXPECT_THAT(mistake_in_player(R"({"action":"step","count":0})"), HasSubstr("count: must be a number from 1"));
+  EXPECT_THAT(mistake_in_player(R"({"action":"rate","rate":1e9})"), HasSubstr("rate: must be a number"));
 }
 
 }  // namespace

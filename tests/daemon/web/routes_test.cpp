@@ -51,7 +51,7 @@ TEST_F(RoutesTest, Health_WellOrWhatNeedsAttention) {
 TEST_F(RoutesTest, OldNewsAreNone) {
   facts_.age_s = 9.0;
   EXPECT_EQ(get("/healthz").status, 503U);
-  EXPECT_THAT(get("/healthz").body, HasSubstr("said nothing for 9 s"));
+  EXPECT_THAT(get("/healthz").body, HasSubstr("no news from the daemon for 9 s"));
   for (const char* path : {"/metrics", "/api/v1/status"}) {
     EXPECT_EQ(get(path).status, 503U);
     EXPECT_EQ(get(path).content_type, "application/problem+json");

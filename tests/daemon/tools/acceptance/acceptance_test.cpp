@@ -86,12 +86,12 @@ TEST(JudgeSensor, RemarksWhatIsToBeLookedAt) {
     EXPECT_EQ(verdict.outcome, Outcome::kRemark);
     return verdict.remarks.size() == 1 ? verdict.remarks.front() : "not one remark";
   };
-  EXPECT_THAT(remark_where([](SensorMeasured& s) { s.status.simulated = true; }), HasSubstr("made up"));
+  EXPECT_THAT(remark_where([](SensorMeasured& s) { s.status.simulated = true; }), HasSubstr("synthetic"));
   EXPECT_THAT(remark_where([](SensorMeasured& s) { s.status.replayed = true; }), HasSubstr("recording"));
   EXPECT_THAT(remark_where([](SensorMeasured& s) { s.status.reconnects = 2; }), HasSubstr("found again 2 times"));
   EXPECT_THAT(remark_where([](SensorMeasured& s) { s.status.refused = {{"timeout", 11}}; }), HasSubstr("were refused"));
   EXPECT_THAT(remark_where([](SensorMeasured& s) { s.median_delay_s = 0.25; }), HasSubstr("250 ms"));
-  EXPECT_THAT(remark_where([](SensorMeasured& s) { s.median_delay_s.reset(); }), HasSubstr("could not be timed"));
+  EXPECT_THAT(remark_where([](SensorMeasured& s) { s.median_delay_s.reset(); }), HasSubstr("could not be measured"));
   EXPECT_THAT(remark_where([](SensorMeasured& s) { s.least_speed_m_s = s.largest_speed_m_s = 0.0; }),
               HasSubstr("0.00 m/s all the time"));
   SensorMeasured few = good();

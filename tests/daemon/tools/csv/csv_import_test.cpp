@@ -275,8 +275,8 @@ TEST(CsvImport, AMissingDirectionLeavesTheSpeedIn) {
   EXPECT_TRUE(std::all_of(directions.begin(), directions.end() - 1, [](const auto& each) { return !each; }));
   EXPECT_EQ(directions.back(), 45.0);
   EXPECT_THAT(imported.report.notes,
-              testing::IsSupersetOf({HasSubstr("direction: 7 values left empty"), HasSubstr("\"400\" is none"),
-                                     HasSubstr("\"up\" is none")}));
+              testing::IsSupersetOf({HasSubstr("direction: 7 values left empty"),
+                                     HasSubstr("\"400\" is not a direction"), HasSubstr("\"up\" is not a direction")}));
 }
 
 TEST(CsvImport, AMarkForNoValueIsNoStorm) {
@@ -285,7 +285,7 @@ TEST(CsvImport, AMarkForNoValueIsNoStorm) {
   EXPECT_THAT(speeds_of(imported), ElementsAre(4.5, 5.5, 5.0));
   EXPECT_EQ(imported.readings[2].gust_m_s, std::nullopt);
   EXPECT_THAT(imported.report.notes,
-              testing::Contains(HasSubstr("99 in \"speed\" is taken as no value: it comes 2 times")));
+              testing::Contains(HasSubstr("99 in \"speed\" is treated as a missing value: it occurs 2 times")));
 
   // In km/h it is a gale like those beside it.
   const auto gale = import_text("time,speed (km/h)\n0,90\n1,99\n2,97\n3,99\n");

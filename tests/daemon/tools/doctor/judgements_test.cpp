@@ -45,11 +45,11 @@ TEST(JudgeDevice, SaysOfEachKindHowToFindOneThatIsNotThere) {
     return judge(DeviceFacts{.sensor = "roof", .kind = kind, .name = name});
   };
   EXPECT_THAT(absent(EndpointKind::kSerialPort, "/dev/ttyUSB0"),
-              is(Verdict::kError, "/dev/ttyUSB0: is not there", "yuragi sensors list"));
-  EXPECT_THAT(absent(EndpointKind::kUsb, "hid (station wmr300)"), is(Verdict::kError, "is not there", "lsusb"));
-  EXPECT_THAT(absent(EndpointKind::kSoundCard, "microphone"), is(Verdict::kError, "is not there", "arecord -l"));
+              is(Verdict::kError, "/dev/ttyUSB0: was not found", "yuragi sensors list"));
+  EXPECT_THAT(absent(EndpointKind::kUsb, "hid (station wmr300)"), is(Verdict::kError, "was not found", "lsusb"));
+  EXPECT_THAT(absent(EndpointKind::kSoundCard, "microphone"), is(Verdict::kError, "was not found", "arecord -l"));
   EXPECT_THAT(absent(EndpointKind::kServer, "[fd00::5]:502"),
-              is(Verdict::kError, "is not there", "ping -c 3 fd00::5;"));
+              is(Verdict::kError, "was not found", "ping -c 3 fd00::5;"));
   EXPECT_THAT(absent(EndpointKind::kBroker, "broker.lan:1883"),
               is(Verdict::kError, "MQTT broker", "ping -c 3 broker.lan;"));
   EXPECT_THAT(absent(EndpointKind::kUdpPort, ":9000"),
@@ -100,13 +100,13 @@ TEST(JudgeDisk, NeedsTheFolderTheRightAndTheRoom) {
   EXPECT_THAT(judge(roomy()), is(Verdict::kOk, "20.0 GB free, about 4.0 MB a day", ""));
   DiskFacts disk = roomy();
   disk.is_there = false;
-  EXPECT_THAT(judge(disk), is(Verdict::kError, "no such folder", "sudo install -d -o yuragi"));
+  EXPECT_THAT(judge(disk), is(Verdict::kError, "does not exist", "sudo install -d -o yuragi"));
   disk = roomy();
   disk.is_writable = false;
   EXPECT_THAT(judge(disk), is(Verdict::kError, "may not write", "sudo chown yuragi /var/lib/yuragi"));
   disk = roomy();
   disk.free_bytes.reset();
-  EXPECT_THAT(judge(disk), is(Verdict::kWarning, "cannot be asked", "df -h"));
+  EXPECT_THAT(judge(disk), is(Verdict::kWarning, "cannot be determined", "df -h"));
   disk = roomy();
   disk.free_bytes = 199e6;
   EXPECT_THAT(judge(disk), is(Verdict::kError, "less than the 200 MB", "du -xsh"));
@@ -154,8 +154,8 @@ TEST(JudgeDisplay, NeedsGraphicsAViewerAndAPlaceToDraw) {
   display.has_display = false;
   EXPECT_THAT(judge(display),
               ElementsAre(is(Verdict::kWarning, "group video", "sudo adduser anna video"),
-                          is(Verdict::kWarning, "nowhere to draw", "systemctl enable --now yuragi-viewer")));
-  EXPECT_THAT(judge(DisplayFacts{}), ElementsAre(is(Verdict::kWarning, "by the CPU", "lspci"),
+                          is(Verdict::kWarning, "the viewer cannot draw", "systemctl enable --now yuragi-viewer")));
+  EXPECT_THAT(judge(DisplayFacts{}), ElementsAre(is(Verdict::kWarning, "on the CPU", "lspci"),
                                                  is(Verdict::kWarning, "not installed", "apt install")));
 }
 
@@ -196,7 +196,7 @@ TEST(Findings, ArePrintedWithTheirRemediesAndCounted) {
   EXPECT_EQ(gravest(findings), Verdict::kError);
   EXPECT_EQ(gravest({}), Verdict::kOk);
   const std::string text = findings_text(findings);
-  EXPECT_THAT(text, HasSubstr("error    disk           full\n                        mend it: df -h\n"));
+  EXPECT_THAT(text, HasSubstr("error    disk           full\n                        fix: df -h\n"));
   EXPECT_THAT(text, testing::EndsWith("1 error, 1 warning\n"));
   const auto json = nlohmann::ordered_json::parse(findings_json(findings).dump());
   EXPECT_EQ(json["verdict"], "error");

@@ -105,11 +105,10 @@ TEST(Rehearsal, FindsEachFaultOfAPathAndNothingElse) {
        [](PathFacts& p) { p.node.mode = 0755; }, "may not write it", "sudo chown yuragi:yuragi /var/lib/yuragi/deep"},
       {"outside of what may be written", PathUse::kWriteFolder, "/srv/wind", [](PathFacts&) {},
        "may not write there (ProtectSystem=strict)", "ReadWritePaths=/srv/wind"},
-      {"picture at home", PathUse::kRead, "/home/anna/a.png", [](PathFacts&) {}, "sees /home and /root as empty",
+      {"picture at home", PathUse::kRead, "/home/anna/a.png", [](PathFacts&) {}, "cannot see /home and /root",
        "sudo cp /home/anna/a.png /var/lib/yuragi/"},
       {"a link to a home", PathUse::kRead, "/etc/yuragi/a.png",
-       [](PathFacts& p) { p.folders.push_back(root_folder("/home/anna")); }, "sees /home and /root as empty",
-       "sudo cp"},
+       [](PathFacts& p) { p.folders.push_back(root_folder("/home/anna")); }, "cannot see /home and /root", "sudo cp"},
       {"recording in /tmp", PathUse::kWriteFolder, "/tmp/wind", [](PathFacts&) {}, "PrivateTmp=", "/var/lib/yuragi"},
       {"picture of its owner alone", PathUse::kRead, "/etc/yuragi/a.png", [](PathFacts& p) { p.node.mode = 0600; },
        "may not read it (mode 600", "chmod g+r"},
@@ -166,7 +165,7 @@ TEST(Rehearsal, JudgesPortsForTheUserOfTheUnit) {
   EXPECT_THAT(judge(listen, unit), IsEmpty());
   listen.trouble = "Address already in use";
   listen.listener = 33;
-  EXPECT_THAT(judge(listen, unit).at(0).text, HasSubstr("[http] listen: 127.0.0.1:7480: cannot be listened on"));
+  EXPECT_THAT(judge(listen, unit).at(0).text, HasSubstr("[http] listen: 127.0.0.1:7480: cannot listen here"));
   EXPECT_THAT(judge(listen, unit).at(0).remedy, HasSubstr("sport = :7480"));
   listen.listener = kUser;
   EXPECT_THAT(judge(listen, unit), IsEmpty()) << "the running service has it";
@@ -188,10 +187,10 @@ TEST(Rehearsal, JudgesProgramsAndMonitors) {
   EXPECT_THAT(judge(program, unit).at(0).text, HasSubstr("libmodbus.so.5"));
 
   MonitorFacts monitor{.output = "wall", .monitor = "HDMI-1"};
-  EXPECT_THAT(judge(monitor).at(0).text, HasSubstr("no display can be asked"));
+  EXPECT_THAT(judge(monitor).at(0).text, HasSubstr("no display can be reached"));
   EXPECT_EQ(judge(monitor).at(0).verdict, Verdict::kOk);
   monitor.present = {{"DP-1"}};
-  EXPECT_THAT(judge(monitor).at(0).text, HasSubstr("monitor HDMI-1 is not there; there is: DP-1"));
+  EXPECT_THAT(judge(monitor).at(0).text, HasSubstr("monitor HDMI-1 is not connected; there is: DP-1"));
   monitor.monitor = "0";
   EXPECT_THAT(judge(monitor), IsEmpty());
 }
@@ -229,7 +228,7 @@ TEST(Rehearsal, LooksAtRealFilesAndPorts) {
   };
   EXPECT_THAT(texts({.config = config, .unit = unit}),
               ElementsAre(HasSubstr("token: the user root of yuragi.service may not read it (mode 600"),
-                          HasSubstr("none: is missing"), HasSubstr("cannot be listened on")));
+                          HasSubstr("none: is missing"), HasSubstr("cannot listen here")));
   EXPECT_THAT(
       texts({.config = config, .unit = this_process(), .own_addresses = {fmt::format("127.0.0.1:{}", page.port())}}),
       ElementsAre(HasSubstr("none: is missing")))
