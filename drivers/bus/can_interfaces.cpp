@@ -57,12 +57,12 @@ std::string can_trouble(const std::string& interface, int error) {
           "there is no CAN interface {}: plug its adapter in, and check its name (ip link show type can)", interface);
     case EAFNOSUPPORT:
     case EPROTONOSUPPORT:
-      return "no CAN sockets are to be had: load the kernel's module (sudo modprobe can_raw); a service also needs "
-             "AF_CAN among its RestrictAddressFamilies";
+      return "this system has no CAN sockets: load the kernel module (sudo modprobe can_raw); for a systemd service "
+             "also add AF_CAN to RestrictAddressFamilies";
     case EPERM:
     case EACCES:
       return fmt::format(
-          "this process may not open the CAN interface {}: check what its service or container is allowed", interface);
+          "no permission to open the CAN interface {}: check the permissions of the service or container", interface);
     default:
       return fmt::format("cannot open the CAN interface {} ({}): check it with ip -details link show {}", interface,
                          std::generic_category().message(error), interface);

@@ -90,7 +90,7 @@ Result<std::vector<DatagramAnswer>, Failure> ask_networks(const DatagramInquiry&
   error_code error;
   address_v4 to;
   if (!inquiry.to.empty()) to = boost::asio::ip::make_address_v4(inquiry.to, error);
-  if (error) return Failure{"\"" + inquiry.to + "\" is no IPv4 address", FailureKind::kUsage};
+  if (error) return Failure{"\"" + inquiry.to + "\" is not an IPv4 address", FailureKind::kUsage};
   boost::asio::io_context context;
   udp::socket socket(context);
   socket.open(udp::v4(), error);
@@ -107,7 +107,8 @@ Result<std::vector<DatagramAnswer>, Failure> ask_networks(const DatagramInquiry&
   for (std::size_t asked = 0; Clock::now() < end && answers.size() < kMostAnswers;) {
     if (asked < kAskedAfter.size() && Clock::now() >= start + kAskedAfter.at(asked)) {
       error = ask(socket, inquiry, inquiry.to.empty() ? nullptr : &to);
-      if (error && asked == 0) return Failure{"nobody can be asked: " + error.message(), FailureKind::kUnavailable};
+      if (error && asked == 0)
+        return Failure{"cannot send the request to any network: " + error.message(), FailureKind::kUnavailable};
       ++asked;
     }
     wait_for_datagram(socket, asked < kAskedAfter.size() ? std::min(end, start + kAskedAfter.at(asked)) : end);

@@ -146,7 +146,7 @@ class HidapiDevice final : public HidDevice {
     if (found.size() > 1) {
       std::string places;
       for (const HidInfo& info : found) places += (places.empty() ? "" : ", ") + info.port + " (" + info.node + ")";
-      return Failure{fmt::format("{} devices match: select one with `path`, of {}", found.size(), places)};
+      return Failure{fmt::format("{} devices match: set `path` to one of {}", found.size(), places)};
     }
     HidInfo& info = found.front();
     {

@@ -29,8 +29,8 @@ LookupResult resolve_host(const std::string& host, std::uint16_t port) try {
   Endpoints endpoints;
   for (const auto& entry : resolver.resolve(host, std::to_string(port), error)) endpoints.push_back(entry.endpoint());
   if (!endpoints.empty()) return endpoints;
-  return Failure{"no host \"" + host + "\" (" + error.message() +
-                 "): check its name, and that this machine reaches its name server; an address needs neither"};
+  return Failure{"cannot find the host \"" + host + "\" (" + error.message() +
+                 "): check its name and this machine's name server, or use an IP address"};
 } catch (const std::exception& error) {  // no descriptor for the context, say
   return cannot_look_up(host, error);
 }
@@ -81,8 +81,8 @@ LookupResult HostLookup::find(Nanoseconds timeout) {
   state_->changed.wait_for(lock, timeout, [this] { return state_->result || state_->is_interrupted; });
   if (state_->is_interrupted) return Failure{"interrupted"};
   if (!state_->result) {
-    return Failure{"no name server knows the address of \"" + state_->host +
-                   "\": check the network; an address in place of the name needs none"};
+    return Failure{"no name server has returned an address for \"" + state_->host +
+                   "\": check the network, or use an IP address"};
   }
   LookupResult result = std::move(*state_->result);
   state_->result.reset();

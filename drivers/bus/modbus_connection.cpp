@@ -77,7 +77,7 @@ class LibmodbusConnection final : public ModbusConnection {
       // Two programs on one line would receive each other's replies.
       if (flock(modbus_get_socket(context.get()), LOCK_EX | LOCK_NB) != 0) {
         modbus_close(context.get());
-        return Failure{"cannot open " + describe(line_) + ": another program reads it; end that one first"};
+        return Failure{"cannot open " + describe(line_) + ": another program uses it; stop that program first"};
       }
     }
     context_ = std::move(context);

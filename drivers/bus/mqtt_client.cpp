@@ -195,9 +195,8 @@ class MosquittoClient final : public MqttClient {
   void take_subscription(std::span<const int> granted) {
     constexpr int kRefused = 0x80;
     if (std::ranges::any_of(granted, [](int quality) { return quality >= kRefused; })) {
-      refusal_ =
-          fmt::format("{} does not allow reading the topic: grant it to this user in the access list of the broker",
-                      describe(wanted_));
+      refusal_ = fmt::format("{} does not allow this user to read the topic: allow it in the broker's access list",
+                             describe(wanted_));
     }
     ++agreed_topics_;
   }
@@ -223,13 +222,13 @@ class MosquittoClient final : public MqttClient {
         return fmt::format("cannot find {}: check its name, and this machine's name server", broker);
       case MOSQ_ERR_TLS:
         return fmt::format(
-            "the TLS connection to {} failed: check `ca_file` ({}), the broker's certificate, and that "
-            "this port speaks TLS",
+            "the TLS connection to {} failed: check `ca_file` ({}), the broker's certificate, and that this port uses "
+            "TLS",
             broker, wanted_.ca_file.empty() ? kTrustedBySystem : wanted_.ca_file);
       case MOSQ_ERR_INVAL:
         return fmt::format("cannot use the settings for {}: check that `ca_file` exists and is readable", broker);
       default:
-        return fmt::format("lost {} ({}): check the network, and that it is running", broker,
+        return fmt::format("lost the connection to {} ({}): check the network, and that it is running", broker,
                            mosquitto_strerror(error));
     }
   }

@@ -42,8 +42,8 @@ class ProcessPort final : public BytePort {
     if (is_interrupted()) return Failure{"interrupted"};
     std::array<int, 2> output = {-1, -1};
     if (wake_ < 0 || pipe2(output.data(), O_CLOEXEC) != 0) {
-      return Failure{fmt::format("no pipe to {} ({}): check the limit of open files", command_[0],
-                                 std::generic_category().message(errno))};
+      return Failure{fmt::format("cannot open a pipe to {} ({}): check the limit of open files (ulimit -n)",
+                                 command_[0], std::generic_category().message(errno))};
     }
     output_ = output[0];
     try {

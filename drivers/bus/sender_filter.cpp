@@ -62,7 +62,7 @@ Result<SenderFilter, Failure> SenderFilter::parse(const std::string& senders) {
     } else if (!no_v6) {
       filter.v6_.push_back(v6.canonical());
     } else {
-      return Failure{"\"" + entry + "\" is neither an address (192.168.1.20) nor a net (192.168.1.0/24)"};
+      return Failure{"\"" + entry + "\" is neither an address (192.168.1.20) nor a network (192.168.1.0/24)"};
     }
   }
   return filter;

@@ -73,11 +73,12 @@ AccessTrouble access_trouble(const fs::path& node) {
   // A group that may not write either would not help.
   const bool group_may = (status.st_mode & S_IRGRP) != 0 && (status.st_mode & S_IWGRP) != 0;
   if (!group_may || status.st_gid == 0) {
-    return {"this user may not open it", "install config/udev/*.rules into /etc/udev/rules.d, and plug it in again"};
+    return {"this user has no permission to open it",
+            "install config/udev/*.rules into /etc/udev/rules.d, and plug it in again"};
   }
   const std::string group = group_name(status.st_gid);
   return {
-      fmt::format("this user may not open it: it belongs to the group {}", group),
+      fmt::format("this user has no permission to open it: it belongs to the group {}", group),
       fmt::format("sudo usermod -a -G {} $USER, then log in again (a service: SupplementaryGroups={})", group, group)};
 }
 

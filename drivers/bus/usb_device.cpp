@@ -261,12 +261,13 @@ class LibusbDevice final : public UsbDevice {
     switch (error) {
       case LIBUSB_ERROR_ACCESS:
         return fmt::format(
-            "this user may not open {} ({}): install config/udev/70-yuragi.rules, join the group plugdev, and plug the "
+            "this user has no permission to open {} ({}): install config/udev/70-yuragi.rules, join the group plugdev, "
+            "and plug the "
             "device in again",
             what, device.node);
       case LIBUSB_ERROR_BUSY:
-        return fmt::format("{} is in use by another program: end that program, or take it out of this configuration",
-                           what);
+        return fmt::format(
+            "{} is in use by another program: stop that program, or remove the device from this configuration", what);
       case LIBUSB_ERROR_NO_DEVICE:
       case LIBUSB_ERROR_NOT_FOUND:
         return fmt::format("{} was unplugged: plug it in again", what);

@@ -204,10 +204,10 @@ class WebSocketPort final : public BytePort {
     const std::string where = describe(address_);
     if (!connection_->handshake) {
       return interruption_.is_set() ? "interrupted"
-                                    : where + " does not answer: check that the port is that of a WebSocket server";
+                                    : where + " does not reply: check that a WebSocket server uses this port";
     }
     if (*connection_->handshake != websocket::error::upgrade_declined) {
-      return fmt::format("{} is no WebSocket server ({}): check host and port", where,
+      return fmt::format("{} is not a WebSocket server ({}): check host and port", where,
                          connection_->handshake->message());
     }
     const beast::http::status status = connection_->response.result();
@@ -218,7 +218,7 @@ class WebSocketPort final : public BytePort {
 
   std::string_view remedy_of(beast::http::status status) const {
     if (status == beast::http::status::unauthorized || status == beast::http::status::forbidden)
-      return address_.token.is_empty() ? "it wants a token" : "check the token, which may have expired";
+      return address_.token.is_empty() ? "it requires a token: set token" : "check the token, which may have expired";
     if (status == beast::http::status::not_found) return "check the path";
     return "check the server";
   }

@@ -35,7 +35,7 @@ auto of(auto member) {
 const Fields<VantageSettings> kDavisFields = {
     {{.name = "transport",
       .default_value = std::string("serial"),
-      .help = "serial: the logger's serial port or USB; tcp: a WeatherLinkIP, or a serial port in the network",
+      .help = "serial: the logger's serial port or USB; tcp: a WeatherLinkIP, or a serial device server in the network",
       .choices = kDavisTransports},
      of(&BytePortAddress::kind)},
     {{.name = "device",
@@ -49,11 +49,11 @@ const Fields<VantageSettings> kDavisFields = {
       .default_value = std::string(""),
       .help = "tcp: name or address; one program at a time can be connected to a WeatherLinkIP"},
      of(&BytePortAddress::host)},
-    {{"port", "", std::int64_t{22222}, 1, 65535, "tcp: 22222 is a WeatherLinkIP's"}, of(&BytePortAddress::port)},
+    {{"port", "", std::int64_t{22222}, 1, 65535, "tcp: a WeatherLinkIP has 22222"}, of(&BytePortAddress::port)},
     {{.name = "packets",
       .default_value = std::string("auto"),
       .help = "loop2: with the strongest gust of 10 minutes; loop: without, for firmware before 1.90; auto: loop2, or "
-              "loop where the console does not know it. Speeds are whole miles per hour",
+              "loop if the console does not support it. Speeds are whole miles per hour",
       .choices = kDavisPackets},
      &VantageSettings::packets},
 };
@@ -91,7 +91,7 @@ constexpr std::array kDavisFormats = {
 extern const sensor::DriverDescription kDavisDriver;
 const sensor::DriverDescription kDavisDriver{
     .name = "davis",
-    .summary = "Davis Vantage Pro, Vantage Pro2 and Vantage Vue, by the data logger of their console",
+    .summary = "Davis Vantage Pro, Vantage Pro2 and Vantage Vue, through the data logger of their console",
     .parameters = kDavisFields.parameters(),
     .open = open_davis,
     .find = [] { return sensor::find_behind_serial_ports(); },

@@ -59,7 +59,7 @@ std::optional<Result<std::string, Failure>> HttpExchange::advance(Nanoseconds ti
     end();
     return Failure{std::move(why)};
   };
-  if (!is_under_way()) return give_up("no request is under way");
+  if (!is_under_way()) return give_up("no request is in progress");
   const bus::ByteArrival arrival = port_->read(buffer_, timeout);
   auto& parser = parser_->parser;
   boost::system::error_code error;
@@ -76,7 +76,7 @@ std::optional<Result<std::string, Failure>> HttpExchange::advance(Nanoseconds ti
       if (error || taken == 0) break;
     }
   }
-  if (error) return give_up("no reply of HTTP: " + error.message());
+  if (error) return give_up("not an HTTP reply: " + error.message());
   if (!parser.is_done()) return std::nullopt;
   const unsigned status = parser.get().result_int();
   if (status != 200) return give_up(fmt::format("the reply is HTTP {}", status));

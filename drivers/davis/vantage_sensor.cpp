@@ -85,7 +85,7 @@ Result<MonoTime, Failure> VantageSensor::work(const sensor::Clock& clock, sensor
   const MonoTime start = clock.now().mono;
   if (phase_ != Phase::kReceive && !awaits_reply_) {
     if (start < next_request_) return next_request_;
-    if (!send_request(start, sink)) return Failure{where_ + " accepts no request: opened again"};
+    if (!send_request(start, sink)) return Failure{where_ + " does not accept requests: reopening it"};
   }
 
   const MonoTime due = phase_ == Phase::kReceive ? start + kLongestRead : reply_due_;
@@ -98,8 +98,7 @@ Result<MonoTime, Failure> VantageSensor::work(const sensor::Clock& clock, sensor
     case bus::ByteStatus::kLost:
     case bus::ByteStatus::kEnd:
       phase_ = Phase::kWake;  // nobody is there to be told to end
-      return Failure{where_ +
-                     " is gone: opened again as soon as it is back; check its plug, its power and the network"};
+      return Failure{where_ + " is gone: it is reopened when it is back; check its plug, its power and the network"};
     case bus::ByteStatus::kBytes:
       done = take(decode::ByteSpan(buffer_).first(arrival.size), now, sink);
       break;
@@ -277,7 +276,7 @@ Result<void, Failure> VantageSensor::doubt_packets(MonoTime now, sensor::SensorS
   if (now - last_bytes_ >= kPacketPatience) sink.refused(decode::Refusal::kTimeout);
   const std::string trouble =
       has_damaged_packets_ ? fmt::format("packets arrive damaged from {}: check its cable and baud", where_)
-                           : fmt::format("{} was asked for packets, and is silent: check its power and cable", where_);
+                           : fmt::format("{} was asked for packets, but sends none: check its power and cable", where_);
   has_damaged_packets_ = false;
   report_unusable(sink, trouble);
   if (++vain_requests_ >= kVainRequests) return Failure{trouble};

@@ -20,14 +20,15 @@ namespace {
 const Fields<WeatherLinkLiveSettings> kWeatherLinkLiveFields = {
     {{.name = "host",
       .default_value = std::string(""),
-      .help = "name or address of the WeatherLink Live; broadcasts come only from one in the same network"},
+      .help = "name or address of the WeatherLink Live; its broadcasts reach only its own network"},
      [](WeatherLinkLiveSettings& settings) -> std::string& { return settings.http.host; }},
-    {{"http_port", "", std::int64_t{80}, 1, 65535, "its port for HTTP"},
+    {{"http_port", "", std::int64_t{80}, 1, 65535, "its HTTP port"},
      [](WeatherLinkLiveSettings& settings) -> std::uint16_t& { return settings.http.port; }},
     {{"port", "", std::int64_t{22222}, 1, 65535,
-      "the UDP port that it broadcasts to; without broadcasts there is a wind every 10 s only"},
+      "the UDP port that it broadcasts to; without broadcasts there is only one reading every 10 s"},
      [](WeatherLinkLiveSettings& settings) -> std::uint16_t& { return settings.broadcasts.port; }},
-    {{"transmitter", "", std::int64_t{0}, 0, 8, "the station's id, 1 to 8, as set on it; 0: the first that has a wind"},
+    {{"transmitter", "", std::int64_t{0}, 0, 8,
+      "the station's id, 1 to 8, as set on it; 0: the first that reports wind"},
      &WeatherLinkLiveSettings::transmitter},
 };
 

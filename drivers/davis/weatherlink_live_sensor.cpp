@@ -76,7 +76,7 @@ Result<MonoTime, Failure> WeatherLinkLiveSensor::work(const sensor::Clock& clock
       return now.mono;
     case bus::ByteStatus::kLost:
     case bus::ByteStatus::kEnd:
-      return Failure{describe(settings_.broadcasts) + " is gone: opened again"};
+      return Failure{describe(settings_.broadcasts) + " is gone: reopening it"};
     case bus::ByteStatus::kForeign:
       sink.refused(decode::Refusal::kNotMine);
       break;
@@ -157,8 +157,7 @@ void WeatherLinkLiveSensor::take_conditions(std::string_view json, const Instant
   if (!conditions) {
     sink.refused(conditions.error());
     if (conditions.error() != decode::Refusal::kInvalid && conditions.error() != decode::Refusal::kNotMine) {
-      return fail_request(now.mono, where_ + " replies, but not with conditions: check that it is a WeatherLink Live",
-                          sink);
+      return fail_request(now.mono, where_ + " sends an unknown reply: check that it is a WeatherLink Live", sink);
     }
     last_message_ = now.mono;
     return report_connected(
@@ -187,7 +186,7 @@ void WeatherLinkLiveSensor::take_broadcast_port(std::string_view json, MonoTime 
   if (*port != settings_.broadcasts.port) {
     return fail_request(now, fmt::format("they go to port {}, set port to that", *port), sink);
   }
-  advice_ = ": check that this machine is in its network, and the firewall";
+  advice_ = ": check the firewall, and that this machine is in the same network";
   next_renewal_ = now + kRenewal;
 }
 

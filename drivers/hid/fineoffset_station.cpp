@@ -56,7 +56,7 @@ class FineOffsetStation final : public HidStation {
     if (status == BlockStatus::kLost) return station_is_gone();
     if (status != BlockStatus::kRead) {
       return fail(exchange, status == BlockStatus::kNone ? decode::Refusal::kTimeout : decode::Refusal::kTooShort,
-                  "does not reply; if it has locked up, take out its batteries and its cable");
+                  "does not reply; if it has locked up, remove its batteries and unplug its cable for a moment");
     }
     if (!last_block_) {
       last_block_ = block;
@@ -113,8 +113,9 @@ class FineOffsetStation final : public HidStation {
     auto fixed = decode::hid::decode_fineoffset_fixed_block(blocks_[0], decode::hid::FineOffsetModel::kWh1080);
     if (!fixed) fixed = decode::hid::decode_fineoffset_fixed_block(blocks_[0], decode::hid::FineOffsetModel::kWh3080);
     if (!fixed) {
-      return fail(exchange, fixed.error(),
-                  "is not a Fine Offset console, or has locked up: take out its batteries and its cable");
+      return fail(
+          exchange, fixed.error(),
+          "is not a Fine Offset console, or has locked up: remove its batteries and unplug its cable for a moment");
     }
     // Blocks are read where the memory's own begin; a long record can reach into the next.
     position_ = fixed->current_position;
@@ -190,8 +191,8 @@ class FineOffsetStation final : public HidStation {
     const MonoTime next = next_read(now);
     if (now - last_news_ >= timing_.paced(kFineOffsetStalled)) {
       exchange.refuse(decode::Refusal::kInvalid);
-      return StationStep::unwell(next,
-                                 "has stopped measuring; if it has locked up, take out its batteries and its cable");
+      return StationStep::unwell(
+          next, "has stopped measuring; if it has locked up, remove its batteries and unplug its cable for a moment");
     }
     if (was_for_clock) return StationStep::same(next);
     published_ = now;
@@ -203,8 +204,8 @@ class FineOffsetStation final : public HidStation {
     const auto wind = decode::hid::decode_fineoffset_record(record);
     if (wind && exchange.publish(*wind)) return StationStep::well(next);
     if (!wind) exchange.refuse(wind.error());
-    return StationStep::unwell(next,
-                               "has no wind from its sensors: check their batteries and their distance to the console");
+    return StationStep::unwell(
+        next, "receives no wind from its sensors: check their batteries and their distance to the console");
   }
 
   bool is_searching() const { return search_steps_ < kFineOffsetSearchSteps; }

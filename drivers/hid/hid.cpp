@@ -40,7 +40,7 @@ struct HidKeys {
 const Fields<HidKeys> kHidFields = {
     {{.name = "station",
       .default_value = std::string("auto"),
-      .help = "family of the station; auto takes whichever is plugged in",
+      .help = "family of the station; auto: the one that is plugged in",
       .choices = kStationChoices},
      &HidKeys::station},
     {{.name = "path",
@@ -50,11 +50,11 @@ const Fields<HidKeys> kHidFields = {
      [](HidKeys& keys) -> std::string& { return keys.place.path; }},
     {{.name = "serial",
       .default_value = std::string(""),
-      .help = "its serial number, where it has one; selects one of several"},
+      .help = "its serial number, if it has one; selects one of several"},
      [](HidKeys& keys) -> std::string& { return keys.place.serial; }},
     {{"poll_interval", "s", 0.0, 0.0, 3600.0,
-      "interval between requests, of fineoffset, acurite and te923; 0 takes the station's own: 48, 18 and 33 s. A "
-      "shorter one gives no new readings; for fineoffset, which might lock up, it has no effect"},
+      "interval between requests, of fineoffset, acurite and te923; 0: the station's own, 48, 18 and 33 s. A "
+      "shorter one gives no new readings; fineoffset, which could lock up, ignores it"},
      &HidKeys::poll_interval,
      from_seconds},
     {{"pace", "", 1.0, 1.0, 1000.0, "speed relative to a real station, for simulated ones"}, &HidKeys::pace},
@@ -144,7 +144,8 @@ const sensor::DriverDescription kHidDriver{
     .selection = hid_selection,
     .stated_value = hid_value,
     .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
-      return Failure{"a simulated hid needs USB or sound of its own, and rights for it"};
+      return Failure{
+          "a simulated hid cannot be started here: it needs a virtual USB bus, and the permission to create it"};
     },
     .message_formats = kHidFormats,
     .formats = "wmr100 fineoffset te923"};

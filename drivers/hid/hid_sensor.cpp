@@ -49,7 +49,7 @@ Result<MonoTime, Failure> HidSensor::work(const sensor::Clock& clock, sensor::Se
 std::string HidSensor::why_useless(HidExchange& exchange) {
   if (exchange.read(Nanoseconds::zero()).status == bus::HidStatus::kLost) return "is gone: plug it in again";
   exchange.refuse(decode::Refusal::kTimeout);
-  return "accepts no requests: take out its cable and its batteries, and put them in again";
+  return "does not accept requests: unplug its cable, remove its batteries, then connect both again";
 }
 
 /// Nothing is due: checks that the device is still there.

@@ -59,7 +59,7 @@ class Wmr100Station final : public HidStation {
     const MonoTime now = exchange.now();
     const Nanoseconds silent = now - received_at_;
     if (silent < timing_.paced(kWmr100Silent)) return StationStep::same(now);
-    if (silent > timing_.paced(kWmr100GiveUp)) return Failure{"is silent and is opened again"};
+    if (silent > timing_.paced(kWmr100GiveUp)) return Failure{"is silent: reopening it"};
     if (now - started_ >= timing_.paced(kWmr100Restart)) {
       started_ = now;
       exchange.refuse(decode::Refusal::kTimeout);

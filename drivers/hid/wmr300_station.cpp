@@ -66,7 +66,7 @@ class Wmr300Station final : public HidStation {
   Result<StationStep, Failure> miss_the_wind(HidExchange& exchange, StationStep step) {
     if (step.next - received_at_ > timing_.paced(kWmr300GiveUp)) {
       exchange.refuse(decode::Refusal::kTimeout);
-      return Failure{"sends no valid packets and is opened again"};
+      return Failure{"sends no valid packets: reopening it"};
     }
     if (step.next - wind_ > timing_.paced(kWmr300NoWind)) {
       step.health = StationHealth::kUnwell;

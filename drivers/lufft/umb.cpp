@@ -44,20 +44,20 @@ const Fields<UmbKeys> kUmbFields = {
       .help = "serial: the port, preferably by its stable name in /dev/serial/by-id"},
      of_address(&BytePortAddress::path)},
     {{"baud", "bit/s", std::int64_t{19200}, bus::kBytePortBauds.front(), bus::kBytePortBauds.back(),
-      "serial: as set in the device, which leaves the factory with 19200; 8 data bits, no parity, 1 stop bit"},
+      "serial: as set in the device (by the factory to 19200); 8 data bits, no parity, 1 stop bit"},
      of_address(&BytePortAddress::baud)},
     {{.name = "host", .default_value = std::string(""), .help = "tcp: name or address of the server"},
      of_address(&BytePortAddress::host)},
     {{"port", "", std::int64_t{9750}, 1, 65535, "tcp: as set in the server"}, of_address(&BytePortAddress::port)},
     {{"class", "", std::int64_t{7}, 1, 14,
-      "what it is: 7: a weather station WS200-UMB to WS800-UMB; 8: a VENTUS or V200A"},
+      "device class: 7 for a weather station WS200-UMB to WS800-UMB, 8 for a VENTUS or V200A"},
      &UmbKeys::device_class},
     {{"id", "", std::int64_t{1}, 1, 255, "its id on the line, as set in the device"}, &UmbKeys::id},
     {{"poll_interval", "s", 1.0, 0.2, 3600.0,
       "interval between requests; weather stations have a new wind each second, a VENTUS up to four"},
      of_settings(&UmbSettings::poll_interval),
      from_seconds},
-    {{"response_timeout", "s", 0.5, 0.05, 60.0, "longest wait for a reply"},
+    {{"response_timeout", "s", 0.5, 0.05, 60.0, "maximum wait for a reply"},
      of_settings(&UmbSettings::response_timeout),
      from_seconds},
 };
@@ -84,7 +84,7 @@ Result<sensor::SimulatedDevice, Failure> umb_simulated(const ParameterValues& va
 extern const sensor::DriverDescription kUmbDriver;
 const sensor::DriverDescription kUmbDriver{
     .name = "umb",
-    .summary = "Lufft VENTUS, V200A and weather stations WS200 to WS800, by the binary UMB protocol",
+    .summary = "Lufft VENTUS, V200A and weather stations WS200 to WS800, with the binary UMB protocol",
     .parameters = kUmbFields.parameters(),
     .open = [](const ParameterValues& values) -> std::unique_ptr<sensor::Sensor> {
       const UmbSettings settings = umb_settings_of(values);

@@ -26,11 +26,11 @@ constexpr int kForgottenBlocks = 16;
 std::string trouble_of_status(std::uint8_t status) {
   switch (status) {
     case 0x24:
-      return "it does not measure wind, or not with these channels";
+      return "it measures no wind, or not on these channels";
     case 0x28:
       return "it is not ready yet";
     case 0x55:
-      return "the weather does not let it: check for ice, dirt, and birds";
+      return "the weather prevents it: check for ice, dirt and birds";
     default:
       return "check the device";
   }
@@ -63,7 +63,7 @@ Result<MonoTime, Failure> UmbSensor::work(const sensor::Clock& clock, sensor::Se
   const MonoTime start = clock.now().mono;
   if (!awaits_reply_) {
     if (start < next_request_) return next_request_;
-    if (!ask(start, sink)) return Failure{where_ + " accepts no request: opened again"};
+    if (!ask(start, sink)) return Failure{where_ + " does not accept requests: reopening it"};
   }
   const bus::ByteArrival arrival = port_->read(buffer_, std::clamp<Nanoseconds>(reply_due_ - start, 0ns, kLongestRead));
   const Instant now = clock.now();
@@ -72,8 +72,7 @@ Result<MonoTime, Failure> UmbSensor::work(const sensor::Clock& clock, sensor::Se
       return now.mono;
     case bus::ByteStatus::kLost:
     case bus::ByteStatus::kEnd:
-      return Failure{where_ +
-                     " is gone: opened again as soon as it is back; check its plug, its power and the network"};
+      return Failure{where_ + " is gone: it is reopened when it is back; check its plug, its power and the network"};
     case bus::ByteStatus::kBytes:
       take(decode::ByteSpan(buffer_).first(arrival.size), now, sink);
       break;
@@ -134,7 +133,7 @@ void UmbSensor::take_frame(decode::ByteSpan frame, const Instant& now, sensor::S
       // A line with one pair of wires echoes the request; another program may ask another device.
       if (decode::lufft::is_umb_controller(decode::little_endian_16(frame, 4))) return;
       return refuse(Refusal::kNotMine,
-                    fmt::format("another device than {} replies at {}: check class and id", name_, where_), sink);
+                    fmt::format("a device other than {} replies at {}: check class and id", name_, where_), sink);
     case Refusal::kException:
       awaits_reply_ = false;
       vain_requests_ = 0;
@@ -143,7 +142,8 @@ void UmbSensor::take_frame(decode::ByteSpan frame, const Instant& now, sensor::S
           Refusal::kException,
           fmt::format("{} at {} refuses the query of its channels (status {:02X}h)", name_, where_, frame[10]), sink);
     default:
-      return refuse(reply.error(), fmt::format("{} at {} sends what is not understood", name_, where_), sink);
+      return refuse(reply.error(), fmt::format("{} at {} sends an unknown reply: check class and id", name_, where_),
+                    sink);
   }
 }
 
@@ -191,14 +191,14 @@ Result<void, Failure> UmbSensor::give_up_reply(MonoTime now, sensor::SensorSink&
     const std::string trouble = trouble_.empty() ? silence_trouble() : trouble_;
     refuse(Refusal::kTimeout, trouble, sink);
   }
-  if (++vain_requests_ >= kVainRequests) return Failure{trouble_ + "; opened again"};
+  if (++vain_requests_ >= kVainRequests) return Failure{trouble_ + ": reopening it"};
   return {};
 }
 
 std::string UmbSensor::silence_trouble() const {
   const bool is_serial = settings_.address.kind == bus::BytePortKind::kSerial;
-  return fmt::format("{} at {} does not reply: check {}, class and id, and that it speaks UMB", name_, where_,
-                     is_serial ? "its power, its wires and baud" : "its power and the network");
+  return fmt::format("{} at {} does not reply: check {}, class and id, and that it uses the UMB protocol", name_,
+                     where_, is_serial ? "its power, its wires and baud" : "its power and the network");
 }
 
 }  // namespace yuragi::drivers::lufft

@@ -43,7 +43,7 @@ const Fields<MicrophoneInput> kInputFields = {
      &MicrophoneInput::device},
     {{.name = "host_api",
       .default_value = std::string(""),
-      .help = "part of the sound system's name (ALSA, JACK), where several have an input of that name"},
+      .help = "part of the sound system's name (ALSA, JACK), if several have an input of that name"},
      &MicrophoneInput::host_api},
     {{"channels", "", std::int64_t{1}, 1, static_cast<double>(decode::microphone::kMicMaxChannels),
       "number of microphones; with two or more, sound that reaches all alike does not count as wind"},
@@ -72,12 +72,12 @@ const Fields<MicrophoneKeys> kMicrophoneFields = {
     {{.name = "faces",
       .unit = "deg",
       .default_value = std::string(""),
-      .help =
-          "where each of three or four microphones faces, clockwise from north, \"0 120 240\"; empty: no direction"},
+      .help = "the directions that three or four microphones face, clockwise from north, such as \"0 120 240\"; empty: "
+              "no direction"},
      &MicrophoneKeys::faces},
     {{"direction_smoothing", "s", 5.0, 0.5, 600.0, "time constant of the direction, smoothed as a vector"},
      of_estimator(&MicEstimatorOptions::direction_smoothing_s)},
-    {{"least_confidence", "", 0.3, 0.0, 1.0, "least confidence of a direction; below it the reading has none"},
+    {{"least_confidence", "", 0.3, 0.0, 1.0, "minimum confidence of a direction; a reading below it has no direction"},
      of_estimator(&MicEstimatorOptions::least_confidence)},
     {{"window", "s", 1.0, 0.25, 60.0, "averaging time of each reading; there are four readings per second"},
      of_estimator(&MicEstimatorOptions::window_s)},
@@ -123,7 +123,7 @@ MicrophoneSettings settings_of(const MicrophoneKeys& keys, const MicLevelSetting
   estimator.faces_deg = parse_faces(keys.faces);
   if (!estimator.faces_deg.empty()) {
     if (estimator.faces_deg.size() != channels) {
-      throw std::runtime_error("faces must have as many directions as there are channels");
+      throw std::runtime_error("faces: needs one direction for each channel");
     }
     try {
       decode::microphone::MicDirection(estimator.faces_deg, estimator.direction_smoothing_s);
@@ -188,7 +188,7 @@ std::optional<sensor::StatedValue> microphone_value(const ParameterValues& value
 extern const sensor::DriverDescription kMicrophoneDriver;
 const sensor::DriverDescription kMicrophoneDriver{
     .name = "microphone",
-    .summary = "one to four bare microphones, by PortAudio",
+    .summary = "one to four bare microphones, through PortAudio",
     .parameters = kMicrophoneParameters,
     .open = open_microphone,
     .find = find_plugged_microphones,
@@ -197,7 +197,9 @@ const sensor::DriverDescription kMicrophoneDriver{
     .selection = microphone_selection,
     .stated_value = microphone_value,
     .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
-      return Failure{"a simulated microphone needs USB or sound of its own, and rights for it"};
+      return Failure{
+          "a simulated microphone cannot be started here: it needs a virtual sound input, and the permission to create "
+          "it"};
     },
     .calibration = sensor::CalibrationMeans::kSoundLevel,
     .is_relative = true};

@@ -23,7 +23,8 @@ auto of_level(auto member) {
 
 const Fields<LevelKeys>& level_fields() {
   static const Fields<LevelKeys> kLevelFields = {
-      {{"band_low", "Hz", 20.0, 2.0, 1000.0, "lower limit of the band of the wind: what the microphone still passes"},
+      {{"band_low", "Hz", 20.0, 2.0, 1000.0,
+        "lower limit of the band of the wind: the lowest frequency that the microphone passes"},
        of_level(&MicLevelSettings::band_low_hz)},
       {{"band_high", "Hz", 200.0, 10.0, 2000.0, "upper limit of the band"}, of_level(&MicLevelSettings::band_high_hz)},
       {{"gain", "m/s", 0.0, 0.0, 1e6,

@@ -107,17 +107,16 @@ void MicrophoneSensor::take(const decode::microphone::MicBlock& block, const Ins
   sink.refused(estimate.error());
   if (const auto& twins = estimator_->twins()) {
     return report_unusable(
-        sink,
-        fmt::format("{}: channels {} and {} carry the same signal, as a mono input does that is opened as stereo: set "
-                    "channels = 1, or choose the input that has all microphones (`yuragi mic-worker --list`)",
-                    hello_->device, (*twins)[0] + 1, (*twins)[1] + 1));
+        sink, fmt::format("{}: channels {} and {} carry the same signal, like a mono input opened as stereo: set "
+                          "channels = 1, or choose the input that has all microphones (`yuragi mic-worker --list`)",
+                          hello_->device, (*twins)[0] + 1, (*twins)[1] + 1));
   }
-  report_unusable(sink, fmt::format("{}: {}", hello_->device,
-                                    estimate.error() == decode::Refusal::kImplausible
-                                        ? "noise at full scale, which is not wind: check cable, plug and sample format"
-                                    : block.invalid_samples > 0
-                                        ? "invalid samples: check the sample format"
-                                        : "digital silence: check whether it is muted, or its plug is loose"));
+  report_unusable(
+      sink, fmt::format("{}: {}", hello_->device,
+                        estimate.error() == decode::Refusal::kImplausible
+                            ? "noise at full scale, which is not wind: check cable, plug and sample format"
+                        : block.invalid_samples > 0 ? "invalid samples: check the sample format"
+                                                    : "digital silence: check that it is not muted, and its plug"));
 }
 
 void MicrophoneSensor::publish(const decode::microphone::MicEstimate& estimate,

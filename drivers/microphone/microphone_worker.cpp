@@ -108,8 +108,8 @@ bool run_microphone_worker(const MicWorkerOptions& options, bus::AudioInput& inp
     if (!is_read) return true;
     if (!input.is_running()) return fail(name + " stopped: check whether it was unplugged");
     if (clock.now().mono - last_sound > kSoundTimeout) {
-      return fail(fmt::format("{} has been silent for {:g} s: check whether it was unplugged, or hangs", name,
-                              seconds(kSoundTimeout)));
+      return fail(fmt::format("{} has been silent for {:g} s: check whether it was unplugged; if not, plug it in again",
+                              name, seconds(kSoundTimeout)));
     }
     std::this_thread::sleep_for(kTurn);
   }

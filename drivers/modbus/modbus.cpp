@@ -72,31 +72,30 @@ const Fields<ModbusKeys> kModbusFields = {
      &ModbusKeys::device},
     {{.name = "direction_device",
       .default_value = std::string(""),
-      .help = "rtu: the serial port of the vane, where it is on a separate line"},
+      .help = "rtu: the serial port of the vane, if it is on a separate line"},
      &ModbusKeys::direction_device},
-    {{"baud", "bit/s", std::int64_t{0}, 0, 115200, "rtu: 0 takes the profile's"}, &ModbusKeys::baud},
+    {{"baud", "bit/s", std::int64_t{0}, 0, 115200, "rtu: 0: the profile's"}, &ModbusKeys::baud},
     {{.name = "parity",
       .default_value = std::string("profile"),
-      .help = "rtu: \"profile\" takes the profile's",
+      .help = "rtu: \"profile\": the profile's",
       .choices = kParityChoices},
      &ModbusKeys::parity,
      letter_of_parity},
-    {{"stop_bits", "", std::int64_t{0}, 0, 2, "rtu: 0 takes the profile's"}, &ModbusKeys::stop_bits},
+    {{"stop_bits", "", std::int64_t{0}, 0, 2, "rtu: 0: the profile's"}, &ModbusKeys::stop_bits},
     {{"speed_slave", "", std::int64_t{0}, 0, 247,
-      "id of the slave that measures speed, and the other quantities that the profile has on it; 0 takes the "
-      "profile's"},
+      "id of the slave that measures speed, and the other quantities that the profile reads from it; 0: the profile's"},
      &ModbusKeys::speed_slave},
-    {{"direction_slave", "", std::int64_t{0}, 0, 247, "id of the slave that measures direction; 0 takes the profile's"},
+    {{"direction_slave", "", std::int64_t{0}, 0, 247, "id of the slave that measures direction; 0: the profile's"},
      &ModbusKeys::direction_slave},
-    {{"poll_interval", "s", 0.0, 0.0, 3600.0, "interval between readings; 0 takes the profile's"},
+    {{"poll_interval", "s", 0.0, 0.0, 3600.0, "interval between readings; 0: the profile's"},
      &ModbusKeys::poll_interval,
      from_seconds},
     {{"min_gap", "s", 0.0, 0.0, 10.0,
-      "least time from a reply to the next request on this line, for adapters that switch direction slowly; 0 takes "
-      "the profile's"},
+      "minimum time from a reply to the next request on this line, for adapters that switch direction slowly; 0: the "
+      "profile's"},
      &ModbusKeys::min_gap,
      from_seconds},
-    {{"response_timeout", "s", 0.0, 0.0, 10.0, "longest wait for a reply, and for a connection; 0 takes the profile's"},
+    {{"response_timeout", "s", 0.0, 0.0, 10.0, "maximum wait for a reply, and for a connection; 0: the profile's"},
      &ModbusKeys::response_timeout,
      from_seconds},
 };
@@ -152,7 +151,7 @@ std::shared_ptr<ModbusBus> direction_bus_of(const ModbusKeys& keys, const Modbus
                                             const bus::ModbusLine& line) {
   if (keys.direction_device.empty()) return nullptr;
   if (line.framing != ModbusFraming::kRtu) {
-    throw std::runtime_error("direction_device: is for transport rtu; over tcp both slaves are behind one host");
+    throw std::runtime_error("direction_device: is only for transport rtu; with tcp both slaves have the same host");
   }
   if (!profile.direction) {
     throw std::runtime_error("direction_device: profile \"" + profile.name + "\" has no direction");
@@ -243,12 +242,12 @@ sensor::PromisedQuantities modbus_promises(const ParameterValues& values) {
 /// yuragi-sim plays one line.
 Result<sensor::SimulatedDevice, Failure> modbus_simulated(const ParameterValues& values) {
   const ModbusKeys keys = kModbusFields.of(values);
-  if (!keys.direction_device.empty()) return Failure{"yuragi-sim plays one line, and its vane is on a line of its own"};
+  if (!keys.direction_device.empty()) return Failure{"yuragi-sim simulates only one line: leave out direction_device"};
   if (keys.direction_slave != 0 && keys.direction_slave != keys.speed_slave &&
       keys.direction_slave != keys.speed_slave + 1)
-    return Failure{"yuragi-sim plays only a direction_slave that is the speed_slave of its entry, or the next"};
+    return Failure{"yuragi-sim simulates only a direction_slave that equals speed_slave, or is the next id"};
   if (keys.direction_slave != 0 && keys.speed_slave == 0)
-    return Failure{"yuragi-sim plays a direction_slave only where its entry has a speed_slave, too"};
+    return Failure{"yuragi-sim simulates a direction_slave only if speed_slave is set, too"};
   std::string device = std::filesystem::path(keys.profile).stem().string();
   if (keys.speed_slave != 0) device += fmt::format("@{}", keys.speed_slave);
   sensor::SimulatedDevice simulated = sensor::simulated_by_tcp("modbus", values, {"--profile", device});
@@ -261,7 +260,7 @@ Result<sensor::SimulatedDevice, Failure> modbus_simulated(const ParameterValues&
 extern const sensor::DriverDescription kModbusDriver;
 const sensor::DriverDescription kModbusDriver{
     .name = "modbus",
-    .summary = "anemometers and vanes on Modbus TCP or RTU, by device profiles",
+    .summary = "anemometers and vanes on Modbus TCP or RTU, described by device profiles",
     .parameters = kModbusFields.parameters(),
     .open = open_modbus,
     .find = find_modbus,

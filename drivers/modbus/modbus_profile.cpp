@@ -43,7 +43,7 @@ class TableReader {
     if (node == nullptr) return *std::move(fallback);
     const auto* value = node->as_string();
     if (value == nullptr) fail(key, "is not a text; allowed: a text");
-    if (!is_printable(value->get())) fail(key, "has a control character in it; type it anew");
+    if (!is_printable(value->get())) fail(key, "contains a control character; type it again");
     return value->get();
   }
 
@@ -95,7 +95,7 @@ class TableReader {
     for (const toml::node& element : *node->as_array()) {
       const auto* value = element.as_string();
       const auto found = value != nullptr ? std::ranges::find(choices, value->get()) : choices.end();
-      if (found == choices.end()) fail(key, "holds something else; allowed: " + allowed);
+      if (found == choices.end()) fail(key, "contains an entry that is not allowed; allowed: " + allowed);
       chosen.push_back(static_cast<std::size_t>(found - choices.begin()));
     }
     return chosen;
@@ -125,7 +125,7 @@ class TableReader {
     const toml::node* node = take(key, true, "true or false");
     if (node == nullptr) return fallback;
     const auto* value = node->as_boolean();
-    if (value == nullptr) fail(key, "is not a truth value; allowed: true or false");
+    if (value == nullptr) fail(key, "is neither true nor false; allowed: true or false");
     return value->get();
   }
 
@@ -138,7 +138,7 @@ class TableReader {
     for (const toml::node& element : *node->as_array()) {
       const auto* value = element.as_integer();
       if (value == nullptr || value->get() < min || value->get() > max) {
-        fail(key, "holds something else; allowed: " + allowed);
+        fail(key, "contains an entry that is not allowed; allowed: " + allowed);
       }
       values.push_back(value->get());
     }
@@ -238,7 +238,7 @@ decode::modbus::ModbusQuantity read_speed(TableReader reader, std::int64_t addre
 std::optional<sensor::StatedValue> read_value(TableReader& speed) {
   if (!speed.has("value")) {
     for (const char* key : {"averaging_s", "value_source"}) {
-      if (speed.has(key)) speed.fail(key, "is given without value; allowed only beside value");
+      if (speed.has(key)) speed.fail(key, "is set without value; allowed: only together with value");
     }
     return std::nullopt;
   }
@@ -287,7 +287,8 @@ void read_evidence(TableReader& reader, ModbusProfile& profile) {
   }
   profile.unconfirmed = reader.text("unconfirmed");
   if (profile.confirmed_by.empty() && profile.unconfirmed.empty()) {
-    reader.fail("unconfirmed", "is empty, and nobody confirms the profile; allowed: a text that says what is open");
+    reader.fail("unconfirmed",
+                "is empty, but confirmed_by is empty, too; allowed: a text that describes what is unconfirmed");
   }
 }
 

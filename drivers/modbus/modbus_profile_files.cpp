@@ -56,7 +56,8 @@ ModbusProfile read_profile(const fs::path& path) {
   if (fs::is_regular_file(path, ignored)) in.open(path, std::ios::binary);  // a pipe would be waited for
   const std::string text = tables::toml_text(in);
   if (!in.is_open() || in.bad()) {
-    throw std::runtime_error(path.string() + ": the profile cannot be read; check that it is a file and may be read");
+    throw std::runtime_error(path.string() +
+                             ": the profile cannot be read; check that it is a file, and its permissions");
   }
   return parse_modbus_profile(text, path.string());
 }

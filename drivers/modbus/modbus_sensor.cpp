@@ -239,7 +239,7 @@ std::string ModbusSensor::explain(const Read& read, const ModbusTrouble& trouble
       return slave +
              " does not reply, but other slaves do: check its id, and that there is no other master on its line";
     case ModbusTrouble::Kind::kLost:
-      return "the connection to " + read.bus->where() + " broke off: opening it again";
+      return "the connection to " + read.bus->where() + " was lost: reopening it";
     case ModbusTrouble::Kind::kInterrupted:
       return "interrupted";
     case ModbusTrouble::Kind::kRefused:

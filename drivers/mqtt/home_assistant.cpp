@@ -120,9 +120,9 @@ std::optional<AnnouncedValue> value_of(const Announcement& all, const Announceme
   value.pointer = pointer.value_or("");
   value.unit = speed_unit_of_word(unit);
   if (value.topic.empty() || value.topic.find_first_of("+#") != std::string::npos) {
-    value.trouble = "it does not say a topic that can be read";
+    value.trouble = "it names no topic that can be read";
   } else if (!pointer) {
-    value.trouble = fmt::format("its value is made by a template that is not read here: {}", value_template);
+    value.trouble = fmt::format("its value uses a template that is not supported: {}", value_template);
   } else if (*kind != AnnouncedKind::kDirection && value.unit.empty()) {
     value.trouble = fmt::format("its unit \"{}\" is not one of m/s, km/h, kn, mph, ft/s", unit);
   }

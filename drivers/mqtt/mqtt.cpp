@@ -83,7 +83,7 @@ auto of(auto... members) {
 const Fields<MqttKeys> kMqttFields = {
     {{.name = "host", .default_value = std::string("127.0.0.1"), .help = "the broker's name or address"},
      of(&MqttSettings::subscription, &MqttSubscription::host)},
-    {{"port", "", std::int64_t{0}, 0, 65535, "the broker's port; 0 takes 1883, and 8883 with TLS"},
+    {{"port", "", std::int64_t{0}, 0, 65535, "the broker's port; 0: 1883, with TLS 8883"},
      of(&MqttSettings::subscription, &MqttSubscription::port)},
     {{.name = "user", .default_value = std::string(""), .help = "the user name; empty: none"},
      of(&MqttSettings::subscription, &MqttSubscription::user)},
@@ -111,17 +111,17 @@ const Fields<MqttKeys> kMqttFields = {
      [](const std::string& name) { return &mqtt_preset_of(name); }},
     {{.name = "model",
       .default_value = std::string(""),
-      .help = "with rtl_433: the model of the station that is read, such as Acurite-5n1; empty: any. Of several "
-              "stations on the topic the first that is heard is read, until it falls silent"},
+      .help = "with rtl_433: the model of the station to read, such as Acurite-5n1; empty: any. If the topic has "
+              "several stations, the first one received is read, until it is silent"},
      of(&MqttSettings::station, &StationIdentity::model)},
     {{.name = "id",
       .default_value = std::string(""),
-      .help = "with rtl_433: the id of the station that is read; empty: any. Many stations have another one after a "
-              "change of batteries"},
+      .help = "with rtl_433: the id of the station to read; empty: any. Many stations change their id with their "
+              "batteries"},
      of(&MqttSettings::station, &StationIdentity::id)},
     {{.name = "channel",
       .default_value = std::string(""),
-      .help = "with rtl_433: the channel of the station that is read, such as A or 1; empty: any"},
+      .help = "with rtl_433: the channel of the station to read, such as A or 1; empty: any"},
      of(&MqttSettings::station, &StationIdentity::channel)},
     {{.name = "topic",
       .default_value = std::string(""),
@@ -130,24 +130,22 @@ const Fields<MqttKeys> kMqttFields = {
      of(&MqttSettings::speed, &MqttSource::topic)},
     {{.name = "speed_path",
       .default_value = std::string(""),
-      .help = "JSON pointer to the speed, such as /TX23/Speed/Act; empty takes the preset's"},
+      .help = "JSON pointer to the speed, such as /TX23/Speed/Act; empty: the preset's"},
      &MqttKeys::speed_path},
     {{.name = "direction_topic", .default_value = std::string(""), .help = "the direction's own topic"},
      of(&MqttSettings::direction, &MqttSource::topic)},
     {{.name = "direction_path",
       .default_value = std::string(""),
-      .help = "JSON pointer to the direction in degrees; empty takes the preset's"},
+      .help = "JSON pointer to the direction in degrees; empty: the preset's"},
      &MqttKeys::direction_path},
     {{.name = "gust_topic", .default_value = std::string(""), .help = "the gust's own topic"},
      of(&MqttSettings::gust, &MqttSource::topic)},
-    {{.name = "gust_path",
-      .default_value = std::string(""),
-      .help = "JSON pointer to the gust; empty takes the preset's"},
+    {{.name = "gust_path", .default_value = std::string(""), .help = "JSON pointer to the gust; empty: the preset's"},
      &MqttKeys::gust_path},
     {{.name = "speed_unit",
       .default_value = std::string("preset"),
-      .help = "the unit of speed and gust, where the message does not say it (Tasmota's SpeedUnit, rtl_433's keys); "
-              "\"preset\" takes the preset's",
+      .help = "the unit of speed and gust, if the message has none (Tasmota's SpeedUnit, rtl_433's keys); \"preset\": "
+              "the preset's",
       .choices = kMqttUnits},
      &MqttKeys::speed_unit},
     {{"hold", "s", 60.0, 0.1, 86400.0, "a direction or gust is used for this long with speeds that come without one"},
@@ -158,8 +156,8 @@ const Fields<MqttKeys> kMqttFields = {
      from_seconds},
     {{.name = "on_change",
       .default_value = false,
-      .help = "the publisher speaks on change only (Home Assistant's statestream): a silence says that the wind is "
-              "unchanged, for as long as `silence`, which has to be longer than the longest calm"},
+      .help = "the publisher sends only changes (Home Assistant's statestream): without messages the wind counts as "
+              "unchanged, for as long as `silence`, which must be longer than the longest calm"},
      &MqttKeys::speaks_on_change},
     {{"keep_alive", "s", std::int64_t{15}, 5, 3600, "a broker that sends nothing for this long is pinged"},
      of(&MqttSettings::subscription, &MqttSubscription::keep_alive),
@@ -272,7 +270,8 @@ class MqttSensor final : public sensor::ReopeningSensor {
     if (!settings_.preset->names_stations || !payload.json().is_object()) return true;
     const StationIdentity station = station_of(payload);
     if (!settings_.station.covers(station)) {
-      if (note_.empty()) note_ = "; it hears " + describe(station) + ", which is not the station that is set";
+      if (note_.empty())
+        note_ = "; it receives " + describe(station) + ", but model, id or channel select another station";
       return false;
     }
     const bool has_wind = place_in(payload, settings_.speed) != nullptr || place_in(payload, settings_.gust) != nullptr;
@@ -286,7 +285,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     if (!word) return settings_.metres_per_second;
     if (const auto known = decode::speed_unit_of_word(*word)) return known->metres_per_second;
     if (settings_.has_own_unit) return settings_.metres_per_second;
-    note_ = fmt::format("; it says its speed in \"{}\", which is not known: set speed_unit", shown(*word));
+    note_ = fmt::format("; the unit of its speed, \"{}\", is unknown: set speed_unit", shown(*word));
     return decode::Refusal::kInvalid;
   }
 
@@ -377,8 +376,8 @@ class MqttSensor final : public sensor::ReopeningSensor {
 void check_source(std::string_view name, const MqttSource& source) {
   if (!source.topic.empty() && !bus::is_mqtt_filter(source.topic)) {
     throw std::runtime_error(
-        fmt::format("{}topic: \"{}\" is not a topic; # is allowed at the end only, and + in place of a whole level",
-                    name, source.topic));
+        fmt::format("{}topic: \"{}\" is not a topic; # is allowed only at the end, and + only as a whole level", name,
+                    source.topic));
   }
   for (const MqttPlace& place : source.places) {
     if (decode::is_json_pointer(place.pointer)) continue;
@@ -442,7 +441,7 @@ MqttSettings mqtt_settings_of(const ParameterValues& values) {
   complete(settings.direction, keys.direction_path, preset.direction);
   complete(settings.gust, keys.gust_path, preset.gust);
   if (!settings.station.is_empty() && !preset.names_stations)
-    throw std::runtime_error("model, id, channel: are for preset \"rtl_433\" alone; leave them out");
+    throw std::runtime_error("model, id, channel: are only for preset \"rtl_433\"; leave them out");
 
   MqttSubscription& subscription = settings.subscription;
   subscription.port = broker_port_of(subscription);
@@ -506,7 +505,7 @@ const sensor::DriverDescription kMqttDriver{
     .selection = mqtt_selection,
     .unchanged_for_s = mqtt_unchanged_for_s,
     .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
-      return Failure{"there is no simulated device for the driver mqtt: it would take a broker, too"};
+      return Failure{"the driver mqtt has no simulated device, because that would also need a broker"};
     }};
 
 }  // namespace yuragi::drivers::mqtt

@@ -57,9 +57,8 @@ void StationChoice::restart() noexcept {
 
 std::string StationChoice::warning(MonoTime now) const {
   if (!other_ || now - other_at_ >= patience_) return {};
-  return fmt::format(
-      "; it reads {}, but another station is heard too: {}; say which one is meant by model, id, channel",
-      describe(*read_), describe(*other_));
+  return fmt::format("; it reads {}, but another station is received, too: {}; select one with model, id, channel",
+                     describe(*read_), describe(*other_));
 }
 
 }  // namespace yuragi::drivers::mqtt

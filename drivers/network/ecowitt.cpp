@@ -32,20 +32,20 @@ struct EcowittSettings {
 const Fields<EcowittSettings> kEcowittFields = {
     {{.name = "host",
       .default_value = std::string(""),
-      .help = "the gateway's name or address; its router should always give it the same"},
+      .help = "the gateway's name or address; the router should always give it the same address"},
      [](EcowittSettings& settings) -> std::string& { return settings.port.host; }},
     {{"port", "", std::int64_t{45000}, 1, 65535, "the TCP port of the gateway's local interface"},
      [](EcowittSettings& settings) -> std::uint16_t& { return settings.port.port; }},
     {{"sensor_interval", "s", 16.0, 0.1, 3600.0,
-      "how often the anemometer speaks: WH65, WS68, WS69 16 s; WS90 8.8 s; WS80 4.75 s; values that have not changed "
-      "are a new reading only after this time"},
+      "how often the anemometer sends: WH65, WS68, WS69 16 s; WS90 8.8 s; WS80 4.75 s; unchanged values count as a new "
+      "reading only after this time"},
      &EcowittSettings::sensor_interval,
      from_seconds},
     {{"poll_interval", "s", 4.0, 0.1, 3600.0,
-      "how often the gateway is asked; at most half of sensor_interval shows each change in time"},
+      "how often the gateway is asked; set at most half of sensor_interval, or changes are seen late"},
      &EcowittSettings::poll_interval,
      from_seconds},
-    {{"response_timeout", "s", 3.0, 0.1, 60.0, "longest wait for a connection, and for a reply"},
+    {{"response_timeout", "s", 3.0, 0.1, 60.0, "maximum wait for a connection, and for a reply"},
      &EcowittSettings::response_timeout,
      from_seconds},
 };
@@ -137,7 +137,8 @@ class EcowittSensor final : public sensor::ReopeningSensor {
       return fmt::format("{} does not reply within {:g} s: check that it is a gateway of Ecowitt or Fine Offset",
                          where_, seconds(settings_.response_timeout));
     if (why == decode::Refusal::kInvalid)
-      return fmt::format("{} hears no anemometer: check its battery, and that the gateway knows it", where_);
+      return fmt::format("{} receives no anemometer: check its battery, and that it is registered in the gateway",
+                         where_);
     return fmt::format("the replies of {} cannot be used ({}): check that it is a gateway of Ecowitt or Fine Offset",
                        where_, name_of(why));
   }

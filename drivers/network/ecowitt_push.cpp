@@ -51,16 +51,15 @@ struct EcowittPushKeys {
 const Fields<EcowittPushKeys> kEcowittPushFields = {
     {{.name = "host",
       .default_value = std::string("127.0.0.1"),
-      .help = "the local address to listen at: this machine's in the gateway's network; 127.0.0.1 hears this machine "
-              "only, 0.0.0.0 listens at all"},
+      .help = "the local address to listen at: this machine's in the gateway's network; 127.0.0.1: for pushes of this "
+              "machine only; 0.0.0.0: all addresses"},
      [](EcowittPushKeys& keys) -> std::string& { return keys.address.host; }},
-    {{"port", "", std::int64_t{8090}, 1, 65535,
-      "the TCP port to listen at; each sensor of this driver has one of its own"},
+    {{"port", "", std::int64_t{8090}, 1, 65535, "the TCP port to listen at; each sensor of this driver needs its own"},
      [](EcowittPushKeys& keys) -> std::uint16_t& { return keys.address.port; }},
     {{.name = "from",
       .default_value = std::string(""),
-      .help = "who may push: addresses and nets separated by commas (192.168.1.30, 10.0.0.0/8); 0.0.0.0/0: any; may be "
-              "empty only where host hears this machine alone"},
+      .help = "who may push: addresses and networks separated by commas (192.168.1.30, 10.0.0.0/8); 0.0.0.0/0: any; "
+              "can be empty only if host is an address such as 127.0.0.1"},
      &EcowittPushKeys::from},
     {{.name = "host_name",
       .default_value = std::string(""),
@@ -69,13 +68,14 @@ const Fields<EcowittPushKeys> kEcowittPushFields = {
      &EcowittPushKeys::host_name},
     {{.name = "path",
       .default_value = std::string(""),
-      .help = "the path that is taken, as it is set in the gateway: /data/report/; empty: any"},
+      .help = "the path to accept, as set in the gateway: /data/report/; empty: any"},
      &EcowittPushKeys::path},
-    Parameter{.name = "station_key",
-              .default_value = Secret(),
-              .help = "the station that is taken: its PASSKEY (Ecowitt, Ambient Weather) or ID (Wunderground); empty: "
-                      "the first one that pushes, until it falls silent, with a warning while there are others; no log "
-                      "and no recording shows it"},
+    Parameter{
+        .name = "station_key",
+        .default_value = Secret(),
+        .help =
+            "the station to accept: its PASSKEY (Ecowitt, Ambient Weather) or ID (Wunderground); empty: the first one "
+            "that pushes, until it is silent, with a warning if there are others; no log and no recording shows it"},
     {{"silence", "s", 300.0, 0.1, 86400.0,
       "without wind for this long, and for five times its usual interval, the station counts as silent"},
      &EcowittPushKeys::silence,
@@ -88,17 +88,17 @@ constexpr std::string_view kEcowittPushSetup =
     "Customized), or in a console's menu of weather services:\n"
     "\n"
     "  Customized           Enable\n"
-    "  Protocol Type        Ecowitt; Wunderground is taken, too\n"
-    "  Server IP/Hostname   this machine's address in the gateway's network, the one of `host`\n"
+    "  Protocol Type        Ecowitt or Wunderground\n"
+    "  Server IP/Hostname   this machine's address in the gateway's network, as in `host`\n"
     "  Path                 /data/report/\n"
     "                       Wunderground, Ambient Weather: with a question mark at its end, as in\n"
     "                       /weatherstation/updateweatherstation.php?\n"
     "  Station ID, Key      Wunderground: any text\n"
     "  Port                 8090, or what `port` is set to\n"
-    "  Upload Interval      16 s, at which most anemometers speak, or the least that it takes: of the gusts in\n"
-    "                       between, nothing but the strongest is told\n"
+    "  Upload Interval      16 s, the interval of most anemometers, or the minimum that can be set: of the\n"
+    "                       gusts between two pushes only the strongest is reported\n"
     "\n"
-    "`host` and `from` have to be set: 127.0.0.1 hears no gateway. A firewall has to let the port through.\n";
+    "Set `host` and `from`: no gateway can reach 127.0.0.1. Open the port in the firewall.\n";
 
 struct EcowittPushSettings {
   Address address;
@@ -183,17 +183,17 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     static std::pair<decode::Refusal, std::string_view> meaning_of(HttpFailure why) {
       switch (why) {
         case HttpFailure::kTooSlow:
-          return {decode::Refusal::kTimeout, "connects and does not push in time"};
+          return {decode::Refusal::kTimeout, "connects, but does not push in time"};
         case HttpFailure::kCutOff:
-          return {decode::Refusal::kTooShort, "pushes, and ends before all of it has come: check the network"};
+          return {decode::Refusal::kTooShort, "ends the connection before its push is complete: check the network"};
         case HttpFailure::kTooMany:
-          return {decode::Refusal::kTooFrequent, "connects too often, and does not push"};
+          return {decode::Refusal::kTooFrequent, "connects too often without a push"};
         case HttpFailure::kTooLong:
-          return {decode::Refusal::kMalformed, "pushes more than any station says"};
+          return {decode::Refusal::kMalformed, "pushes more data than a station sends"};
         case HttpFailure::kMalformed:
           break;
       }
-      return {decode::Refusal::kMalformed, "does not speak HTTP: check what it is"};
+      return {decode::Refusal::kMalformed, "does not use HTTP: check which device it is"};
     }
 
     EcowittPushSensor& sensor_;
@@ -206,7 +206,8 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     using decode::Refusal;
     if (!limit_.admits(now.mono)) return PushRefusal{Refusal::kTooFrequent, {429, "too many pushes"}};
     const bool is_post = request.method == "POST";
-    if (!is_post && request.method != "GET") return PushRefusal{Refusal::kNotMine, {405, "GET and POST are taken"}};
+    if (!is_post && request.method != "GET")
+      return PushRefusal{Refusal::kNotMine, {405, "only GET and POST are accepted"}};
 
     const auto target = decode::network::split_push_target(request.target);
     const std::string_view form = is_post ? request.body : target.form;
@@ -215,7 +216,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     const std::string sender = bus::plain_address(request.sender).to_string();
     // A page of anybody, open in a browser of this network, can have it push.
     if (request.is_of_browser) {
-      trouble_ = "a web page in a browser at " + sender + " pushes: it is refused";
+      trouble_ = "refuses pushes of a web browser at " + sender;
       return PushRefusal{Refusal::kNotMine, {403, "browsers are refused"}};
     }
     if (!request.host.empty() && !is_known_host(request.host, settings_.host_names)) {
@@ -228,13 +229,13 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     }
     if (!settings_.path.empty() && target.path != settings_.path) {
       trouble_ = sender + " pushes to another path: set Path in the gateway to " + settings_.path + "/, or path here";
-      return PushRefusal{Refusal::kNotMine, {404, "another path is taken"}};
+      return PushRefusal{Refusal::kNotMine, {404, "wrong path"}};
     }
     const auto push = decode::network::decode_station_push(form);
     if (!push) {
       trouble_ = fmt::format(
-          "what {} pushes cannot be used ({}): choose the protocol Ecowitt or Wunderground, the latter with a question "
-          "mark at the end of its path",
+          "the push of {} cannot be used ({}): choose the protocol Ecowitt; or Wunderground, with a question mark at "
+          "the end of its path",
           sender, name_of(push.error()));
       return PushRefusal{push.error(), {400, fmt::format("no values of a station ({})", name_of(push.error()))}};
     }
@@ -242,8 +243,8 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     const std::string kind = push->kind.empty() ? "a station" : decode::network::push_text(push->kind);
     const std::string station = kind + " at " + sender;
     if (!station_.hears(std::string(push->identity), station, now.mono)) {
-      if (!settings_.station_key.is_empty()) trouble_ = station + " pushes, and is not the one of `station_key`";
-      return PushRefusal{Refusal::kNotMine, {403, "another station is taken"}};
+      if (!settings_.station_key.is_empty()) trouble_ = station + " pushes, but `station_key` selects another station";
+      return PushRefusal{Refusal::kNotMine, {403, "wrong station"}};
     }
     wind::StationQuantities said = push->quantities;
     said.time = now;
@@ -252,9 +253,10 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
       publish(*push, station, now, sink);
     } else {
       is_silent_ = true;
-      trouble_ = push->wind.error() == Refusal::kInvalid
-                     ? station + " pushes no wind: check the anemometer's battery, and that the gateway knows it"
-                     : fmt::format("the wind that {} pushes cannot be used ({})", station, name_of(push->wind.error()));
+      trouble_ =
+          push->wind.error() == Refusal::kInvalid
+              ? station + " pushes no wind: check the anemometer's battery, and that it is registered in the gateway"
+              : fmt::format("the wind that {} pushes cannot be used ({})", station, name_of(push->wind.error()));
       sink.refused(push->wind.error());
     }
     return std::nullopt;
@@ -267,7 +269,8 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     trouble_.clear();
     const std::string rival = station_.rival(now.mono);
     const std::string warning =
-        rival.empty() ? "" : fmt::format("; {} pushes, too, and is not used: choose one by station_key or path", rival);
+        rival.empty() ? ""
+                      : fmt::format("; {} pushes, too, but is not used: select one with station_key or path", rival);
     report_connected(sink, fmt::format("{} pushes to {}{}", station, where_, warning));
     sink.reading({.time = now,
                   .speed_m_s = *push.wind->speed_m_s,
@@ -282,12 +285,11 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     const std::string stranger =
         stranger_.empty() ? "" : fmt::format("; refuses {}, which is not in `from`", stranger_);
     if (settings_.is_for_this_machine)
-      return fmt::format("waits for pushes to {}, of this machine alone: a gateway needs another host, and from",
-                         where_);
+      return fmt::format("waits for pushes to {}, from this machine only: for a gateway, set host and from", where_);
     if (silence_.length(now) < settings_.silence) return fmt::format("waits for pushes to {}{}", where_, stranger);
     return fmt::format(
-        "nothing has been pushed to {} for {:g} s: check that the gateway is on, its page Customized (`yuragi sensors "
-        "describe ecowitt-push` says what to enter), and that no firewall stops TCP port {}{}",
+        "no push has arrived at {} for {:g} s: check that the gateway is on, its page Customized (`yuragi sensors "
+        "describe ecowitt-push` shows what to enter), and that no firewall blocks TCP port {}{}",
         where_, seconds(settings_.silence), settings_.address.port, stranger);
   }
 
@@ -323,8 +325,8 @@ EcowittPushSettings ecowitt_push_settings_of(const ParameterValues& values) {
   if (!from) throw std::runtime_error("from: " + from.error().message);
   if (keys.from.empty() && !*is_loopback) {
     throw std::runtime_error("from: is missing; host " + host +
-                             " hears other machines: name the gateway (192.168.1.30) or its net (192.168.1.0/24), or "
-                             "0.0.0.0/0 for any");
+                             " accepts other machines: give the gateway (192.168.1.30) or its network "
+                             "(192.168.1.0/24), or 0.0.0.0/0 for any");
   }
   settings.from = std::move(*from);
   return settings;
@@ -355,7 +357,7 @@ Result<sensor::SimulatedDevice, Failure> ecowitt_push_simulated(const ParameterV
 extern const sensor::DriverDescription kEcowittPushDriver;
 const sensor::DriverDescription kEcowittPushDriver{
     .name = "ecowitt-push",
-    .summary = "stations that push their values here by HTTP: Ecowitt, Ambient Weather, Wunderground",
+    .summary = "stations that push their values to this machine by HTTP: Ecowitt, Ambient Weather, Wunderground",
     .parameters = kEcowittPushFields.parameters(),
     .open = open_ecowitt_push,
     .endpoints = ecowitt_push_endpoints,

@@ -34,7 +34,7 @@ std::string listen_remedy_of(const boost::system::error_code& error) {
   if (error == boost::asio::error::address_in_use)
     return "another program or sensor uses this port; end it, or choose another port";
   if (error == boost::system::errc::address_not_available)
-    return "this machine does not have that address; `ip address` lists those that it has";
+    return "this machine does not have that address; `ip address` lists its addresses";
   if (error == boost::asio::error::access_denied) return "ports below 1024 need a privilege; choose a higher one";
   return "check host and port";
 }
@@ -116,7 +116,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
     }
     if (error.category() == beast::error_code(http::error::bad_method).category()) {
       service->failed(HttpFailure::kMalformed, sender_);
-      return reply({.status = 400, .text = "this is no HTTP"});
+      return reply({.status = 400, .text = "this is not HTTP"});
     }
     if (parser_.got_some()) service->failed(HttpFailure::kCutOff, sender_);
   }
@@ -232,7 +232,7 @@ void HttpServer::accept() {
     if (error == boost::asio::error::operation_aborted) return;
     // What the client has undone in the meantime is its own affair.
     if (error && error != boost::asio::error::connection_aborted) {
-      failure_ = Failure{"cannot accept connections (" + error.message() + "): opened again"};
+      failure_ = Failure{"cannot accept connections (" + error.message() + "): reopening it"};
       return;
     }
     if (!error) contain("accepting a connection that pushes", [&] { take(std::move(socket)); });

@@ -46,8 +46,8 @@ auto of(auto member) {
 const Fields<TempestSettings> kTempestFields = {
     {{.name = "serial_number",
       .default_value = std::string(""),
-      .help = "the station, as it says on it: ST-00000512 (Tempest), SK-00008453 (Sky); empty: the first one that is "
-              "heard, with a warning while there are others"},
+      .help = "the station, as printed on it: ST-00000512 (Tempest), SK-00008453 (Sky); empty: the first one received, "
+              "with a warning if there are others"},
      &TempestSettings::serial_number},
     {{"port", "", std::int64_t{50222}, 1, 65535,
       "the UDP port that hubs broadcast to; other programs on this machine may listen there, too"},
@@ -58,8 +58,8 @@ const Fields<TempestSettings> kTempestFields = {
      of(&bus::BytePortAddress::host)},
     {{.name = "from",
       .default_value = std::string(""),
-      .help = "the hubs that are heard: addresses and nets (192.168.1.20, 10.0.0.0/8) separated by commas; empty: any; "
-              "at most 100 readings a second are taken"},
+      .help = "accept only these hubs: addresses and networks (192.168.1.20, 10.0.0.0/8) separated by commas; empty: "
+              "any; at most 100 readings a second are accepted"},
      of(&bus::BytePortAddress::senders)},
     {{"silence", "s", 60.0, 0.1, 86400.0,
       "without wind for this long, and for five times its usual interval, the station counts as silent"},
@@ -138,7 +138,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
     is_silent_ = false;
     const std::string rival = station_.rival(now.mono);
     const std::string warning =
-        rival.empty() ? "" : fmt::format("; {} is heard, too, and not used: choose one by serial_number", rival);
+        rival.empty() ? "" : fmt::format("; {} is received, too, but not used: select one with serial_number", rival);
     report_connected(sink, fmt::format("station {} of hub {} at {}{}", message.serial_number, hub_, where_, warning));
     sink.reading({.time = now,
                   .speed_m_s = *message.wind->speed_m_s,
@@ -154,16 +154,15 @@ class TempestSensor final : public sensor::ReopeningSensor {
     if (!hub_.empty() && now - hub_heard_at_ < std::max(settings_.silence, kHubPatience)) {
       if (!settings_.serial_number.empty() && !other_.empty())
         return fmt::format(
-            "hears hub {} and station {} at {}, but not {}: check serial_number, and that station's "
-            "battery",
-            hub_, other_, where_, station);
-      return fmt::format("hears hub {} at {}, but no wind of {}{}", hub_, where_, station,
+            "receives hub {} and station {} at {}, but not {}: check serial_number, and that station's battery", hub_,
+            other_, where_, station);
+      return fmt::format("receives hub {} at {}, but no wind of {}{}", hub_, where_, station,
                          has_waited ? ": check the station's battery, and that the hub is within its reach" : " yet");
     }
     if (!has_waited) return fmt::format("waits for a hub's broadcasts at {}", where_);
     return fmt::format(
-        "no hub has been heard at {} for {:g} s: check that it is on, that it is in this network, and "
-        "that no firewall stops UDP port {}",
+        "no hub has been received at {} for {:g} s: check that it is on, that it is in this network, and that no "
+        "firewall blocks UDP port {}",
         where_, seconds(settings_.silence), settings_.port.port);
   }
 

@@ -63,8 +63,8 @@ std::vector<sensor::FoundDevice> find_tempest_stations(const sensor::NetworkSear
     if (!stations.empty()) continue;
     found.push_back({.what = fmt::format("WeatherFlow hub {}", hub),
                      .settings = {},
-                     .trouble = "no station with a wind has spoken through it",
-                     .remedy = "search for longer: a station that saves its battery speaks every 5 minutes"});
+                     .trouble = "it has forwarded no wind of a station",
+                     .remedy = "search longer: a station that saves its battery sends every 5 minutes"});
   }
   return found;
 }

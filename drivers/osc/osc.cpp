@@ -53,17 +53,17 @@ const Fields<OscSettings> kOscFields = {
      of(&bus::BytePortAddress::port)},
     {{.name = "host",
       .default_value = std::string("127.0.0.1"),
-      .help = "the local address to listen on: 127.0.0.1 hears this machine only, 0.0.0.0 listens on all; or a "
-              "multicast address"},
+      .help = "the local address to listen on: 127.0.0.1: for messages of this machine only; 0.0.0.0: all addresses; "
+              "or a multicast address"},
      of(&bus::BytePortAddress::host)},
     {{.name = "from",
       .default_value = std::string(""),
-      .help = "who may send: addresses and nets separated by commas (192.168.1.20, 10.0.0.0/8); 0.0.0.0/0: any; may be "
-              "empty only where host hears this machine alone"},
+      .help = "who may send: addresses and networks separated by commas (192.168.1.20, 10.0.0.0/8); 0.0.0.0/0: any; "
+              "can be empty only if host is an address such as 127.0.0.1"},
      of(&bus::BytePortAddress::senders)},
     {{.name = "address",
       .default_value = std::string("/wind"),
-      .help = "the messages' OSC address, or a pattern: /station/*/wind; at most 100 readings a second are taken"},
+      .help = "the messages' OSC address, or a pattern: /station/*/wind; at most 100 readings a second are accepted"},
      &OscSettings::address},
     {{"speed_argument", "", std::int64_t{0}, 0, 63, "which argument is the speed; the first is 0"},
      &OscSettings::speed_argument},
@@ -83,8 +83,8 @@ const Fields<OscSettings> kOscFields = {
      from_seconds},
     {{.name = "on_change",
       .default_value = false,
-      .help = "the sender speaks on change only: a silence says that the wind is unchanged, for as long as `silence`, "
-              "which has to be longer than the longest calm"},
+      .help = "the sender sends only changes: without messages the wind counts as unchanged, for as long as `silence`, "
+              "which must be longer than the longest calm"},
      &OscSettings::speaks_on_change},
 };
 
@@ -145,7 +145,7 @@ class OscSensor final : public sensor::ReopeningSensor {
       has_received_ = true;  // the status now reports more than waiting
       report_unusable(sink, fmt::format("no wind has been received on {} for {:g} s: check that the sender is running, "
                                         "that it sends {} there, and "
-                                        "that no firewall stops it{}",
+                                        "that no firewall blocks it{}",
                                         where_, seconds(settings_.silence), settings_.address, strangers_ + future_));
     }
     return now.mono;
@@ -164,7 +164,7 @@ class OscSensor final : public sensor::ReopeningSensor {
   void refuse_future(const bus::OscMessage& message, Instant now, sensor::SensorSink& sink) {
     sink.refused(decode::Refusal::kInvalid);
     if (future_.empty()) {
-      future_ = fmt::format("; refuses messages that are meant for {:.0f} s later: compare the clocks of both machines",
+      future_ = fmt::format("; refuses messages with a time {:.0f} s in the future: set the clocks of both machines",
                             seconds(*message.meant_for - now.utc));
     }
   }
@@ -212,7 +212,7 @@ void check_senders(const std::string& host, const std::string& from) {
   if (from.empty() && !*is_loopback) {
     throw std::runtime_error(
         "from: is missing; host " + host +
-        " hears other machines: name those that may send (192.168.1.20, 10.0.0.0/8), or 0.0.0.0/0 for "
+        " accepts other machines: give those that may send (192.168.1.20, 10.0.0.0/8), or 0.0.0.0/0 for "
         "any");
   }
 }
@@ -244,9 +244,9 @@ double osc_unchanged_for_s(const ParameterValues& values) {
 Result<sensor::SimulatedDevice, Failure> osc_simulated(const ParameterValues& values) {
   const OscSettings settings = kOscFields.of(values);
   if (settings.address.find_first_of("?*[]{}") != std::string::npos)
-    return Failure{"yuragi-sim sends to one OSC address, and this one is a pattern"};
-  if (settings.metres_per_second != 1.0) return Failure{"yuragi-sim sends speeds in m/s"};
-  if (settings.direction_argument < 0) return Failure{"yuragi-sim sends a direction, too"};
+    return Failure{"yuragi-sim sends to one OSC address, but address is a pattern"};
+  if (settings.metres_per_second != 1.0) return Failure{"yuragi-sim sends speeds only in m/s: set speed_unit to m/s"};
+  if (settings.direction_argument < 0) return Failure{"yuragi-sim always sends a direction: set direction_argument"};
   return sensor::simulated_sender(
       "osc", "--to", values,
       {"--address", settings.address, "--speed-argument", std::to_string(settings.speed_argument),

@@ -48,7 +48,7 @@ const Fields<ReplayKeys> kWindlogFields = {
       .default_value = 1.0,
       .min = 0.01,
       .max = 1000.0,
-      .help = "seconds of the recording that are played per second",
+      .help = "speed of playing: 2 plays two seconds of the recording each second",
       .change = KeyChange::kAtOnce},
      of_options(&PlayerOptions::rate)},
     {{.name = "loop", .default_value = false, .help = "start again at the end"}, of_playback(&PlaybackOptions::loop)},
@@ -60,13 +60,13 @@ const Fields<ReplayKeys> kWindlogFields = {
      of_playback(&PlaybackOptions::start)},
     {{.name = "same_time_of_day",
       .default_value = false,
-      .help = "start, and start again, at the present local time of day: on the first day from `start` on that "
-              "contains it, else at the next later reading"},
+      .help = "start, and restart, at the present local time of day: on the first day from `start` on with a reading "
+              "then, otherwise at the next later reading"},
      of_options(&PlayerOptions::at_time_of_day)},
     {{.name = "utc_offset",
       .default_value = std::string{},
-      .help = "for same_time_of_day, of the place of the recording: hours ahead of UTC (1, -3.5); empty: this "
-              "machine's time zone"},
+      .help = "for same_time_of_day: the time zone of the recording's place, in hours ahead of UTC (1, -3.5); empty: "
+              "this machine's time zone"},
      &ReplayKeys::utc_offset},
     {{.name = "paused", .default_value = false, .help = "start paused, at the first reading"},
      of_options(&PlayerOptions::is_paused)},
@@ -259,7 +259,7 @@ const sensor::DriverDescription kWindlogDriver{
     .endpoints = windlog_endpoints,
     .selection = windlog_selection,
     .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
-      return Failure{"there is no simulated device for the driver windlog, which plays a recording"};
+      return Failure{"the driver windlog has no simulated device, because it plays a recording"};
     },
     .plays_recordings = true};
 

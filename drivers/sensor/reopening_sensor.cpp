@@ -23,7 +23,7 @@ MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
   Result<MonoTime, Failure> next = Failure{};
   contain(
       "a sensor's driver", [&] { next = is_open_ ? work(clock, sink) : open(clock); },
-      [&](const char* what) { next = Failure{std::string("its driver failed (") + what + "); it is opened again"}; });
+      [&](const char* what) { next = Failure{std::string("its driver failed (") + what + "): reopening it"}; });
   if (next) {
     is_open_ = true;
     next_poll_ = *next;

@@ -22,7 +22,7 @@ Secret secret_of(const ParameterValues& values, const std::string& name) {
   const std::string& file = values.text(name + "_file");
   const std::string& variable = values.text(name + "_env");
   if (static_cast<int>(!secret.is_empty()) + static_cast<int>(!file.empty()) + static_cast<int>(!variable.empty()) > 1)
-    throw std::runtime_error(fmt::format("{0}: is given more than once; allowed: one of {0}, {0}_file, {0}_env", name));
+    throw std::runtime_error(fmt::format("{0}: is set more than once; allowed: one of {0}, {0}_file, {0}_env", name));
   const auto found = [&name](std::string_view place, const Result<Secret, Failure>& result) {
     if (!result) throw std::runtime_error(fmt::format("{}_{}: {}", name, place, result.error().message));
     return *result;

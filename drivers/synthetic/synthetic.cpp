@@ -19,7 +19,7 @@ auto of(auto member) {
 
 const Fields<SyntheticKeys> kSyntheticFields = {
     {{"speed", "m/s", 5.0, 0.0, 60.0, "mean wind speed"}, of(&SyntheticWindSettings::mean_speed_m_s)},
-    {{"direction", "deg", 240.0, 0.0, 360.0, "where the wind comes from, clockwise from north"},
+    {{"direction", "deg", 240.0, 0.0, 360.0, "direction that the wind comes from, clockwise from north"},
      of(&SyntheticWindSettings::mean_direction_deg)},
     {{"turbulence", "", 0.3, 0.0, 1.0, "turbulence intensity: standard deviation over mean speed"},
      of(&SyntheticWindSettings::turbulence_intensity)},
@@ -78,7 +78,7 @@ const sensor::DriverDescription kSyntheticDriver{
               sensor::StatedValue{.value = wind::ReadingValue::kInstant, .source = "drivers/synthetic"});
         },
     .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
-      return Failure{"there is no simulated device for the driver synthetic, which is one itself"};
+      return Failure{"the driver synthetic has no simulated device, because it needs no device"};
     }};
 
 }  // namespace yuragi::drivers::synthetic

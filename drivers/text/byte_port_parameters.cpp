@@ -78,8 +78,8 @@ const Fields<BytePortKeys>& byte_port_fields() {
        of_address(&BytePortAddress::port)},
       {{.name = "sender",
         .default_value = std::string(""),
-        .help = "udp: accept datagrams from these only: addresses and nets (192.168.1.0/24) separated by commas; "
-                "empty: from any; at most 100 readings a second are taken"},
+        .help = "udp: accept datagrams only from these: addresses and networks (192.168.1.0/24) separated by commas; "
+                "empty: from any; at most 100 readings a second are accepted"},
        of_address(&BytePortAddress::senders)},
       {{.name = "file", .default_value = std::string(""), .help = "file: path of a file or named pipe"},
        &BytePortKeys::file},
@@ -95,16 +95,16 @@ const Fields<BytePortKeys>& byte_port_fields() {
       {{"poll_interval", "s", 0.0, 0.0, 3600.0, "interval between requests; 0: the device sends without requests"},
        of_text(&TextSensorSettings::poll_interval),
        from_seconds},
-      {{"response_timeout", "s", 0.5, 0.05, 60.0, "longest wait for the reply to a request"},
+      {{"response_timeout", "s", 0.5, 0.05, 60.0, "maximum wait for the reply to a request"},
        of_text(&TextSensorSettings::response_timeout),
        from_seconds},
       {{"silence_timeout", "s", 0.0, 0.0, 86400.0,
-        "a device that is silent for this long is opened again; 0: ten times its usual pause between readings, at "
+        "a device that is silent for this long is reopened; 0: ten times its usual pause between readings, at "
         "least 6 s, doubled after each attempt without a reading"},
        of_text(&TextSensorSettings::silence_timeout),
        from_seconds},
       {{"delay_after_open", "s", 0.0, 0.0, 60.0,
-        "messages are discarded for this long after opening; an Arduino restarts whenever its port is opened"},
+        "messages are discarded for this long after opening; an Arduino restarts each time its port is opened"},
        of_text(&TextSensorSettings::delay_after_open),
        from_seconds},
   };

@@ -35,7 +35,7 @@ const Fields<ChosenWindSettings>& chosen_wind_fields() {
       {{.name = "reference",
         .default_value = std::string("auto"),
         .help =
-            "which wind to use where several are sent: from north, relative to the device's mark or the bow "
+            "which wind to use if several are sent: from north, relative to the device's mark or the bow "
             "(apparent), true (from the bow, without the vessel's own motion); auto: the first of these that is sent",
         .choices = kChosenFrames},
        &ChosenWindSettings::frame,
@@ -144,7 +144,7 @@ void ChosenWind::name_sources(const std::string& source, const wind::WindReading
   } else if (reading.direction_deg) {
     taken_ = fmt::format("{} with the direction of {}", source, direction_source);
   } else if (!is_calm(reading.speed_m_s)) {
-    taken_ = fmt::format("{} without a direction, since {} gives none", source, direction_source);
+    taken_ = fmt::format("{} without a direction, because {} has none", source, direction_source);
   }
 }
 

@@ -48,8 +48,8 @@ Result<std::optional<double>, Failure> invalid_number_of(const std::string& text
 const Fields<LineOptions> kLineReading = {
     {{.name = "format",
       .default_value = std::string("auto"),
-      .help = "columns: 4.2,270; keys: speed=4.2 direction=270; json: {\"speed\": 4.2}; auto: json where the line "
-              "begins with '{', keys where it has '=' or ':'",
+      .help = "columns: 4.2,270; keys: speed=4.2 direction=270; json: {\"speed\": 4.2}; auto: json if the line begins "
+              "with '{', keys if it has '=' or ':'",
       .choices = kLineFormats},
      &LineOptions::format},
     {{.name = "separator",
@@ -78,7 +78,7 @@ const Fields<LineOptions> kLineReading = {
      member_of(&LineOptions::gust, &LineQuantity::key)},
     {{.name = "speed_unit",
       .default_value = std::string("m/s"),
-      .help = "of speed and gust, after scale and offset, where the line itself says none (speed: 15 km/h)",
+      .help = "the unit of speed and gust, after scale and offset, if the line itself has none (speed: 15 km/h)",
       .choices = sensor::kSpeedUnitNames},
      member_of(&LineOptions::speed, &LineQuantity::unit),
      sensor::metres_per_second_in},
@@ -111,8 +111,7 @@ void check_key(std::string_view name, const std::string& key, decode::text::Line
   const bool may_be_json = format == decode::text::LineFormat::kJson || format == decode::text::LineFormat::kAuto;
   if (!may_be_json || !key.starts_with('/') || decode::is_json_pointer(key)) return;
   throw std::runtime_error(fmt::format(
-      "{}: \"{}\" is not a JSON pointer, in which ~ is written ~0 and a slash of a name ~1, as in /wind/speed", name,
-      key));
+      "{}: \"{}\" is not a JSON pointer, such as /wind/speed; write ~ in a name as ~0, and / as ~1", name, key));
 }
 
 }  // namespace
@@ -131,7 +130,7 @@ decode::text::LineOptions line_options_of(const ParameterValues& values) {
         std::pair("gust_key", &line.gust.key)})
     check_key(name, *key, line.format);
   if (!line.speed.column && line.speed.key.empty()) {
-    throw std::runtime_error("speed_column: neither it nor speed_key is set; a sensor needs a speed");
+    throw std::runtime_error("speed_column: is missing, and so is speed_key; set one of them");
   }
   if (line.speed.column && (line.speed.column == line.direction.column || line.speed.column == line.gust.column)) {
     throw std::runtime_error("speed_column: another quantity has the same column");
@@ -181,7 +180,7 @@ Result<sensor::SimulatedDevice, Failure> line_simulated(const ParameterValues& v
   const bool has_plain_numbers = values.text("speed_unit") == "m/s" && values.number("speed_scale") == 1.0 &&
                                  values.number("speed_offset") == 0.0 && values.number("direction_scale") == 1.0;
   if (!is_laid_out_so || !has_plain_numbers)
-    return Failure{"yuragi-sim plays only lines of speed and direction in m/s and degrees, 4.2,270"};
+    return Failure{"yuragi-sim sends only lines of speed and direction in m/s and degrees, such as 4.2,270"};
   sensor::SimulatedDevice simulated =
       sensor::simulated_by_tcp("line", values, {"--format", has_keys ? "key-value" : "csv"});
   simulated.north_offset_deg = values.number("north_offset");
@@ -202,7 +201,7 @@ const sensor::DriverDescription kLineDriver{
     .find =
         [] {
           return sensor::find_behind_serial_ports("transport = \"serial\"\n",
-                                                  "\nbaud = 9600  # as Serial.begin() of the sketch says");
+                                                  "\nbaud = 9600  # as in Serial.begin() of the sketch");
         },
     .endpoints = byte_port_endpoints,
     .selection = line_selection,

@@ -87,7 +87,7 @@ const Fields<NmeaKeys> kNmeaFields = {
 std::vector<Parameter> nmea_parameters() {
   std::vector<Parameter> own = together(kNmeaFields.parameters(), chosen_wind_parameters());
   std::ranges::find(own, "reference", &Parameter::name)->help =
-      "which direction to use where a device sends several: from north (MWD, MDA), relative to its own mark (MWV R, "
+      "which direction to use if a device sends several: from north (MWD, MDA), relative to its own mark (MWV R, "
       "VWR, "
       "XDR, Gill, FT, UMB, WXT), true (MWV T, VWT); auto: the first of these that it sends";
   return with_byte_port_parameters(own, 0.0);

@@ -52,8 +52,8 @@ const Fields<Nmea2000SensorSettings> kNmea2000Fields = {
      address_of},
     {{.name = "angle_unit",
       .default_value = std::string("auto"),
-      .help = "canboat: rad with analyzer -si and canboatjs, deg otherwise; auto: as the analyzer's first line says, "
-              "or degrees once an angle comes that cannot be in radians; until then there is no direction",
+      .help = "canboat: rad with analyzer -si and canboatjs, deg otherwise; auto: as in the analyzer's first line; "
+              "without that line, deg after the first angle that cannot be in radians, and no direction before it",
       .choices = kAngleUnits},
      of_bus_lines(&BusLineOptions::angle_unit),
      angle_unit_of},

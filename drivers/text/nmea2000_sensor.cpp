@@ -29,7 +29,7 @@ TextSensor::Judgement Nmea2000Sensor::judge(std::string_view line, const Instant
 
 std::string Nmea2000Sensor::name() const {
   std::string taken = wind_.taken().empty() ? "NMEA 2000" : wind_.taken();
-  if (lines_.lacks_angle_unit()) taken += " without a direction (set angle_unit: nothing says it)";
+  if (lines_.lacks_angle_unit()) taken += " without a direction (unknown unit: set angle_unit)";
   if (lines_.controller() == decode::marine::ControllerState::kPassive) taken += " over a bus with many errors";
   return taken;
 }
@@ -42,7 +42,7 @@ std::string Nmea2000Sensor::told_trouble() const {
     case State::kGood:
       break;
     case State::kPassive:
-      return fmt::format("{} receives errors alone (error passive): {}", describe(address), kSuspects);
+      return fmt::format("{} receives only errors (error passive): {}", describe(address), kSuspects);
     case State::kBusOff: {
       const std::string command =
           address.kind == bus::BytePortKind::kCan

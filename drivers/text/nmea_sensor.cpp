@@ -146,7 +146,7 @@ std::string NmeaSensor::advice(decode::Refusal why, std::string_view line) const
            " without a checksum: set the device to send one, or missing_checksum to \"accept\"";
   }
   if (why == decode::Refusal::kMalformed && settings_.status == decode::WhenMissing::kRefuse) {
-    return TextSensor::advice(why, line) + "; if they have no status, set missing_status to \"accept\"";
+    return TextSensor::advice(why, line) + "; if they have no status field, set missing_status to \"accept\"";
   }
   if (why == decode::Refusal::kNotMine) {
     return TextSensor::advice(why, line) +

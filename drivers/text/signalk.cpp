@@ -36,7 +36,7 @@ struct SignalKKeys {
 const Fields<SignalKKeys> kSignalKFields = {
     {{.name = "source",
       .default_value = std::string(""),
-      .help = "accept only this one of the server's sources, as its deltas name it in $source (n2k.105); empty: any"},
+      .help = "accept only this source, as named in the server's $source (n2k.105); empty: any"},
      &SignalKKeys::source},
     {{.name = "context",
       .default_value = std::string(""),
@@ -44,13 +44,12 @@ const Fields<SignalKKeys> kSignalKFields = {
      &SignalKKeys::context},
     {{.name = "path",
       .default_value = std::string(kSignalKStream),
-      .help = "websocket: the stream's place on the server"},
+      .help = "websocket: the stream's path on the server"},
      &SignalKKeys::path},
     Parameter{.name = "token",
               .default_value = Secret(),
-              .help =
-                  "websocket: the token of a server that lets nobody read without one, from its \"Access Requests\"; "
-                  "sent as it is (no TLS); or one of token_file and token_env, which keep it out of this file"},
+              .help = "websocket: the token, if the server requires one, from its \"Access Requests\"; sent "
+                      "unencrypted (no TLS); or one of token_file and token_env, which keep it out of this file"},
     Parameter{.name = "token_file",
               .default_value = std::string(""),
               .help = "websocket: a file that holds the token, at most 4096 bytes; its mode should be 0640 or stricter",
@@ -68,8 +67,8 @@ std::vector<Parameter> signalk_parameters() {
       parameter.default_value = std::string("tcp");
       parameter.choices = kSignalKTransports;
       parameter.help =
-          "websocket: a server's stream, with or without a token; tcp: a server's stream, which it has "
-          "where it needs no token; udp: deltas sent to this machine; serial, file: lines of deltas";
+          "websocket: a server's stream, with or without a token; tcp: a server's stream without a token; udp: deltas "
+          "sent to this machine; serial, file: lines of deltas";
     }
     if (parameter.name == "host") {
       parameter.help =
@@ -80,7 +79,7 @@ std::vector<Parameter> signalk_parameters() {
     if (parameter.name == "port") {
       parameter.default_value = std::int64_t{0};
       parameter.min = 0;
-      parameter.help = "websocket, tcp, udp: 0 takes a server's usual one: 3000 by websocket, else 8375";
+      parameter.help = "websocket, tcp, udp: 0: a server's usual port, 3000 for websocket, otherwise 8375";
     }
   }
   return all;
@@ -117,10 +116,10 @@ std::vector<sensor::Endpoint> signalk_endpoints(const ParameterValues& values) {
 void set_up_websocket(bus::BytePortAddress& address, const std::string& path, const ParameterValues& values) {
   address.path = path;
   if (!address.path.starts_with('/') || !std::ranges::all_of(address.path, is_visible))
-    throw std::runtime_error("path: is none on a server; allowed: such as " + std::string(kSignalKStream));
+    throw std::runtime_error("path: is not a path on a server; allowed: a path such as " + std::string(kSignalKStream));
   address.token = sensor::secret_of(values, "token");
   if (!std::ranges::all_of(address.token.reveal(), is_visible))
-    throw std::runtime_error("token: is none: it has blanks or other characters in it that no token has");
+    throw std::runtime_error("token: is not a token: it contains blanks or other characters that a token cannot have");
 }
 
 }  // namespace
@@ -137,7 +136,8 @@ SignalKSensorSettings signalk_sensor_settings_of(const ParameterValues& values) 
   if (settings.text.poll_interval > Nanoseconds::zero())
     throw std::runtime_error("poll_interval: a server sends without requests; leave it out");
   if (std::ranges::any_of(settings.context, needs_escape))
-    throw std::runtime_error("context: is no name of a vessel; allowed: such as vessels.urn:mrn:imo:mmsi:230099999");
+    throw std::runtime_error(
+        "context: is not the name of a vessel; allowed: a name such as vessels.urn:mrn:imo:mmsi:230099999");
   settings.text.greeting =
       fmt::format("{{\"context\":\"{}\",\"subscribe\":[{{\"path\":\"environment.wind.*\",\"policy\":\"instant\"}}]}}{}",
                   settings.context.empty() ? kOwnVessel : settings.context, is_websocket ? "" : "\r\n");
@@ -149,7 +149,7 @@ namespace {
 Result<sensor::SimulatedDevice, Failure> signalk_simulated(const ParameterValues& values) {
   const std::string& reference = values.text("reference");
   if (reference != "auto" && reference != "relative")
-    return Failure{"yuragi-sim plays a Signal K server that says the apparent wind alone"};
+    return Failure{"yuragi-sim simulates a Signal K server that sends only the apparent wind: set reference"};
   sensor::SimulatedDevice simulated = sensor::simulated_by_tcp("signalk", values);
   // The simulator's own names, which are no fault of the configuration.
   simulated.values.set("source", std::string());

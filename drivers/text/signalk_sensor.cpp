@@ -127,7 +127,7 @@ std::string SignalKSensor::name() const {
 std::string SignalKSensor::advice(decode::Refusal why, std::string_view line) const {
   if (why == decode::Refusal::kNotMine) {
     return describe(settings().address) +
-           " sends no new wind: check its anemometer and, among its settings, source, context and reference";
+           " sends no new wind: check its anemometer, and the settings source, context and reference";
   }
   return TextSensor::advice(why, line);
 }

@@ -105,9 +105,10 @@ Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::S
     for (int i = 0; i < kForgottenBlocks && port_->read(buffer_, 0ns).status == bus::ByteStatus::kBytes; ++i) {
     }
   }
-  if (!std::exchange(is_greeted_, true) && !greet(sink)) return Failure{where_ + " accepts no message: opened again"};
+  if (!std::exchange(is_greeted_, true) && !greet(sink))
+    return Failure{where_ + " does not accept messages: reopening it"};
   if (is_polled() && !request_if_due(clock.now().mono, sink))
-    return Failure{where_ + " accepts no request: opened again"};
+    return Failure{where_ + " does not accept requests: reopening it"};
 
   // Read the next bytes, unless some of a played file are left.
   bus::ByteArrival arrival{bus::ByteStatus::kBytes};
@@ -125,8 +126,7 @@ Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::S
     case bus::ByteStatus::kInterrupted:
       return now.mono;
     case bus::ByteStatus::kLost:
-      return Failure{where_ +
-                     " is gone: opened again as soon as it is back; check its plug, its power and the network"};
+      return Failure{where_ + " is gone: it is reopened when it is back; check its plug, its power and the network"};
     case bus::ByteStatus::kEnd:
       if (const auto line = assembler_.finish()) take_line(**line, now, sink);
       if (const auto held = take_held()) publish(*held, sink);
@@ -153,7 +153,7 @@ Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::S
   if (!is_played() && now.mono - last_bytes_ >= silence_limit()) {
     sink.refused(decode::Refusal::kTimeout);
     vain_openings_ = std::min(vain_openings_ + 1, kMostDoublings);
-    return Failure{fmt::format("{} has been silent for {:.0f} s: opened again; check the device's power and cable",
+    return Failure{fmt::format("{} has been silent for {:.0f} s: reopening it; check the device's power and cable",
                                where_, seconds(now.mono - last_bytes_))};
   }
   judge_device(now.mono, sink);
@@ -336,9 +336,9 @@ std::string TextSensor::silence_trouble() const {
   if (settings_.address.kind == bus::BytePortKind::kSerial)
     suspects = "the device's power, its wires (TX and RX crossed?) and baud";
   if (settings_.address.kind == bus::BytePortKind::kCan)
-    suspects = "the power, terminators and bit rate of the bus, and whether its device sends at all (candump)";
+    suspects = "the power, terminators and bit rate of the bus, and that its device sends (candump)";
   if (settings_.address.kind == bus::BytePortKind::kWebSocket)
-    suspects = "that the server has a wind, and whether it wants a token";
+    suspects = "that the server has wind data, and whether it requires a token";
   return fmt::format("{} {}: check {}", where_, is_polled() ? "does not reply" : "is open, but silent", suspects);
 }
 

@@ -51,17 +51,17 @@ auto of_vane(auto member) {
 const Fields<UsbSettings> kUsbFields = {
     {{.name = "device",
       .default_value = std::string("auto"),
-      .help = "which kind of counter and ADC device; auto: the first of any that is plugged in",
+      .help = "which kind of counter and ADC device; auto: the first one found",
       .choices = kUsbDevices},
      &UsbSettings::models,
      models_named},
     {{.name = "serial",
       .default_value = std::string(""),
-      .help = "its serial number; not needed where there is only one device"},
+      .help = "its serial number; not needed if there is only one device"},
      &UsbSettings::serial},
     {{.name = "port",
       .default_value = std::string(""),
-      .help = "the USB port that it is plugged into, such as 1-2.3, where serial numbers do not help"},
+      .help = "the USB port that it is plugged into, such as 1-2.3, if the serial number does not identify it"},
      &UsbSettings::port},
     {{"counter", "", std::int64_t{0}, 0, 1, "the counter that the cup is connected to"},
      of_wiring(&DaqWiring::counter)},
@@ -70,7 +70,7 @@ const Fields<UsbSettings> kUsbFields = {
     {{"offset", "m/s", 0.0, -5.0, 5.0, "the cup's offset: added while it turns"}, of_cup(&CupCalibration::offset_m_s)},
     {{"window_pulses", "", std::int64_t{4}, 1, 100000, "pulses per reading; more give smoother, but later speeds"},
      of_cup(&CupCalibration::enough_pulses)},
-    {{"window", "s", 1.0, 0.05, 60.0, "longest wait for these pulses, and so the longest interval between readings"},
+    {{"window", "s", 1.0, 0.05, 60.0, "maximum wait for these pulses, which limits the interval between readings"},
      of_cup(&CupCalibration::longest_window_s)},
     {{"sample_rate", "Hz", 10.0, 0.2, 100.0, "how often the counter and the vane are read"},
      &UsbSettings::period,
@@ -89,13 +89,13 @@ const Fields<UsbSettings> kUsbFields = {
      of_vane(&VaneCalibration::lowest_ratio)},
     {{"vane_highest", "", 1.0, 0.0, 1.0, "share of the reference voltage at its end"},
      of_vane(&VaneCalibration::highest_ratio)},
-    {{"reference_voltage", "V", 5.0, 0.1, 20.0, "voltage across the track, where it is not measured"},
+    {{"reference_voltage", "V", 5.0, 0.1, 20.0, "voltage across the track, if it is not measured"},
      &UsbSettings::reference_v},
     {{"reference_channel", "", std::int64_t{-1}, -1, 7,
-      "analogue input that measures this voltage, since the 5 V of a USB port are not exact; -1: none"},
+      "analogue input that measures this voltage, because the 5 V of a USB port are not exact; -1: none"},
      of_wiring(&DaqWiring::reference_channel),
      channel_of},
-    {{"response_timeout", "s", 0.5, 0.01, 10.0, "longest wait for a reply"}, &UsbSettings::timeout, from_seconds},
+    {{"response_timeout", "s", 0.5, 0.01, 10.0, "maximum wait for a reply"}, &UsbSettings::timeout, from_seconds},
 };
 
 UsbSettings usb_settings_of(const ParameterValues& values) {
@@ -111,7 +111,7 @@ void check_together(const UsbSettings& settings) {
   }
   if (settings.wiring.reference_channel && settings.wiring.reference_channel == settings.wiring.vane_channel) {
     throw std::runtime_error(
-        "reference_channel: is vane_channel; give the input that is connected to the vane's track");
+        "reference_channel: is the same as vane_channel; give the input that is connected to the vane's track");
   }
   // With "auto" it is enough that one of the models can do it: which it is shows when one is plugged in.
   std::string wrong;
@@ -158,7 +158,7 @@ std::vector<sensor::FoundDevice> find_usb() {
     one.settings = fmt::format("device = \"{}\"\n{} = \"{}\"", model.name, device.serial.empty() ? "port" : "serial",
                                device.serial.empty() ? device.port : device.serial);
     if (device.is_permitted) continue;
-    one.trouble = fmt::format("this user may not open {}", device.node);
+    one.trouble = fmt::format("this user has no permission to open {}", device.node);
     one.remedy = "install config/udev/70-yuragi.rules, join the group plugdev, and plug the device in again";
   }
   return found;
@@ -183,7 +183,8 @@ const sensor::DriverDescription kUsbDriver{
     .selection = usb_selection,
     .stated_value = usb_value,
     .simulated = [](const ParameterValues&) -> Result<sensor::SimulatedDevice, Failure> {
-      return Failure{"a simulated usb needs USB or sound of its own, and rights for it"};
+      return Failure{
+          "a simulated usb cannot be started here: it needs a virtual USB bus, and the permission to create it"};
     },
     .formats = "mcc1208 labjack"};
 

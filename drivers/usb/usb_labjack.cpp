@@ -78,7 +78,7 @@ class LabjackDaq final : public UsbDaq {
     for (int message = 0; message < kMostStrangers; ++message) {
       const bus::UsbTransfer got = device.read(kLabjackReplies, buffer_, timeout_);
       if (got.status == bus::UsbStatus::kTimeout && message > 0)
-        return DaqTrouble{"replies to other requests, not to this one"};
+        return DaqTrouble{"replies to other requests, not to this one: check that no other program uses it"};
       if (got.status != bus::UsbStatus::kDone) return trouble_of(got.status, sink);
       const decode::ByteSpan reply = decode::ByteSpan(buffer_).first(std::min(got.size, buffer_.size()));
       sink.raw(sensor::RawDirection::kReceived, reply);
@@ -95,7 +95,7 @@ class LabjackDaq final : public UsbDaq {
       if (refusal.why != decode::Refusal::kNotMine) return trouble_of(refusal.why, sink);
       sink.refused(decode::Refusal::kNotMine);
     }
-    return DaqTrouble{"replies to other requests, not to this one"};
+    return DaqTrouble{"replies to other requests, not to this one: check that no other program uses it"};
   }
 
   static DaqTrouble exception(std::uint8_t error, sensor::SensorSink& sink) {

@@ -107,10 +107,9 @@ void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now
     sink.refused(speed_m_s->error());
     direction_.clear();
     is_jumpy_ = true;
-    return report_unusable(
-        sink, name_ +
-                  " has an impossible count: it was reset, or the cup's contact bounces, or metres_per_pulse "
-                  "is too large");
+    return report_unusable(sink, name_ +
+                                     " has an impossible count: check whether it was reset, whether the cup's contact "
+                                     "bounces, and metres_per_pulse");
   }
   if (sample.wiper_v) {
     const double reference_v = sample.reference_v.value_or(settings_.reference_v);

@@ -39,7 +39,8 @@ Result<std::optional<std::filesystem::path>, Failure> set_older_recording_aside(
     if (!error) return std::optional(aside);
     return Failure{file.string() + ": cannot be renamed to " + aside.string() + ": " + error.message()};
   }
-  return Failure{file.string() + ": no name is free to keep this older recording under; choose another file"};
+  return Failure{file.string() +
+                 ": cannot be renamed, because all names for older recordings are taken; choose another file"};
 }
 
 }  // namespace yuragi::drivers::windlog

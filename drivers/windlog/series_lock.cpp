@@ -96,7 +96,7 @@ Result<SeriesLock, Failure> SeriesLock::take(const std::filesystem::path& record
     }
     close(descriptor);
   }
-  return Failure{file.string() + ": is removed again and again by another program"};
+  return Failure{file.string() + ": another program removes it repeatedly; stop that program"};
 }
 
 SeriesLock::SeriesLock(SeriesLock&& other) noexcept

@@ -45,7 +45,7 @@ std::string_view advice_for(int code) {
     case SQLITE_NOTADB:
       return "this is not a Yuragi recording";
     case SQLITE_INTERRUPT:
-      return "it was ended before it was done";
+      return "it was interrupted";
     case SQLITE_CORRUPT:
       return "the file is damaged; `sqlite3 FILE .recover` may save what is left";
     default:

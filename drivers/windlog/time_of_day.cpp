@@ -35,7 +35,7 @@ Result<UtcOffset, Failure> parse_utc_offset(std::string_view text) {
       !(offset_h >= -kLargestOffset_h && offset_h <= kLargestOffset_h)) {
     return Failure{
         "\"" + std::string(text) +
-        "\" is not an offset from UTC; give hours from -14 to 14 (1, -3.5), or nothing for this machine's zone"};
+        "\" is not an offset from UTC; give hours from -14 to 14 (1, -3.5), or leave it empty for this machine's zone"};
   }
   return UtcOffset([offset = from_seconds(3600.0 * offset_h)](UtcTime) { return offset; });
 }

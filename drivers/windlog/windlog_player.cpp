@@ -344,7 +344,7 @@ void WindlogPlayer::set_rate(const Instant& now, double rate) {
 Result<void, Failure> WindlogPlayer::step(const Instant& now, std::uint64_t count) {
   if (is_finished_) return Failure{"is at its end; seek to another place first", FailureKind::kUsage};
   if (count > kMaxSteps) {
-    return Failure{"moves " + std::to_string(kMaxSteps) + " readings on at most; seek goes further",
+    return Failure{"can move at most " + std::to_string(kMaxSteps) + " readings; use seek to move further",
                    FailureKind::kUsage};
   }
   pause(now);

@@ -37,8 +37,9 @@ Result<void, Failure> take(sqlite::Database& database) {
   const auto taken = database.run("PRAGMA journal_mode = DELETE; PRAGMA locking_mode = EXCLUSIVE; BEGIN EXCLUSIVE");
   if (taken) return {};
   if (const int code = database.error_code(); code == SQLITE_BUSY || code == SQLITE_LOCKED) {
-    return Failure{database.file().string() + ": is being recorded, or read by another program; end that first",
-                   FailureKind::kUnavailable};
+    return Failure{
+        database.file().string() + ": is being recorded, or read by another program; stop that program first",
+        FailureKind::kUnavailable};
   }
   return rewrite_failure(database);
 }

@@ -59,7 +59,7 @@ Result<bool, Failure> is_new(sqlite::Database& database) {
 }
 
 Failure no_room(const sqlite::Database& database) {
-  return Failure{database.file().string() + ": its times leave no room for another session; choose another file"};
+  return Failure{database.file().string() + ": its last times are too late for another session; choose another file"};
 }
 
 }  // namespace
@@ -261,7 +261,7 @@ Result<std::int64_t, Failure> WindlogWriter::series_named(std::string_view name)
   const std::int64_t series = *count + 1;
   if (series > static_cast<std::int64_t>(kMostSeries)) {
     return Failure{database_.file().string() + ": has readings of " + std::to_string(kMostSeries) +
-                   " sensors, which is the most that one recording can hold; choose another file"};
+                   " sensors, the maximum of one recording; choose another file"};
   }
   auto insert = database_.prepare("INSERT INTO series (id, name) VALUES (?1, ?2)");
   if (!insert) return undo().error();
@@ -293,7 +293,7 @@ Result<void, Failure> WindlogWriter::prepare_insert(std::int64_t sensor, std::in
 Result<void, Failure> WindlogWriter::append(std::int64_t sensor, const wind::WindReading& reading) {
   const auto insert = insert_reading_.find(sensor);
   if (insert == insert_reading_.end() || !is_recordable(reading)) {
-    return Failure{database_.file().string() + ": not a reading that can be recorded"};
+    return Failure{database_.file().string() + ": this reading has impossible values and cannot be recorded"};
   }
   const Nanoseconds into_session = std::max(reading.time.mono - started_.mono, Nanoseconds{0});
   Insert& into = insert->second;
@@ -308,7 +308,7 @@ Result<void, Failure> WindlogWriter::append(std::int64_t sensor, const wind::Win
     if (since_ns >= kMaxTime_ns - begin_ns_ ||
         __builtin_sub_overflow(nanoseconds(reading.time.utc), nanoseconds(started_.utc), &clock_ns) ||
         __builtin_sub_overflow(clock_ns, since_ns, &clock_ns) || clock_ns < -kMaxTime_ns || clock_ns > kMaxTime_ns) {
-      return Failure{database_.file().string() + ": not a reading that can be recorded"};
+      return Failure{database_.file().string() + ": this reading has impossible values and cannot be recorded"};
     }
     into.statement.bind(1, begin_ns_ + since_ns);
     into.statement.bind(2, clock_ns);

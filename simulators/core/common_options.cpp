@@ -15,10 +15,11 @@ void CommonOptions::add_to(CLI::App& command) {
   command.add_option("--speed", synthetic.mean_speed_m_s, "mean of the synthetic wind, m/s")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
-  command.add_option("--direction", synthetic.mean_direction_deg, "where it comes from, degrees")
+  command.add_option("--direction", synthetic.mean_direction_deg, "direction that the wind comes from, degrees")
       ->check(CLI::Range(0.0, 360.0))
       ->capture_default_str();
-  command.add_option("--turbulence", synthetic.turbulence_intensity, "its standard deviation over its mean")
+  command
+      .add_option("--turbulence", synthetic.turbulence_intensity, "standard deviation of the wind, divided by its mean")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command.add_option("--seed", synthetic.seed, "the same seed gives the same wind and the same random faults")

@@ -118,14 +118,15 @@ void make_recording(const RecordingOptions& options) {
 extern const Command kRecordingCommand;
 const Command kRecordingCommand{[](CLI::App& app) {
   auto options = std::make_shared<RecordingOptions>();
-  CLI::App* command = app.add_subcommand("recording", "an hour of wind at once, as a recording (.windlog)");
+  CLI::App* command = app.add_subcommand("recording", "write an hour of wind to a recording (.windlog) at once");
   command->footer(kRecordingFooter);
   command->add_option("-o,--output", options->output, "the recording to write")->required();
-  command->add_flag("--force", options->overwrites, "overwrite it");
+  command->add_flag("--force", options->overwrites, "overwrite the file if it exists");
   command->add_option("--interval", options->interval_s, "seconds between two readings")
       ->check(CLI::Range(0.01, 3600.0))
       ->capture_default_str();
-  command->add_option("--sensor", options->sensors, "NAME, or NAME:GAIN; given again, one more sensor in the same wind")
+  command
+      ->add_option("--sensor", options->sensors, "NAME or NAME:GAIN; can be repeated for more sensors in the same wind")
       ->capture_default_str();
   options->common.add_to(*command);
   command->callback([options] { make_recording(*options); });

@@ -10,12 +10,12 @@ namespace yuragi::simulators::core {
 namespace {
 
 constexpr const char* kScenarioFooter =
-    "FILE (TOML) says what blows when, which devices there are, and what goes wrong with them:\n"
+    "FILE (TOML) describes the wind over time, the devices, and their faults:\n"
     "\n"
-    "  duration = \"10min\"             # without it: until it is stopped\n"
+    "  duration = \"10min\"             # without it: runs until it is stopped\n"
     "\n"
     "  [[wind]]                       # a synthetic wind\n"
-    "  speed = 2.5                    # m/s; and direction, turbulence, seed, as the options of simulators have them\n"
+    "  speed = 2.5                    # m/s; also direction, turbulence, seed, like the simulators' options\n"
     "\n"
     "  [[wind]]                       # a storm front, which comes up within 20 s\n"
     "  at = \"4min\"\n"
@@ -28,8 +28,8 @@ constexpr const char* kScenarioFooter =
     "  faults = [\"silence@6min+20s\", \"unplug@8min+1min\"]\n"
     "\n"
     "All devices are in the same wind. While it runs, standard input takes: DEVICE KIND [TIME], DEVICE clear, DEVICE\n"
-    "help. It fails where a device fails: a port that is taken, say. Rehearsals of whole installations, with the\n"
-    "daemon's configuration for each, are in config/rehearsals.";
+    "help. It ends with an error if a device fails, for example if its port is in use. Rehearsals of whole\n"
+    "installations, with the daemon's configuration for each, are in config/rehearsals.";
 
 struct ScenarioOptions {
   std::string file;
@@ -50,7 +50,7 @@ extern const Command kScenarioCommand;
 const Command kScenarioCommand{[](CLI::App& app) {
   auto options = std::make_shared<ScenarioOptions>();
   CLI::App* command =
-      app.add_subcommand("scenario", "several devices in one wind by time, with faults by time: a rehearsal");
+      app.add_subcommand("scenario", "rehearse several devices in one wind, with faults at given times");
   command->add_option("FILE", options->file, "the scenario")->required()->check(CLI::ExistingFile);
   command->add_option("--duration", options->run.duration_s, "end after this time: 90 (seconds), 5min, 2h")
       ->type_name("TIME")

@@ -32,7 +32,7 @@ class ScenarioTable {
   std::string text(std::string_view key, std::string_view allowed) {
     const toml::node* node = take(key);
     const auto* value = node != nullptr ? node->as_string() : nullptr;
-    if (value == nullptr || value->get().empty()) fail(key, fmt::format("is to be {}", allowed));
+    if (value == nullptr || value->get().empty()) fail(key, fmt::format("must be {}", allowed));
     return value->get();
   }
 
@@ -40,9 +40,9 @@ class ScenarioTable {
     std::vector<std::string> all;
     const toml::node* node = take(key);
     if (node == nullptr) return all;
-    if (!node->is_array()) fail(key, fmt::format("is to be {}", allowed));
+    if (!node->is_array()) fail(key, fmt::format("must be {}", allowed));
     for (const toml::node& one : *node->as_array()) {
-      if (!one.is_string()) fail(key, fmt::format("is to be {}", allowed));
+      if (!one.is_string()) fail(key, fmt::format("must be {}", allowed));
       all.push_back(one.as_string()->get());
     }
     return all;
@@ -53,7 +53,7 @@ class ScenarioTable {
     if (node == nullptr) return otherwise;
     const auto value = node->is_number() ? node->value<double>() : std::nullopt;
     if (!value || !(*value >= least && *value <= greatest))
-      fail(key, fmt::format("is to be a number from {} to {}", least, greatest));
+      fail(key, fmt::format("must be a number from {} to {}", least, greatest));
     return *value;
   }
 
@@ -79,7 +79,7 @@ class ScenarioTable {
   void finish() const {
     for (const auto& [key, node] : table_) {
       if (!taken_.contains(key.str()))
-        fail(key.str(), fmt::format("is not known here; {} are", fmt::join(taken_, ", ")));
+        fail(key.str(), fmt::format("is not known here; allowed: {}", fmt::join(taken_, ", ")));
     }
   }
 
@@ -114,7 +114,7 @@ WindPhase read_phase(ScenarioTable table, const std::filesystem::path& folder) {
 ScenarioDevice read_device(ScenarioTable table) {
   ScenarioDevice device;
   device.name = table.text("name", "a name of the device");
-  device.simulate = table.text("simulate", "what stands behind yuragi-sim on a command line: \"nmea --pty\"");
+  device.simulate = table.text("simulate", "the arguments of yuragi-sim: \"nmea --pty\"");
   device.faults = table.texts("faults", "a list of faults: [\"silence@5min+30s\"]");
   table.finish();
   return device;
@@ -141,16 +141,17 @@ Scenario read_scenario(const std::filesystem::path& file) {
   for (ScenarioTable& one : table.tables("wind")) {
     const WindPhase phase = read_phase(one, file.parent_path());
     const bool is_first = scenario.phases.empty();
-    if (is_first && phase.start_s > 0.0) one.fail("at", "the first wind is to begin at 0");
+    if (is_first && phase.start_s > 0.0) one.fail("at", "the first wind must begin at 0");
     if (!is_first && (phase.start_s <= scenario.phases.back().start_s || phase.start_s < free_from_s))
-      one.fail("at", "is to be after the beginning of the wind before, and after its ramp");
+      one.fail("at", "must be after the beginning and the ramp of the previous wind");
     free_from_s = phase.start_s + phase.ramp_s;
     scenario.phases.push_back(phase);
   }
   std::set<std::string> names;
   for (ScenarioTable& one : table.tables("device")) {
     scenario.devices.push_back(read_device(one));
-    if (!names.insert(scenario.devices.back().name).second) one.fail("name", "another device has this name");
+    if (!names.insert(scenario.devices.back().name).second)
+      one.fail("name", "another device has this name; choose a different one");
   }
   table.finish();
   return scenario;

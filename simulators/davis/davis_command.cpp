@@ -30,8 +30,8 @@ extern const core::Command kDavisCommand;
 const core::Command kDavisCommand{[](CLI::App& app) {
   auto options = std::make_shared<DavisOptions>();
   CLI::App* command = app.add_subcommand("davis", "console of a Davis Vantage station, with its data logger");
-  options->line.add_to(*command, "a server at HOST:PORT, as a WeatherLinkIP");
-  command->add_option("--interval", options->console.interval_s, "seconds from packet to packet")
+  options->line.add_to(*command, "a server at HOST:PORT, like a WeatherLinkIP");
+  command->add_option("--interval", options->console.interval_s, "seconds between packets")
       ->check(CLI::Range(0.05, 60.0))
       ->capture_default_str();
   command->add_flag("--old-firmware", options->has_old_firmware, "does not know the command LPS (before 1.90)");

@@ -33,10 +33,10 @@ struct LiveOptions {
 extern const core::Command kWeatherlinkLiveCommand;
 const core::Command kWeatherlinkLiveCommand{[](CLI::App& app) {
   auto options = std::make_shared<LiveOptions>();
-  CLI::App* command = app.add_subcommand("weatherlink-live", "Davis WeatherLink Live: HTTP, and broadcasts by UDP");
-  command->add_option("--tcp", options->tcp, "where it serves HTTP, HOST:PORT; port 0 takes a free one")->required();
-  command->add_option("--udp", options->udp, "where its broadcasts go, HOST:PORT")->capture_default_str();
-  command->add_option("--interval", options->live.interval_s, "seconds from broadcast to broadcast")
+  CLI::App* command = app.add_subcommand("weatherlink-live", "Davis WeatherLink Live: HTTP, and UDP broadcasts");
+  command->add_option("--tcp", options->tcp, "HOST:PORT of its HTTP server; port 0 takes a free one")->required();
+  command->add_option("--udp", options->udp, "HOST:PORT that it broadcasts to")->capture_default_str();
+  command->add_option("--interval", options->live.interval_s, "seconds between broadcasts")
       ->check(CLI::Range(0.05, 60.0))
       ->capture_default_str();
   options->common.add_to(*command);

@@ -38,9 +38,10 @@ const core::Command kUmbCommand{[](CLI::App& app) {
       ->check(CLI::Range(1, 255))
       ->capture_default_str();
   command->add_flag("--without-fast", options->has_no_fast_channels,
-                    "has no fast channels, and measures nothing but the wind, as a VENTUS");
+                    "has no fast channels and measures only wind, like a VENTUS");
   command->add_flag("--only-wind", options->station.refuses_long_query, "refuses a query of more than two channels");
-  command->add_flag("--echo", options->station.echoes, "its line has one pair of wires: clients hear what they say");
+  command->add_flag("--echo", options->station.echoes,
+                    "its line has one pair of wires: clients receive their own requests");
   options->common.add_to(*command);
   command->callback([options] { options->run(); });
 }};

@@ -54,7 +54,7 @@ const core::Command kMicrophoneCommand{[](CLI::App& app) {
   command->footer(kMicrophoneFooter);
   auto* socket = command->add_option("--listen", options->outputs.socket,
                                      "Unix socket that sends every client raw float32 frames in real time");
-  auto* pipe = command->add_option("--pipe", options->outputs.pipe, "named pipe to write to, in the same form");
+  auto* pipe = command->add_option("--pipe", options->outputs.pipe, "named pipe to write to, in the same format");
   auto* file = command->add_option("--out", options->file,
                                    "FILE.wav, any other name for raw samples, or - for standard output: as fast as it "
                                    "is read; 60 s unless --duration is given, endless to -");

@@ -70,7 +70,7 @@ class ModbusSimulator::State {
   void add(const ModbusSlave& slave) {
     if (slave_of(slave.id) != nullptr) {
       throw std::runtime_error(
-          fmt::format("two devices have the id {}: give one of them another, as NAME@ID", slave.id));
+          fmt::format("two devices have the id {}: give one of them another id, as NAME@ID", slave.id));
     }
     slaves_.push_back({slave, {}, {}});
   }

@@ -42,9 +42,9 @@ const core::Command kEcowittCommand{[](CLI::App& app) {
   auto options = std::make_shared<EcowittCommand>();
   CLI::App* command = app.add_subcommand("ecowitt", "Ecowitt gateway (GW1000), which is asked over TCP");
   command->add_option("--tcp", options->tcp, "HOST:PORT to listen on; port 0 takes a free one")->capture_default_str();
-  command->add_option(
-      "--search", options->search,
-      "HOST:PORT, UDP, to answer who searches for gateways, such as 0.0.0.0:46000; without it nobody is");
+  command->add_option("--search", options->search,
+                      "UDP HOST:PORT at which it replies to searches for gateways, such as 0.0.0.0:46000; without it "
+                      "there is no reply");
   command->add_option("--interval", options->ecowitt.interval_s, "seconds between the anemometer's radio messages")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();

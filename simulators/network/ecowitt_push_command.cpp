@@ -25,7 +25,7 @@ const std::map<std::string, PushProtocol, std::less<>> kPushProtocols = {
 
 void simulate_ecowitt_push(EcowittPushCommand& command) {
   const Address address = core::address_option("--to", command.to);
-  if (address.port == 0) throw CLI::ValidationError("--to", "port 0 cannot be connected to");
+  if (address.port == 0) throw CLI::ValidationError("--to", "port 0 is not possible; give the receiver's port");
   command.push.host = address.host;
   command.push.port = address.port;
   command.push.protocol = kPushProtocols.at(command.protocol);
@@ -46,11 +46,11 @@ const core::Command kEcowittPushCommand{[](CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("ecowitt-push", "Ecowitt gateway, Ambient or Wunderground station, which pushes by HTTP");
   command->add_option("--to", options->to, "push to HOST:PORT")->capture_default_str();
-  command->add_option("--protocol", options->protocol, "in which protocol")
+  command->add_option("--protocol", options->protocol, "protocol of the pushes")
       ->check(CLI::IsMember({"ecowitt", "wunderground", "ambient"}))
       ->capture_default_str();
   command->add_option("--path", options->push.path, "the path that is set in the gateway; default: the usual one");
-  command->add_option("--station", options->push.station, "the station's PASSKEY, or its ID by wunderground")
+  command->add_option("--station", options->push.station, "the station's PASSKEY; with wunderground, its ID")
       ->capture_default_str();
   command->add_option("--interval", options->push.interval_s, "seconds between two pushes")
       ->check(CLI::Range(0.1, 3600.0))

@@ -18,10 +18,10 @@ struct OscCommand {
 
 void simulate_osc(OscCommand& command) {
   const Address address = core::address_option("--to", command.to);
-  if (address.port == 0) throw CLI::ValidationError("--to", "port 0 cannot be sent to");
-  if (!command.osc.address.starts_with('/')) throw CLI::ValidationError("--address", "begins with /, as in /wind");
+  if (address.port == 0) throw CLI::ValidationError("--to", "port 0 is not possible; give the receiver's port");
+  if (!command.osc.address.starts_with('/')) throw CLI::ValidationError("--address", "must begin with /, as in /wind");
   if (command.osc.speed_argument == command.osc.direction_argument)
-    throw CLI::ValidationError("--direction-argument", "is that of the speed; give it another one");
+    throw CLI::ValidationError("--direction-argument", "is the same as --speed-argument; choose another number");
   command.osc.host = address.host;
   command.osc.port = address.port;
   command.osc.seed = command.common.synthetic.seed;

@@ -16,7 +16,7 @@ struct TempestCommand {
 
 void simulate_tempest(TempestCommand& command) {
   const Address address = core::address_option("--udp", command.to);
-  if (address.port == 0) throw CLI::ValidationError("--udp", "port 0 cannot be sent to");
+  if (address.port == 0) throw CLI::ValidationError("--udp", "port 0 is not possible; give the receiver's port");
   command.tempest.host = address.host;
   command.tempest.port = address.port;
   command.tempest.seed = command.common.synthetic.seed;

@@ -23,11 +23,11 @@ const core::Command kNmea2000Command{[](CLI::App& app) {
   command->add_option("--format", options->format, "format of the lines")
       ->check(CLI::IsMember(nmea2000_format_names()))
       ->capture_default_str();
-  command->add_option("--reference", options->reference, "what its angles count from")
+  command->add_option("--reference", options->reference, "what its angles are measured from")
       ->check(CLI::IsMember(nmea2000_reference_names()))
       ->capture_default_str();
   options->text.add_to(*command).add_option("--can", options->text.can,
-                                            "frames on this CAN interface, such as vcan0, whatever the format");
+                                            "frames on this CAN interface, such as vcan0; ignores the format");
   command->callback([options] {
     const bool is_on_bus = !options->text.can.empty();
     options->text.run(is_on_bus ? make_nmea2000_can_device(options->reference)

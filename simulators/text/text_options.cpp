@@ -39,8 +39,7 @@ CLI::Option_group& TextOptions::add_to(CLI::App& command) {
 void TextOptions::add_websocket_to(CLI::App& command) {
   CLI::Option* const place =
       command.get_option_group("wire")->add_option("--websocket", websocket_place, "a WebSocket server at HOST:PORT");
-  command.add_option("--token", websocket.token, "with --websocket: refuse clients that do not bring this token")
-      ->needs(place);
+  command.add_option("--token", websocket.token, "with --websocket: refuse clients without this token")->needs(place);
 }
 
 std::unique_ptr<TextWire> TextOptions::make_wire() const {
@@ -59,7 +58,7 @@ std::unique_ptr<TextWire> TextOptions::make_wire() const {
 
 void TextOptions::run(std::unique_ptr<TextDevice> device) const {
   if (rate_hz <= 0.0 && !(udp.empty() && can.empty()))
-    throw CLI::ValidationError("--rate", "requests cannot be received there; give a rate");
+    throw CLI::ValidationError("--rate", "this connection cannot receive requests; give a rate");
   TextSimulator simulator(std::move(device), make_wire(), rate_hz, common.make_wind(), common.synthetic.seed);
   print_place(simulator.wire());
   common.run_simulator(simulator);

@@ -101,7 +101,7 @@ void TextSimulator::send_after(double delay_s, const std::string& bytes, double 
 }
 
 std::string TextSimulator::status() const {
-  return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}, {} said{}{}", moment_.speed_m_s, moment_.direction_deg,
+  return fmt::format("wind {:4.1f} m/s from {:3.0f} deg, {}, {} sent{}{}", moment_.speed_m_s, moment_.direction_deg,
                      wire_->place(), sent_, fault_ ? ", fault: " : "", fault_ ? name_of(*fault_) : "");
 }
 

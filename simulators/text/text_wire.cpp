@@ -137,7 +137,7 @@ class TcpWire final : public TextWire {
 class UdpWire final : public TextWire {
  public:
   UdpWire(const std::string& host, std::uint16_t port) : endpoint_(core::socket_address(host), port) {
-    if (port == 0) throw std::runtime_error("cannot send to port 0");
+    if (port == 0) throw std::runtime_error("cannot send to port 0; give the receiver's port");
     bring_back();
   }
 

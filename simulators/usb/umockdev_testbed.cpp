@@ -51,7 +51,7 @@ void restart_in_umockdev() {
 }
 
 UmockdevTestbed::UmockdevTestbed() {
-  if (!is_in_umockdev()) throw std::runtime_error("not started by umockdev-wrapper");
+  if (!is_in_umockdev()) throw std::runtime_error("not started by umockdev-wrapper; use --umockdev");
   testbed_ = {umockdev_testbed_new(), [](UMockdevTestbed* held) { g_object_unref(held); }};
 }
 

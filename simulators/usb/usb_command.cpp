@@ -75,7 +75,7 @@ CLI::App* add_usb_options(CLI::App& app, const std::string& name, const std::str
   command
       ->add_option("--usbip", options->usbip,
                    "HOST:PORT to serve USB/IP on; port 0 takes a free one. A Linux machine with the module vhci_hcd "
-                   "attaches the first device by `usbip attach -r HOST -b 1-1`, the second is 1-2")
+                   "attaches the first device with `usbip attach -r HOST -b 1-1`, the second is 1-2")
       ->capture_default_str();
 #if YURAGI_UMOCKDEV
   command

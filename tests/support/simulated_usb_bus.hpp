@@ -69,7 +69,7 @@ class SimulatedUsbDevice final : public drivers::bus::UsbDevice {
   bool take_arrival() override { return std::exchange(bus_.has_arrived, false); }
 
   Result<void, Failure> open(const drivers::bus::PluggedUsbDevice& device) override {
-    if (!bus_.is_permitted) return Failure{"this user may not open it"};
+    if (!bus_.is_permitted) return Failure{"this user has no permission to open it"};
     const auto found = std::ranges::find(bus_.sockets, device.port, &SimulatedUsbBus::Socket::port);
     if (found == bus_.sockets.end()) return Failure{"it is gone"};
     open_ = found->device.get();

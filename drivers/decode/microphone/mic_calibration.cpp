@@ -43,7 +43,7 @@ double curve_speed(const MicCurve& curve, double level_db) {
 
 std::optional<Failure> too_little(Pairs pairs) {
   if (pairs.size() < kFewestPairs) {
-    return Failure{"too few pairs of level and speed: " + std::to_string(kFewestPairs) + " are needed"};
+    return Failure{"too few pairs of level and speed: at least " + std::to_string(kFewestPairs) + " are needed"};
   }
   const auto finite = [](const MicLevelAndSpeed& pair) {
     return std::isfinite(pair.level_db) && std::isfinite(pair.speed_m_s);
@@ -207,7 +207,7 @@ Result<MicPowerLaw, Failure> fit_mic_power_law(Pairs pairs, double noise_power) 
       least_squares = error;
     }
   }
-  if (!best) return Failure{"no pair is louder than the noise in a calm"};
+  if (!best) return Failure{"no pair is louder than the noise in a calm: record stronger wind, too"};
   return *best;
 }
 
@@ -249,7 +249,8 @@ Result<MicPowerLaw, Failure> mic_power_law_through(const MicLevelAndSpeed& soft,
   const double exponent = 0.5 * std::log(loud_power / soft_power) / std::log(loud.speed_m_s / soft.speed_m_s);
   if (!(exponent >= kLowestExponent && exponent <= kHighestExponent)) {
     return Failure{
-        "the sound grows with the wind as it cannot: check that both winds were steady, and that there was no other "
+        "the sound does not grow with the wind as expected: check that both winds were steady, and that there was no "
+        "other "
         "sound"};
   }
   return MicPowerLaw{loud.speed_m_s / std::pow(loud_power, 0.5 / exponent), exponent};

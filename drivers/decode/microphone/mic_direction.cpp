@@ -40,7 +40,7 @@ std::array<double, 3> solve_three(const Matrix3& m, const std::array<double, 3>&
 
 MicDirection::MicDirection(const std::vector<double>& faces_deg, double smoothing_s) : smoothing_s_(smoothing_s) {
   if (faces_deg.size() < 3 || faces_deg.size() > kMicMaxChannels) {
-    throw std::invalid_argument("a direction needs three or four microphones that face different ways");
+    throw std::invalid_argument("a direction needs three or four microphones that face in different directions");
   }
   // Normal equations of the fit, which are the same for every block.
   std::vector<std::array<double, 3>> basis;

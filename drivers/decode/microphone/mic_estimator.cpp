@@ -54,7 +54,7 @@ MicEstimator::MicEstimator(const MicEstimatorOptions& options, const MicHello& h
   window_.resize(static_cast<std::size_t>(std::clamp(blocks, 1L, 240L)));
   if (options_.faces_deg.empty()) return;
   if (options_.faces_deg.size() != hello_.channels) {
-    throw std::invalid_argument("as many faces as channels are needed for a direction");
+    throw std::invalid_argument("a direction needs one face for each channel");
   }
   direction_.emplace(options_.faces_deg, options_.direction_smoothing_s);
 }

@@ -44,7 +44,8 @@ TEST(SenderFilter, SaysWhatIsNeitherAnAddressNorANet) {
   for (const char* wrong : {"nobody", "10.0.0.0/33", "10.0.0.0/", "fd00::/129", "10.0.0", ",", "1.2.3.4,,5.6.7.8"}) {
     const auto filter = SenderFilter::parse(wrong);
     ASSERT_FALSE(filter.has_value()) << wrong;
-    EXPECT_THAT(filter.error().message, HasSubstr("is neither an address (192.168.1.20) nor a net (192.168.1.0/24)"));
+    EXPECT_THAT(filter.error().message,
+                HasSubstr("is neither an address (192.168.1.20) nor a network (192.168.1.0/24)"));
   }
 }
 

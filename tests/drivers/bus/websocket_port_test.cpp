@@ -168,7 +168,7 @@ TEST(WebSocketPort, IsLostWithItsServerAndCanBeOpenedAgain) {
 
 TEST(WebSocketPort, SaysWhyAServerRefuses) {
   EchoServer server({.path = "/stream", .token = "abc.def"});
-  EXPECT_THAT(trouble_at(server.address), HasSubstr("(HTTP 401 Unauthorized): it wants a token"));
+  EXPECT_THAT(trouble_at(server.address), HasSubstr("(HTTP 401 Unauthorized): it requires a token"));
   server.address.token = Secret("abc.xyz");
   const std::string trouble = trouble_at(server.address);
   EXPECT_THAT(trouble, HasSubstr("(HTTP 401 Unauthorized): check the token"));
@@ -195,7 +195,8 @@ TEST(WebSocketPort, SaysWhatIsNoWebSocketServer) {
   ScriptedServer silent(answering(""));
   address.port = silent.port();
   address.connect_timeout = 50ms;
-  EXPECT_THAT(trouble_at(address), testing::AnyOf(HasSubstr("does not answer"), HasSubstr("is no WebSocket server")));
+  EXPECT_THAT(trouble_at(address),
+              testing::AnyOf(HasSubstr("does not answer"), HasSubstr("is not a WebSocket server")));
 }
 
 TEST(WebSocketPort, JoinsFragmentsAndKeepsMessagesApart) {

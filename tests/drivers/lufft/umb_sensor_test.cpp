@@ -85,9 +85,8 @@ TEST(Umb, IsAskedLessOftenWhileItDoesNotReply) {
 }
 
 TEST(Umb, SaysWhyItHasNoWind) {
-  for (const auto& [status, why] :
-       {std::pair('\x55', "the weather does not let it"), std::pair('\x28', "not ready yet"),
-        std::pair('\x24', "does not measure wind"), std::pair('\x2A', "check the device")}) {
+  for (const auto& [status, why] : {std::pair('\x55', "the weather prevents it"), std::pair('\x28', "not ready yet"),
+                                    std::pair('\x24', "it measures no wind"), std::pair('\x2A', "check the device")}) {
     ScriptedUmb umb;
     umb.far_end.on_request = [&umb, code = status](const std::string&) { umb.far_end.send(no_wind(code)); };
     umb.run(8s);

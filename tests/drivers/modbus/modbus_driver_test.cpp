@@ -264,7 +264,7 @@ TEST(ModbusDriver, ComesBackAfterTheServerDroppedItsConnections) {
   const auto before = bench.sink.readings.size();
   for (int i = 0; i < 6; ++i) bench.poll(*sensor);
   EXPECT_EQ(bench.sink.readings.size(), before);
-  EXPECT_THAT(bench.sink.last_detail(), HasSubstr("broke off"));
+  EXPECT_THAT(bench.sink.last_detail(), HasSubstr("was lost"));
   drops = false;
   EXPECT_TRUE(bench.poll_for_reading(*sensor));
 }
@@ -447,7 +447,8 @@ TEST(ModbusDriver, RefusesOptionsThatCannotWork) {
               HasSubstr("no Modbus profile named \"nothing\"; known: "));
   EXPECT_THAT(error_of({{"profile", std::string("renke-rs-fsjt-n01")}, {"direction_slave", std::int64_t{3}}}),
               HasSubstr("direction_slave: "));
-  EXPECT_THAT(error_of({{"direction_device", std::string("/dev/x")}}), HasSubstr("direction_device: is for transport"));
+  EXPECT_THAT(error_of({{"direction_device", std::string("/dev/x")}}),
+              HasSubstr("direction_device: is only for transport"));
   EXPECT_THAT(error_of({{"transport", std::string("rtu")},
                         {"device", std::string("/dev/x")},
                         {"direction_device", std::string("/dev/y")},

@@ -230,11 +230,11 @@ TEST(ModbusProfile, ThatIsAPipeIsRefusedWithoutWaiting) {
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_THAT([&] { load_modbus_profile(pipe, ""); },
               testing::ThrowsMessage<std::runtime_error>(
-                  pipe + ": the profile cannot be read; check that it is a file and may be read"));
+                  pipe + ": the profile cannot be read; check that it is a file, and its permissions"));
 }
 
 TEST(ModbusProfile, HasNoControlCharacters) {
-  EXPECT_EQ(error_of("name = \"a\\u001b[2J\"\n"), "device.toml:1:8: name: has a control character in it; type it anew");
+  EXPECT_EQ(error_of("name = \"a\\u001b[2J\"\n"), "device.toml:1:8: name: contains a control character; type it again");
   EXPECT_THAT(error_of(minimal("", "[quantities.\"a\\u001b\"]\n")), HasSubstr("quantities.a?: is not known here"));
 }
 
@@ -299,7 +299,7 @@ TEST(ModbusProfile, ErrorsAreFoundWhereverTheyAre) {
   EXPECT_THAT(error_of(minimal("", "invalid = 3\n")), HasSubstr("speed.invalid: is not a list"));
   EXPECT_THAT(error_of(minimal("", "map = \"degrees\"\n")), HasSubstr("speed.map: is not known here"));
   EXPECT_THAT(error_of(minimal("", "read_has_side_effect = 1\n")),
-              HasSubstr("is not a truth value; allowed: true or false"));
+              HasSubstr("is neither true nor false; allowed: true or false"));
   EXPECT_THAT(error_of(minimal("address_base = 2\n")),
               HasSubstr("address_base: is 2; allowed: one of 0 1 30001 40001"));
   EXPECT_THAT(error_of(minimal("address_base = 1\n")),

@@ -116,7 +116,7 @@ TEST(HomeAssistant, SaysTheValueByATemplate) {
   for (const char* const other :
        {"{{ value_json.a * 3.6 }}", "{{ (value|float * 3.6) | round(2) }}", "{% if value_json.a %}1{% endif %}", "7",
         "{{ value_json }}", "{{ value_json.a | default(0) }}", "{{ value_json.a }} km/h", "{{ states('x') }}"}) {
-    EXPECT_THAT(place_of(other), HasSubstr("a template that is not read here")) << other;
+    EXPECT_THAT(place_of(other), HasSubstr("a template that is not supported")) << other;
   }
 }
 

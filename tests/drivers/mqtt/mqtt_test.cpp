@@ -308,7 +308,7 @@ TEST(MqttDriver, ReadsOneOfSeveralStationsAndWarnsOfTheOthers) {
   EXPECT_DOUBLE_EQ(reading.speed_m_s, 8.45 / 3.6);
   EXPECT_FALSE(reading.direction_deg.has_value()) << "the neighbour's direction is not ours";
   EXPECT_TRUE(
-      rtl_433.run.reports("reads Acurite-5n1, id 115, channel A, but another station is heard too: "
+      rtl_433.run.reports("reads Acurite-5n1, id 115, channel A, but another station is received, too: "
                           "Fineoffset-WS80, id 0a003b"));
   EXPECT_EQ(rtl_433.run.state(), wind::LinkState::kConnected);
 }
@@ -321,7 +321,8 @@ TEST(MqttDriver, ReadsTheStationThatItIsTold) {
   ASSERT_TRUE(rtl_433.run.reports("waits for"));
   for (const std::string& message : {other_id, other_channel, other_model})
     rtl_433.expect_refused(message, decode::Refusal::kNotMine);
-  EXPECT_TRUE(rtl_433.run.reports("it hears Acurite-5n1, id 116, channel A, which is not the station that is set"));
+  EXPECT_TRUE(rtl_433.run.reports(
+      "it receives Acurite-5n1, id 116, channel A, but model, id or channel select another station"));
   EXPECT_DOUBLE_EQ(rtl_433.reading_of(kAcuriteWithDirection).speed_m_s, 6.795 / 3.6);
 }
 
@@ -369,7 +370,7 @@ TEST(MqttDriver, RefusesASpeedUnitThatItDoesNotKnowUnlessOneIsSet) {
   ASSERT_TRUE(run.reports("waits for"));
   broker.publish("tele/roof/SENSOR", message);
   EXPECT_TRUE(run.has_refused(decode::Refusal::kInvalid));
-  EXPECT_TRUE(run.reports("\"furlong\", which is not known: set speed_unit"));
+  EXPECT_TRUE(run.reports("the unit of its speed, \"furlong\", is unknown: set speed_unit"));
   EXPECT_EQ(run.count(), 0U);
   MqttRun told(broker,
                {{"preset", std::string("tasmota")}, {"topic", std::string("")}, {"speed_unit", std::string("m/s")}});
@@ -508,7 +509,7 @@ TEST(MqttDriver, RefusesWhatCannotWork) {
       [] {
         open_mqtt_sensor({{"topic", std::string("a")}, {"model", std::string("Acurite-5n1")}});
       },
-      ThrowsMessage<std::runtime_error>(HasSubstr("model, id, channel: are for preset \"rtl_433\"")));
+      ThrowsMessage<std::runtime_error>(HasSubstr("model, id, channel: are only for preset \"rtl_433\"")));
 }
 
 /// Memory of this process, MiB: "VmRSS" now, "VmHWM" at most since forget_the_most().

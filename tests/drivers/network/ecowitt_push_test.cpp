@@ -76,7 +76,7 @@ class EcowittPushFault : public GatewayFault {
 TEST_F(EcowittPushFault, Silence) {
   simulator_.set_fault(FaultKind::kSilence);
   ASSERT_TRUE(live_.wait_until([&] {
-    return live_.sink.last_detail().find("a gateway needs another host") != std::string::npos;
+    return live_.sink.last_detail().find("for a gateway, set host") != std::string::npos;
   })) << live_.sink.last_detail();
   EXPECT_EQ(live_.sink.last_state(), wind::LinkState::kConnecting);
   expect_return();
@@ -91,7 +91,7 @@ TEST_F(EcowittPushFault, Spike) {
 }
 
 TEST_F(EcowittPushFault, Garbage) {
-  expect_refusals(FaultKind::kGarbage, decode::Refusal::kMalformed, "does not speak HTTP");
+  expect_refusals(FaultKind::kGarbage, decode::Refusal::kMalformed, "does not use HTTP");
   expect_return();
 }
 
@@ -100,17 +100,18 @@ TEST_F(EcowittPushFault, Split) {
 }
 
 TEST_F(EcowittPushFault, Partial) {
-  expect_refusals(FaultKind::kPartial, decode::Refusal::kTooShort, "ends before all of it has come");
+  expect_refusals(FaultKind::kPartial, decode::Refusal::kTooShort, "ends the connection before its push is complete");
   expect_return();
 }
 
 TEST_F(EcowittPushFault, WrongId) {
-  expect_refusals(FaultKind::kWrongId, decode::Refusal::kNotMine, "is not the one of `station_key`");
+  expect_refusals(FaultKind::kWrongId, decode::Refusal::kNotMine, "`station_key` selects another station");
   expect_return();
 }
 
 TEST_F(EcowittPushFault, Disconnect) {
-  expect_refusals(FaultKind::kDisconnect, decode::Refusal::kTooShort, "ends before all of it has come");
+  expect_refusals(FaultKind::kDisconnect, decode::Refusal::kTooShort,
+                  "ends the connection before its push is complete");
   expect_return();
 }
 
@@ -257,7 +258,7 @@ TEST(EcowittPushDriver, RefusesBrowsersAndHostsOfOthers) {
   for (const char* const field : {"Origin: http://evil.example", "Referer: http://evil.example/",
                                   "Sec-Fetch-Site: cross-site", "Sec-Fetch-Mode: no-cors"}) {
     EXPECT_THAT(push_with(std::string("Host: 127.0.0.1\r\n") + field), StartsWith("HTTP/1.1 403")) << field;
-    EXPECT_THAT(bench.sink.last_detail(), HasSubstr("a web page in a browser at 127.0.0.1 pushes"));
+    EXPECT_THAT(bench.sink.last_detail(), HasSubstr("refuses pushes of a web browser at 127.0.0.1"));
   }
   for (const char* const host : {"evil.example", "127.0.0.1.evil.example", "[::1]evil", "wall.example.org.evil"}) {
     EXPECT_THAT(push_with(std::string("Host: ") + host), StartsWith("HTTP/1.1 421")) << host;
@@ -278,7 +279,7 @@ TEST(EcowittPushDriver, WarnsOfASecondStationUntilTheFirstFallsSilent) {
   bench.clock.advance(16s);
   EXPECT_THAT(bench.ask(post_of(wind_form("AAA", 10))), StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(bench.sink.last_detail(),
-              HasSubstr("GW2000A_V2.1.5 at 127.0.0.1 pushes, too, and is not used: choose one"));
+              HasSubstr("GW2000A_V2.1.5 at 127.0.0.1 pushes, too, but is not used: select one"));
 
   bench.clock.advance(60s);
   bench.sensor->poll(bench.clock, bench.sink);

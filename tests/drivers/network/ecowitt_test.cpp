@@ -105,7 +105,7 @@ TEST_F(EcowittFault, Disconnect) {
 }
 
 TEST_F(EcowittFault, Unplug) {
-  expect_refusals(FaultKind::kUnplug, decode::Refusal::kInvalid, "hears no anemometer");
+  expect_refusals(FaultKind::kUnplug, decode::Refusal::kInvalid, "receives no anemometer");
   expect_return();
 }
 

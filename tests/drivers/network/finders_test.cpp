@@ -97,7 +97,7 @@ TEST(EcowittFinder, SaysThatItCannotAsk) {
   sensor::NetworkSearch search = loopback();
   search.to = "gateway";
   EXPECT_THAT([&] { found_by("ecowitt", search); },
-              ThrowsMessage<std::runtime_error>(testing::HasSubstr("is no IPv4 address")));
+              ThrowsMessage<std::runtime_error>(testing::HasSubstr("is not an IPv4 address")));
 }
 
 TEST(WeatherLinkLiveFinder, FindsWhatIsAnnounced) {
@@ -149,7 +149,7 @@ TEST(TempestFinder, FindsTheStationsThatAreHeard) {
   const auto found = found_by("tempest", search);
   is_over = true;
   hubs.join();
-  EXPECT_THAT(found, ElementsAre("WeatherFlow hub HB-00000001|no station with a wind has spoken through it",
+  EXPECT_THAT(found, ElementsAre("WeatherFlow hub HB-00000001|it has forwarded no wind of a station",
                                  "WeatherFlow station ST-00000512 of hub HB-00013030|serial_number = "
                                  "\"ST-00000512\"\n"));
 }

@@ -149,7 +149,7 @@ TEST_F(TempestFault, Silence) {
   suffer(70.0, FaultKind::kSilence);
   expect_nothing();
   EXPECT_THAT(sink.last_detail(),
-              HasSubstr("no hub has been heard at UDP port " + std::to_string(port_) + " for 60 s"));
+              HasSubstr("no hub has been received at UDP port " + std::to_string(port_) + " for 60 s"));
   expect_return();
 }
 
@@ -196,7 +196,7 @@ TEST_F(TempestFault, WrongId) {
 TEST_F(TempestFault, Unplug) {
   suffer(70.0, FaultKind::kUnplug);
   expect_nothing();
-  EXPECT_THAT(sink.last_detail(), HasSubstr("hears hub HB-00013030"));
+  EXPECT_THAT(sink.last_detail(), HasSubstr("receives hub HB-00013030"));
   EXPECT_THAT(sink.last_detail(), HasSubstr("check the station's battery"));
   expect_return();
 }
@@ -219,7 +219,8 @@ TEST_F(TempestDriver, FollowsTheFirstOfTwoAndWarns) {
   ASSERT_EQ(sink.readings.size(), 2U);
   EXPECT_EQ(sink.readings.back().speed_m_s, 2.3);
   EXPECT_EQ(sink.count(decode::Refusal::kNotMine), 1);
-  EXPECT_THAT(sink.last_detail(), HasSubstr("ST-00000002 is heard, too, and not used: choose one by serial_number"));
+  EXPECT_THAT(sink.last_detail(),
+              HasSubstr("ST-00000002 is received, too, but not used: select one with serial_number"));
 
   // Of one that has not been heard for long there is no warning any more.
   clock_.advance(12min);

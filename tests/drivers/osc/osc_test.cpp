@@ -221,7 +221,7 @@ TEST(OscDriver, RefusesWindOfTheFutureAndSaysSo) {
   OscRun run;
   run.send_when_it_listens(bundle_of(kWindOf5From90, tag_of(now() + 1h)));
   EXPECT_TRUE(run.has_refused(decode::Refusal::kInvalid));
-  EXPECT_TRUE(run.reports("s later: compare the clocks of both machines"));
+  EXPECT_TRUE(run.reports("s in the future: set the clocks of both machines"));
   run.expect_refused(bundle_of(kWindOf5From90, kIn2104), decode::Refusal::kInvalid);
   run.expect_refused(bundle_of(bundle_of(kWindOf5From90), tag_of(now() + 1h)), decode::Refusal::kInvalid);
   run.expect_refused(bundle_of(bundle_of(kWindOf5From90, tag_of(now() + 1h))), decode::Refusal::kInvalid);

@@ -113,7 +113,7 @@ TEST_F(ReopeningSensorTest, OpensAgainAfterAnException) {
   sensor_.is_faulty = true;
   poll_s();
   EXPECT_EQ(sensor_.closed, 1);
-  EXPECT_EQ(sink_.last_detail(), "its driver failed (a fault); it is opened again");
+  EXPECT_EQ(sink_.last_detail(), "its driver failed (a fault): reopening it");
   sensor_.is_faulty = false;
   poll_s();
   poll_s();

@@ -147,7 +147,8 @@ TEST(LineSettings, RefuseWhatCannotWork) {
     return "accepted";
   };
   EXPECT_EQ(refusal({}), "accepted");
-  EXPECT_THAT(refusal({{"speed_column", std::int64_t{0}}, {"speed_key", std::string("")}}), HasSubstr("needs a speed"));
+  EXPECT_THAT(refusal({{"speed_column", std::int64_t{0}}, {"speed_key", std::string("")}}),
+              HasSubstr("set one of them"));
   EXPECT_THAT(refusal({{"direction_column", std::int64_t{1}}}), HasSubstr("has the same column"));
   EXPECT_THAT(refusal({{"invalid", std::string("none")}}), HasSubstr("is not a number"));
   EXPECT_THAT(refusal({{"speed_key", std::string("/wind~/speed")}}),

@@ -122,7 +122,7 @@ TEST(SignalKWebSocket, SaysThatItNeedsAToken) {
   auto simulator = signalk_server("secret.token");
   test::LiveSensor live(open_signalk(simulator->wire(), {}));
   const SimulatorThread running(std::move(simulator));
-  EXPECT_TRUE(live.wait_until([&] { return live.sink.last_detail().find("it wants a token") != std::string::npos; }))
+  EXPECT_TRUE(live.wait_until([&] { return live.sink.last_detail().find("it requires a token") != std::string::npos; }))
       << live.sink.last_detail();
 }
 
@@ -134,10 +134,10 @@ TEST(SignalKWebSocket, RefusesSettingsThatCannotWork) {
   EXPECT_THAT(open({{"host", std::string("")}}),
               ThrowsMessage<std::runtime_error>(HasSubstr("transport websocket needs a server to connect to")));
   EXPECT_THAT(open({{"path", std::string("signalk")}}),
-              ThrowsMessage<std::runtime_error>(HasSubstr("path: is none on a server")));
+              ThrowsMessage<std::runtime_error>(HasSubstr("path: is not a path on a server")));
   EXPECT_THAT(open({{"path", std::string("/a b")}}), ThrowsMessage<std::runtime_error>(HasSubstr("path: ")));
   EXPECT_THAT(open({{"token", Secret("a\r\nHost: b")}}),
-              ThrowsMessage<std::runtime_error>(HasSubstr("token: is none: it has blanks")));
+              ThrowsMessage<std::runtime_error>(HasSubstr("token: is not a token: it contains blanks")));
   EXPECT_THAT(open({{"token", Secret("a")}, {"token_env", std::string("B")}}),
               ThrowsMessage<std::runtime_error>(HasSubstr("token: is given more than once")));
   EXPECT_THAT(open({{"token_env", std::string("YURAGI_NO_SUCH_TOKEN")}}),

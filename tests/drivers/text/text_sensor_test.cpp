@@ -196,7 +196,7 @@ TEST_F(TextSensorTest, TriesAgainForEverWhatCannotBeOpenedReadOrWritten) {
   far_end.can_write = false;
   run(30s);
   EXPECT_GE(far_end.opened, 2);
-  EXPECT_THAT(sink.last_detail(), HasSubstr("accepts no request"));
+  EXPECT_THAT(sink.last_detail(), HasSubstr("does not accept requests"));
   far_end.can_write = true;
   far_end.on_request = [this](const std::string&) { far_end.send(mwv_line(1.0)); };
   run(15s);

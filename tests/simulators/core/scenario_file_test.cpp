@@ -70,18 +70,18 @@ TEST_F(ScenarioFile, TellsEachMistakeWithItsPlace) {
   EXPECT_THAT(complaint_about(device), StartsWith(":1:1: wind: at least one [[wind]] is needed"));
   EXPECT_THAT(complaint_about("[[wind]]\n"), StartsWith(":1:1: device: at least one [[device]] is needed"));
   EXPECT_THAT(complaint_about("[[wind]]\nspeed = 61\n" + device),
-              StartsWith(":2:9: wind.speed: is to be a number from 0 to 60"));
-  EXPECT_THAT(complaint_about("[[wind]]\nspeed = nan\n" + device), StartsWith(":2:9: wind.speed: is to be a number"));
+              StartsWith(":2:9: wind.speed: must be a number from 0 to 60"));
+  EXPECT_THAT(complaint_about("[[wind]]\nspeed = nan\n" + device), StartsWith(":2:9: wind.speed: must be a number"));
   EXPECT_THAT(complaint_about("[[wind]]\nat = 5\n" + device), StartsWith(":2:6: wind.at: the first wind"));
   EXPECT_THAT(complaint_about("[[wind]]\nat = \"soon\"\n" + device), StartsWith(":2:6: wind.at: "));
   EXPECT_THAT(complaint_about("[[wind]]\nat = true\n" + device), StartsWith(":2:6: wind.at: "));
   EXPECT_THAT(complaint_about("[[wind]]\n[[wind]]\nat = 5\nramp = 9\n[[wind]]\nat = 13\n" + device),
-              StartsWith(":6:6: wind.at: is to be after"));
+              StartsWith(":6:6: wind.at: must be after"));
   EXPECT_THAT(complaint_about("[[wind]]\nrecording = \"a\"\nspeed = 2\n" + device),
               StartsWith(":3:9: wind.speed: is not known here; at, ramp, recording are"));
-  EXPECT_THAT(complaint_about("[[wind]]\n[[device]]\nname = \"a\"\n"), StartsWith(":2:1: device.simulate: is to be"));
+  EXPECT_THAT(complaint_about("[[wind]]\n[[device]]\nname = \"a\"\n"), StartsWith(":2:1: device.simulate: must be"));
   EXPECT_THAT(complaint_about("[[wind]]\n" + device + "faults = \"silence@1+1\"\n"),
-              StartsWith(":5:10: device.faults: is to be a list"));
+              StartsWith(":5:10: device.faults: must be a list"));
   EXPECT_THAT(complaint_about("[[wind]]\n" + device + device), StartsWith(":6:8: device.name: another device"));
   EXPECT_THAT(complaint_about("pace = 2\n[[wind]]\n" + device), StartsWith(":1:8: pace: is not known here"));
 }

@@ -263,7 +263,7 @@ TEST(TextSimulatorProgram, RefusesACommandLineThatItCannotUse) {
   EXPECT_THAT(run({"nmea", "--pty", "--format", "umb,mwv"}), testing::Pair(64, HasSubstr("cannot be combined")));
   EXPECT_THAT(run({"line", "--tcp", "nowhere"}), testing::Pair(64, HasSubstr("HOST:PORT")));
   EXPECT_THAT(run({"line", "--udp", "127.0.0.1:9", "--rate", "0"}),
-              testing::Pair(64, HasSubstr("requests cannot be received")));
+              testing::Pair(64, HasSubstr("this connection cannot receive requests")));
   EXPECT_THAT(run({"line", "--tcp", "192.0.2.7:0"}), testing::Pair(69, HasSubstr("cannot listen on")));
   EXPECT_THAT(run({"nmea", "--pty", "--fault", "disconnect@1+2"}), testing::Pair(64, HasSubstr("unplug")));
 }

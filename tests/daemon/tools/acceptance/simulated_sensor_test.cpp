@@ -105,7 +105,7 @@ TEST(SimulationPlan, PlaysASignalKServer) {
   EXPECT_EQ(plan.sensor.values.text("context"), "");
   EXPECT_DOUBLE_EQ(plan.expected.direction_deg, 235.0);
   EXPECT_THAT(why_not("driver = \"signalk\"\nhost = \"boat\"\nreference = \"north\""),
-              HasSubstr("apparent wind alone"));
+              HasSubstr("only the apparent wind"));
 }
 
 TEST(SimulationPlan, PlaysWhatSendsToTheSensor) {
@@ -174,8 +174,8 @@ TEST(SimulationPlan, ExpectsTheCalibratedWind) {
 }
 
 TEST(SimulationPlan, SaysWhatIsNotSimulated) {
-  EXPECT_THAT(why_not("driver = \"usb\""), HasSubstr("a simulated usb needs USB or sound"));
-  EXPECT_THAT(why_not("driver = \"synthetic\""), HasSubstr("no simulated device for the driver synthetic"));
+  EXPECT_THAT(why_not("driver = \"usb\""), HasSubstr("a simulated usb cannot be started here"));
+  EXPECT_THAT(why_not("driver = \"synthetic\""), HasSubstr("the driver synthetic has no simulated device"));
 }
 
 TEST(SimulatorPort, IsThatOfAWholeFirstLine) {
