@@ -24,7 +24,7 @@ void DeliveryQueue::push(AlertNews news) {
   std::optional<AlertNews> given_up;
   {
     const std::lock_guard lock(mutex_);
-    if (waiting_.size() == kMostWaiting) {
+    if (waiting_.size() == kMaxWaiting) {
       given_up = std::move(waiting_.front());
       waiting_.pop_front();
       ++given_up_;

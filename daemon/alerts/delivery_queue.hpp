@@ -37,7 +37,7 @@ class DeliveryQueue {
   };
 
   /// Drops the oldest if too many wait.
-  static constexpr std::size_t kMostWaiting = 64;
+  static constexpr std::size_t kMaxWaiting = 64;
 
   DeliveryQueue(Calls calls, const RetryTimes& times);
   ~DeliveryQueue();

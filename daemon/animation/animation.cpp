@@ -14,7 +14,7 @@ constexpr double kLiveWeight = 0.5;  // from here on the wind is the sensors' fo
 
 /// Enough places for every sensor, and no more: a tape takes half a megabyte.
 std::size_t most_pens(const settings::Config& config) {
-  return std::min(wind::ground::WindStroke::kMostPens, config.sensors.size() + (config.wind.fallback ? 1 : 0));
+  return std::min(wind::ground::WindStroke::kMaxPens, config.sensors.size() + (config.wind.fallback ? 1 : 0));
 }
 
 /// The scenes that the daemon begins with: at once as visible as they are to be.

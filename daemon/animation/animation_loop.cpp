@@ -15,7 +15,7 @@ namespace yuragi::daemon::animation {
 namespace {
 
 // The longest step after a halt of the machine, however long it was.
-constexpr double kLongestStep_s = 0.1;
+constexpr double kMaxStep_s = 0.1;
 
 void sleep_until(MonoTime deadline) {
   const Nanoseconds since_zero = deadline.time_since_epoch();
@@ -106,7 +106,7 @@ void AnimationLoop::tick(const TickSchedule::Tick& tick) {
   // Skipped ticks are made up for by one longer step, so that motion keeps its speed, up to a limit.
   wind_.refresh();
   const wind::ground::DrivingWind& wind = wind_.value();
-  const double dt_s = std::min(static_cast<double>(tick.skipped + 1) / rate_hz_, kLongestStep_s);
+  const double dt_s = std::min(static_cast<double>(tick.skipped + 1) / rate_hz_, kMaxStep_s);
   take_orders();
   animation_.step(wind, dt_s, tick.skipped + 1);
   if (auto finished = animation_.take_finished_change()) finished_.store(finished.release(), std::memory_order_release);

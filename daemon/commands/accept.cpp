@@ -41,7 +41,7 @@ constexpr auto kOwnConnectTimeout = std::chrono::seconds(10);
 constexpr auto kOwnSilenceTimeout = std::chrono::seconds(5);
 constexpr double kSetUp_s = 30.0;  ///< of the service, before it measures
 constexpr double kNorthTime_s = 5.0;
-constexpr double kLongestSimulated_s = 10.0;  ///< a constant wind counts as frozen after 30 s
+constexpr double kMaxSimulated_s = 10.0;  ///< a constant wind counts as frozen after 30 s
 constexpr double kPersonsTime_s = 3600.0;
 
 struct AcceptOptions {
@@ -172,7 +172,7 @@ tools::acceptance::SimulatedPart measure_simulated(const settings::Config& confi
                    kSetUp_s + 2.0 * options.duration_s);
   daemon.measure(measurement, options.duration_s, [&] { return measurement.has_reading(); });
   if (measurement.has_reading())
-    daemon.measure(measurement, std::min(options.duration_s, kLongestSimulated_s), [] { return false; });
+    daemon.measure(measurement, std::min(options.duration_s, kMaxSimulated_s), [] { return false; });
   part.measured = measurement.result(clock.now());
   part.verdict = tools::acceptance::judge_simulated(*part.measured, plan->expected);
   return part;

@@ -19,7 +19,7 @@ namespace {
 constexpr double kMicBlock_s = 5.0;
 /// The least part of a block's readings that must have a level; otherwise it was mostly calm, where the level is
 /// unknown.
-constexpr double kLeastMeasuredPart = 0.5;
+constexpr double kMinMeasuredPart = 0.5;
 
 struct MicrophoneOptions {
   tools::calibration::CalibrationRequest request;
@@ -120,7 +120,7 @@ std::vector<drivers::decode::microphone::MicLevelAndSpeed> pairs_beside(tools::c
   for (const auto& [block, levels_db] : levels_in_block) {
     const auto truth = truth_in_block.find(block);
     const bool is_measured =
-        static_cast<double>(levels_db.size()) >= kLeastMeasuredPart * static_cast<double>(all_in_block[block]);
+        static_cast<double>(levels_db.size()) >= kMinMeasuredPart * static_cast<double>(all_in_block[block]);
     if (truth != truth_in_block.end() && is_measured) pairs.push_back({mean_of(levels_db), mean_of(truth->second)});
   }
   session.dialog().print(fmt::format("\nCompared with \"{}\": {} pairs of level and speed, means over {:.0f} s.",

@@ -11,7 +11,7 @@
 namespace yuragi::daemon::commands {
 namespace {
 
-constexpr double kLeastVaneSpeed_m_s = 1.0;  // below it a vane does not turn
+constexpr double kMinVaneSpeed_m_s = 1.0;  // below it a vane does not turn
 constexpr double kTurnBlock_s = 10.0;
 
 struct NorthOptions {
@@ -42,7 +42,7 @@ std::vector<wind::judging::TimedDirection> directions_of(const tools::calibratio
   std::vector<wind::judging::TimedDirection> directions;
   for (const tools::calibration::TimedReading& one : collected.readings) {
     const wind::WindReading reading = calibration.applied_to(one.reading);
-    if (reading.direction_deg && reading.speed_m_s >= kLeastVaneSpeed_m_s) {
+    if (reading.direction_deg && reading.speed_m_s >= kMinVaneSpeed_m_s) {
       directions.push_back({one.time_s, *reading.direction_deg});
     }
   }

@@ -16,7 +16,7 @@ namespace yuragi::daemon::commands {
 namespace {
 
 constexpr double kSpanBlock_s = 10.0;
-constexpr double kMostUnsteadiness = 0.3;  // standard deviation over mean of a steady wind
+constexpr double kMaxUnsteadiness = 0.3;  // standard deviation over mean of a steady wind
 
 struct SpanOptions {
   tools::calibration::CalibrationRequest request;
@@ -41,10 +41,10 @@ wind::judging::CalibrationPoint measure_known_speed(tools::calibration::Calibrat
   session.dialog().print(fmt::format("At {:g} m/s the sensor reads {:.3f} m/s, standard deviation {:.3f} m/s, over {}.",
                                      speed_m_s, mean_m_s, std::sqrt(variance),
                                      count_text(indicated_m_s.size(), "reading")));
-  if (std::sqrt(variance) > kMostUnsteadiness * mean_m_s && mean_m_s > 0.0) {
+  if (std::sqrt(variance) > kMaxUnsteadiness * mean_m_s && mean_m_s > 0.0) {
     tools::calibration::refuse(
         {fmt::format("that wind is not steady: its standard deviation is {:.0f} %, allowed: up to {:.0f} %",
-                     100.0 * std::sqrt(variance) / mean_m_s, 100.0 * kMostUnsteadiness)});
+                     100.0 * std::sqrt(variance) / mean_m_s, 100.0 * kMaxUnsteadiness)});
   }
   return {mean_m_s, speed_m_s};
 }

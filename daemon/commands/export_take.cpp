@@ -62,17 +62,17 @@ class TakeMaker {
     name_ = scene_of(options_, scenes);
     while (scenes.scenes[scene_].name != name_) ++scene_;
     const pose::Skeleton& skeleton = *animation.skeletons()[scene_];
-    const auto least = tools::take::every_within(skeleton, tools::take::kMostJoints);
+    const auto least = tools::take::every_within(skeleton, tools::take::kMaxJoints);
     if (!least) {
       throw ExitError(kExitUsage,
                       fmt::format("{} has more joints than the {} that a glTF file can have: make it coarser", name_,
-                                  tools::take::kMostJoints));
+                                  tools::take::kMaxJoints));
     }
     const auto usual = tools::take::every_within(skeleton, kUsualJoints);
     every_ = options_.every ? *options_.every : usual.value_or(*least);
     if (every_ < *least)
       throw ExitError(kExitUsage, fmt::format("--every: must be at least {} here: a glTF file can have {} joints",
-                                              *least, tools::take::kMostJoints));
+                                              *least, tools::take::kMaxJoints));
     recorder_ = std::make_unique<tools::take::TakeRecorder>(skeleton, name_, every_, options_.fps);
     if (options_.duration_s) {
       tools::take::checked_size(recorder_->joints(), std::floor(*options_.duration_s * options_.fps)).value();

@@ -186,10 +186,10 @@ nlohmann::ordered_json description_of(const FieldOptions& options, const wind::f
 /// The speed of a frame's lowest level, seen from above, and the wind at some places.
 tools::plot::PlotMap map_of(std::span<const float> frame, const wind::field::FieldGrid& grid,
                             const std::string& title) {
-  constexpr std::size_t kMostSamples = 500;
+  constexpr std::size_t kMaxSamples = 500;
   constexpr std::size_t kArrows = 24;
   const std::size_t longest = std::max(grid.count_x, grid.count_z);
-  const std::size_t thin = (longest + kMostSamples - 1) / kMostSamples;
+  const std::size_t thin = (longest + kMaxSamples - 1) / kMaxSamples;
   const std::size_t apart = std::max<std::size_t>(1, longest / kArrows);
   const auto u_at = [&](std::size_t i, std::size_t k) {
     return static_cast<double>(frame[k * grid.count_y * grid.count_x + i]);
@@ -360,7 +360,7 @@ void add_field(CLI::App& app) {
                               ->add_option("--stress", options->stress,
                                            "with --dims 3: cov(u, w) / (sigma_u sigma_w), u along the wind; 0 is none "
                                            "[-0.3, as near the ground]")
-                              ->check(CLI::Range(-wind::field::kLargestStress, wind::field::kLargestStress)));
+                              ->check(CLI::Range(-wind::field::kMaxStress, wind::field::kMaxStress)));
   of_statistics.push_back(command->add_option("--tile", options->tile, "samples per edge of the tile: a power of two"));
   command
       ->add_option("--size", options->size, "N or X,Z (2-D), N or X,Y,Z (3-D): samples, or metres such as 50m; 256, 64")

@@ -22,7 +22,7 @@
 namespace yuragi::daemon::commands {
 namespace {
 
-constexpr int kHighestModbusId = 247;
+constexpr int kMaxModbusId = 247;
 
 struct ProbeOptions {
   std::string where;
@@ -71,7 +71,7 @@ std::vector<std::uint8_t> ids_of(const std::string& text) {
     int value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     const bool is_id = error == std::errc{} && end == digits.data() + digits.size() && value >= 1;
-    if (!is_id || value > kHighestModbusId) refuse_ids(text);
+    if (!is_id || value > kMaxModbusId) refuse_ids(text);
     return value;
   };
   std::vector<std::uint8_t> ids;

@@ -11,7 +11,7 @@ namespace yuragi::daemon::commands {
 namespace {
 
 constexpr auto kSimulatorStart = std::chrono::seconds(10);
-constexpr std::size_t kLongestFirstLine = 4096;
+constexpr std::size_t kMaxFirstLine = 4096;
 
 }  // namespace
 
@@ -26,7 +26,7 @@ Result<SimulatorProcess, Failure> SimulatorProcess::start(const std::vector<std:
   std::string output;
   std::array<std::uint8_t, 512> buffer{};
   const auto deadline = std::chrono::steady_clock::now() + kSimulatorStart;
-  while (output.size() < kLongestFirstLine) {
+  while (output.size() < kMaxFirstLine) {
     const Nanoseconds left = deadline - std::chrono::steady_clock::now();
     if (left <= Nanoseconds{0}) break;
     const auto arrival = process->read(buffer, left);

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kLeastWind_m_s = 1e-6;  ///< below it a sum of vectors has no direction
+constexpr double kMinWind_m_s = 1e-6;  ///< below it a sum of vectors has no direction
 
 /// To two digits: a week of 16 sensors is half a megabyte so.
 double rounded(double value) {
@@ -20,7 +20,7 @@ double rounded(double value) {
 
 ordered_json direction_of(const HistoryStep& step) {
   const wind::WindVector sum = step.vector_sum_m_s;
-  if (wind::speed_of(sum) < kLeastWind_m_s) return nullptr;
+  if (wind::speed_of(sum) < kMinWind_m_s) return nullptr;
   return std::fmod(std::round(wind::direction_from_deg(sum)), 360.0);
 }
 

@@ -16,8 +16,8 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr int kLowestPriority = 19;
-constexpr auto kMostAtEnd = std::chrono::seconds(2);
+constexpr int kMinPriority = 19;
+constexpr auto kMaxAtEnd = std::chrono::seconds(2);
 
 struct Kept {
   unsigned hours = 0;
@@ -60,7 +60,7 @@ HistoryReader::HistoryReader(Read read, Nanoseconds kept_for) : work_(std::make_
 HistoryReader::~HistoryReader() {
   work_->stop.request_stop();
   std::unique_lock lock(work_->mutex);
-  work_->is_done.wait_for(lock, kMostAtEnd, [this] { return !work_->is_reading; });
+  work_->is_done.wait_for(lock, kMaxAtEnd, [this] { return !work_->is_reading; });
 }
 
 void HistoryReader::ask(unsigned hours, const Reply& reply) {
@@ -79,7 +79,7 @@ void HistoryReader::ask(unsigned hours, const Reply& reply) {
   try {
     std::thread([work = work_, hours, reply] {
       contain("reading the recording for the page", [&] {
-        setpriority(PRIO_PROCESS, 0, kLowestPriority);  // of this thread alone, on Linux
+        setpriority(PRIO_PROCESS, 0, kMinPriority);  // of this thread alone, on Linux
         const auto result = work->carry_out(hours);
         work->finish(hours, result);
         reply(result);

@@ -14,7 +14,7 @@ constexpr std::int64_t kSecondsPerHour = 3600;
 std::int64_t step_of(unsigned hours) {
   constexpr std::array<std::int64_t, 10> kLengths_s = {10, 20, 30, 60, 120, 180, 300, 600, 900, 1800};
   const auto enough = std::ranges::find_if(
-      kLengths_s, [hours](std::int64_t length_s) { return hours * kSecondsPerHour / length_s <= kMostSteps; });
+      kLengths_s, [hours](std::int64_t length_s) { return hours * kSecondsPerHour / length_s <= kMaxSteps; });
   return enough == kLengths_s.end() ? kSecondsPerHour : *enough;
 }
 
@@ -31,7 +31,7 @@ void add(HistoryStep& step, const wind::WindReading& reading) {
 SensorHistory* sensor_named(const std::string& name, WindHistory& history) {
   const auto found = std::ranges::find(history.sensors, name, &SensorHistory::name);
   if (found != history.sensors.end()) return &*found;
-  if (history.sensors.size() == kMostSensors) return nullptr;
+  if (history.sensors.size() == kMaxSensors) return nullptr;
   history.sensors.push_back({name, std::vector<HistoryStep>(history.step_count)});
   return &history.sensors.back();
 }

@@ -36,12 +36,12 @@ struct WindHistory {
 };
 
 /// More steps than these are not made, except for the one that has only begun.
-inline constexpr std::int64_t kMostSteps = 500;
+inline constexpr std::int64_t kMaxSteps = 500;
 /// Further sensors of a recording are left out.
-inline constexpr std::size_t kMostSensors = 16;
-inline constexpr unsigned kLongestHistory_h = 168;
+inline constexpr std::size_t kMaxSensors = 16;
+inline constexpr unsigned kMaxHistory_h = 168;
 
-/// Reads the `hours` (1 to kLongestHistory_h) before `now` from a recording or a series of them, also while it is
+/// Reads the `hours` (1 to kMaxHistory_h) before `now` from a recording or a series of them, also while it is
 /// written. Sensors of the same name in several sessions are one. Fails as WindlogReader does; `stop` ends it within
 /// milliseconds with a failure. Thread-safe: yes. Realtime-safe: no; waits for the disk.
 Result<WindHistory, Failure> read_wind_history(const std::filesystem::path& file, UtcTime now, unsigned hours,

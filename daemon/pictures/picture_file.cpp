@@ -34,9 +34,9 @@ Result<std::vector<std::uint8_t>, Failure> bytes_of(const std::filesystem::path&
   if (fstat(opened.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
     return refusal("is not a regular file, but a folder, a pipe or a device");
   }
-  if (static_cast<std::uintmax_t>(status.st_size) > kLargestFile_bytes) {
+  if (static_cast<std::uintmax_t>(status.st_size) > kMaxFile_bytes) {
     return refusal("is a file of " + std::to_string(status.st_size >> 20) + " MB; allowed: up to " +
-                   std::to_string(kLargestFile_bytes >> 20) + " MB");
+                   std::to_string(kMaxFile_bytes >> 20) + " MB");
   }
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(status.st_size));
   std::size_t length = 0;

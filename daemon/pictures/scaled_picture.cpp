@@ -29,8 +29,8 @@ look::Image scaled_down(look::Image picture) {
   const std::size_t width = picture.width_px;
   const std::size_t height = picture.height_px;
   const auto pixels = static_cast<double>(width * height);
-  const double by = std::max({1.0, std::sqrt(pixels / static_cast<double>(look::Image::kMostPixels)),
-                              static_cast<double>(std::max(width, height)) / look::Image::kLongestSide_px});
+  const double by = std::max({1.0, std::sqrt(pixels / static_cast<double>(look::Image::kMaxPixels)),
+                              static_cast<double>(std::max(width, height)) / look::Image::kMaxSide_px});
   if (by <= 1.0) return picture;
 
   const auto scaled = [&](std::size_t side) {

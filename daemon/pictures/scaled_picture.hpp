@@ -4,7 +4,7 @@
 
 namespace yuragi::daemon::pictures {
 
-/// The picture, with as many pixels as a stream has room for (Image::kMostPixels, Image::kLongestSide_px): each is the
+/// The picture, with as many pixels as a stream has room for (Image::kMaxPixels, Image::kMaxSide_px): each is the
 /// mean light of those that fall into it. One that has room is not changed.
 look::Image scaled_down(look::Image picture);
 

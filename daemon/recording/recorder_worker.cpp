@@ -26,7 +26,7 @@ constexpr std::size_t kRingCapacity = 16'384;
 // What stations report besides the wind waits in the ring, and as much again behind it: minutes of a sensor.
 constexpr std::size_t kQuantitiesCapacity = 1024;
 /// Parts that began in the same second have the names of the seconds that follow.
-constexpr int kMostPartNames = 1000;
+constexpr int kMaxPartNames = 1000;
 
 /// 0 if it cannot be known.
 std::uint64_t size_of(const std::filesystem::path& file) {
@@ -460,7 +460,7 @@ Result<void, Failure> RecorderWorker::complete_file(UtcTime now) {
   // Parts are read in the order of their names: one from a wrong date ahead goes before those that follow it.
   const auto parts = drivers::windlog::completed_parts(file_);
   if (parts.empty() || parts.back().begin < now) begin = std::min(begin, now);
-  for (int tries = 0; tries < kMostPartNames; ++tries) {
+  for (int tries = 0; tries < kMaxPartNames; ++tries) {
     if (drivers::windlog::is_free_name(drivers::windlog::part_name(file_, begin))) break;
     begin += std::chrono::seconds(1);
   }

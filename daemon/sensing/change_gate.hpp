@@ -26,7 +26,7 @@ class ChangeGate {
       seen_since_ = now;
     }
     if (value == reported_ || seconds(now - seen_since_) < needed_s(now)) return false;
-    hold_s_ = std::clamp(2.0 * needed_s(now), kShortestHold_s, kLongestHold_s);
+    hold_s_ = std::clamp(2.0 * needed_s(now), kMinHold_s, kMaxHold_s);
     reported_ = value;
     reported_at_ = now;
     reported_passed_over_ = passed_over_;
@@ -41,8 +41,8 @@ class ChangeGate {
   std::uint32_t reported() const noexcept { return reported_; }
 
  private:
-  static constexpr double kShortestHold_s = 1.0;
-  static constexpr double kLongestHold_s = 600.0;
+  static constexpr double kMinHold_s = 1.0;
+  static constexpr double kMaxHold_s = 600.0;
   static constexpr double kQuiet_s = 3600.0;
 
   double needed_s(MonoTime now) const noexcept {

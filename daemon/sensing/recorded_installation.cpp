@@ -20,7 +20,7 @@ using drivers::windlog::LoggedSession;
 using drivers::windlog::WindlogReader;
 
 /// So many changes of the configuration are named in the log.
-constexpr std::size_t kMostChangesNamed = 5;
+constexpr std::size_t kMaxChangesNamed = 5;
 
 /// A sensor of the installation of which the recording has no reading.
 class SilentSensor final : public drivers::sensor::Sensor {
@@ -108,7 +108,7 @@ Result<std::vector<std::string>, Failure> changes_after(const WindlogReader& rea
     if (session.log_begin <= first.log_begin) continue;
     auto text = reader.configuration(session.id);
     if (!text) return of_recorded_data(text.error());
-    if (*text != *replayed && *text != before && ++count <= kMostChangesNamed) {
+    if (*text != *replayed && *text != before && ++count <= kMaxChangesNamed) {
       sentences.push_back(fmt::format(
           "from {:%Y-%m-%dT%H:%M:%S}Z on (session {}) it was recorded with another configuration; it is replayed with "
           "that of session {}",
@@ -116,8 +116,8 @@ Result<std::vector<std::string>, Failure> changes_after(const WindlogReader& rea
     }
     before = std::move(*text);
   }
-  if (count > kMostChangesNamed) {
-    sentences.push_back(fmt::format("{} further changes of the configuration", count - kMostChangesNamed));
+  if (count > kMaxChangesNamed) {
+    sentences.push_back(fmt::format("{} further changes of the configuration", count - kMaxChangesNamed));
   }
   return sentences;
 }

@@ -96,8 +96,8 @@ bool BoundedLogSink::takes_a_line() {
 DaemonLog::DaemonLog(bool verbose)
     : verbose_(verbose),
       sink_(std::make_shared<BoundedLogSink>(stderr)),
-      kept_(std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(kMostKept)) {
-  writer_ = std::make_shared<spdlog::details::thread_pool>(kMostWaiting, 1);
+      kept_(std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(kMaxKept)) {
+  writer_ = std::make_shared<spdlog::details::thread_pool>(kMaxWaiting, 1);
   sink_->count_overruns_of(writer_.get());
   const auto logger = std::make_shared<spdlog::async_logger>("yuragi", spdlog::sinks_init_list{kept_, sink_}, writer_,
                                                              spdlog::async_overflow_policy::overrun_oldest);

@@ -52,11 +52,11 @@ class BoundedLogSink final : public spdlog::sinks::ansicolor_sink<spdlog::detail
 
 /// The log of a command that is the daemon or a client of it, on standard error while this object lives. Lines are
 /// written by a thread of its own: a terminal that is stopped, or a pipe that nobody reads, delays nobody. At most
-/// kMostWaiting lines wait; further ones replace the oldest and are counted. It logs contained exceptions
+/// kMaxWaiting lines wait; further ones replace the oldest and are counted. It logs contained exceptions
 /// (engine/base/contain.hpp), too, as FaultLog does.
 class DaemonLog {
  public:
-  static constexpr std::size_t kMostWaiting = 1024;
+  static constexpr std::size_t kMaxWaiting = 1024;
 
   /// `verbose`: debug messages, too.
   explicit DaemonLog(bool verbose);
@@ -64,9 +64,9 @@ class DaemonLog {
   /// Writes lines of this level and above from now on; with `verbose` all.
   void set_level(settings::LogLevel level) const;
 
-  /// Gives the last lines, at most kMostKept, also those that nobody read. Thread-safe; may outlive this object.
+  /// Gives the last lines, at most kMaxKept, also those that nobody read. Thread-safe; may outlive this object.
   web::LogTail tail() const;
-  static constexpr std::size_t kMostKept = 500;
+  static constexpr std::size_t kMaxKept = 500;
 
   /// Gives the number of contained exceptions by their kind. Thread-safe; may outlive this object.
   static web::FaultCounter fault_counter();

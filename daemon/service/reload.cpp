@@ -180,7 +180,7 @@ bool Reload::Due::is_of_look_alone() const {
 bool Reload::takes_another_reply() const {
   std::size_t waiting = 0;
   for (const Due& due : due_) waiting += due.asked.size();
-  return waiting < kMostWaiting;
+  return waiting < kMaxWaiting;
 }
 
 Reload::Due& Reload::due_file() {

@@ -63,7 +63,7 @@ class Reload {
   using Reply = std::function<void(const wire::ReloadReport&)>;
 
   /// At most so many clients wait for a reload; further ones are refused with "try again".
-  static constexpr std::size_t kMostWaiting = 64;
+  static constexpr std::size_t kMaxWaiting = 64;
 
   static constexpr Nanoseconds kMaxRead = std::chrono::seconds(20);
   static constexpr std::size_t kMaxLeftBehind = 4;

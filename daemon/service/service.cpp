@@ -58,7 +58,7 @@ constexpr auto kStatusInterval = std::chrono::milliseconds(500);
 /// What could not be opened at the start is tried again so often.
 constexpr auto kTryAgainAfter = std::chrono::seconds(2);
 
-static_assert(settings::kMostSensors + 1 <= wire::kMaxSensors && settings::kMostScenes <= wire::kMaxScenes);
+static_assert(settings::kMaxSensors + 1 <= wire::kMaxSensors && settings::kMaxScenes <= wire::kMaxScenes);
 
 /// Signals that would end the program without closing the recording. SIGPIPE: nobody reads the log any more. SIGXFSZ: a
 /// file has reached its limit, which the recorder also gets as an error. The others have no meaning here.
@@ -267,8 +267,7 @@ class Service::Io {
     if (!takes_token_ || !token_.is_empty()) return false;
     auto token = platform::secret_in_file(http_.token_file);
     std::string why = token ? "" : token.error().message;
-    if (token && token->reveal().size() < web::Access::kShortestToken)
-      why = "\"" + http_.token_file + "\" is too short";
+    if (token && token->reveal().size() < web::Access::kMinToken) why = "\"" + http_.token_file + "\" is too short";
     if (why.empty()) {
       token_ = std::move(*token);
       return true;

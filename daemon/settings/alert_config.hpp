@@ -14,7 +14,7 @@
 namespace yuragi::daemon::settings {
 
 /// More than any installation needs.
-inline constexpr std::size_t kMostAlerts = 64;
+inline constexpr std::size_t kMaxAlerts = 64;
 
 /// What an [[alert]] is about.
 enum class AlertCondition : std::uint8_t {

@@ -26,7 +26,7 @@ Config listening_at(Config config, const std::string& address) {
 }
 
 std::string read_config_text(const std::filesystem::path& file) {
-  auto text = platform::read_whole(file, kLargestConfig_bytes);
+  auto text = platform::read_whole(file, kMaxConfig_bytes);
   if (!text) throw ConfigError(file.string() + ":1:1: file: " + text.error().message);
   return std::move(*text);
 }

@@ -30,8 +30,8 @@
 namespace yuragi::daemon::settings {
 
 /// No client takes more in one message; the recording that plays while all sensors are silent counts as another sensor.
-inline constexpr std::size_t kMostSensors = 255;
-inline constexpr std::size_t kMostScenes = 64;
+inline constexpr std::size_t kMaxSensors = 255;
+inline constexpr std::size_t kMaxScenes = 64;
 
 /// [animation]: tick rate and threads.
 struct AnimationConfig {
@@ -96,10 +96,10 @@ Config listening_at(Config config, const std::string& address);
 Config parse_config(std::string_view toml_text, const std::string& source_name);
 
 /// The largest configuration that is read, in bytes: many times what any installation needs.
-inline constexpr std::size_t kLargestConfig_bytes = 1 << 20;
+inline constexpr std::size_t kMaxConfig_bytes = 1 << 20;
 
 /// The text of a file. Throws ConfigError if it cannot be read, is no regular file (a folder, a pipe), or is larger
-/// than kLargestConfig_bytes. Waits for nothing but the disk.
+/// than kMaxConfig_bytes. Waits for nothing but the disk.
 std::string read_config_text(const std::filesystem::path& file);
 
 /// Reads a configuration file, and the pictures that it names, from its folder on. Throws ConfigError, also if one

@@ -104,24 +104,24 @@ class ConfigReader {
     check_top_level(root);
     read_tables<Config>(root, "", config_tables(), config);
     if (config.wind.fallback) config.wind.fallback->origin = place(root["wind"]["fallback_recording"].node()->source());
-    for_each_entry(root, "sensor", "driver", kMostSensors, drivers::sensor::driver_table(),
+    for_each_entry(root, "sensor", "driver", kMaxSensors, drivers::sensor::driver_table(),
                    [&](SensorConfig sensor, const toml::table& entry) {
                      sensor.origin = place(entry.source());
                      read_tables<SensorConfig>(entry, "sensor.", sensor_tables(), sensor);
                      if (!config.wind.default_length_m) set_gust_length(sensor);
                      config.sensors.push_back(std::move(sensor));
                    });
-    for_each_entry(root, "scene", "kind", kMostScenes, scenes::scene_table(),
+    for_each_entry(root, "scene", "kind", kMaxScenes, scenes::scene_table(),
                    [&](SceneConfig scene, const toml::table& entry) {
                      scene.cloth = read_cloth(entry, scene.values);
                      config.scenes.push_back(std::move(scene));
                    });
     if (config.scenes.empty()) config.scenes = default_scenes();
     read_ground_image(root, config);
-    for_each_named(root, "camera", look::kMostCameras,
+    for_each_named(root, "camera", look::kMaxCameras,
                    [&](std::string name, const toml::table& entry) { read_camera(std::move(name), entry, config); });
     set_clock(config);
-    for_each_named(root, "alert", kMostAlerts,
+    for_each_named(root, "alert", kMaxAlerts,
                    [&](std::string name, const toml::table& entry) { read_alert(std::move(name), entry, config); });
     if (const toml::node* node = root.get(output::kOutputList); node != nullptr && is_list(*node))
       config.outputs = output::read_outputs(root, mistakes_);

@@ -12,7 +12,7 @@ namespace yuragi::daemon::settings {
 namespace {
 
 /// Longer than any opening hours; how long reading them takes is bounded by it.
-constexpr std::size_t kLongestHours = 1000;
+constexpr std::size_t kMaxHours = 1000;
 constexpr std::size_t kMinutesPerDay = std::size_t{24} * 60;
 constexpr std::size_t kDays = 7;
 constexpr std::array<std::string_view, kDays> kDayNames = {"Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"};
@@ -90,8 +90,8 @@ Result<OpeningHours, ParameterError> OpeningHours::parse(std::string_view hours,
   if (!clock) return clock.error();
   result.clock_ = *clock;
   if (!has_hours) return result;
-  if (hours.size() > kLongestHours) {
-    return ParameterError{"hours", fmt::format("is too long: {} characters (maximum {})", hours.size(), kLongestHours)};
+  if (hours.size() > kMaxHours) {
+    return ParameterError{"hours", fmt::format("is too long: {} characters (maximum {})", hours.size(), kMaxHours)};
   }
 
   result.open_.reset();

@@ -11,14 +11,14 @@
 namespace yuragi::daemon::settings {
 namespace {
 
-constexpr std::size_t kLongestShownValue = 60;
+constexpr std::size_t kMaxShownValue = 60;
 
 /// A value for a person; "left out" if there is none.
 std::string shown(const ParameterValues::Map& values, std::string_view key) {
   const auto found = values.find(key);
   if (found == values.end()) return "left out";
   std::string text = toml_value(found->second);
-  return text.size() > kLongestShownValue ? "..." : text;
+  return text.size() > kMaxShownValue ? "..." : text;
 }
 
 /// A change for a person. Secrets look alike, and so do long texts.

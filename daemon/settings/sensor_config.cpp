@@ -239,7 +239,7 @@ void set_gust_length(SensorConfig& sensor) noexcept {
   if (!sensor.heights.sensor_m) return;
   const double length_m =
       wind::turbulence::iec_length_scale_m(wind::turbulence::WindComponent::kAlong, *sensor.heights.sensor_m);
-  sensor.blend.length_m = std::max(sensor.calibration.height_factor * length_m, kShortestGusts_m);
+  sensor.blend.length_m = std::max(sensor.calibration.height_factor * length_m, kMinGusts_m);
 }
 
 }  // namespace yuragi::daemon::settings

@@ -60,7 +60,7 @@ const std::string& place_of(const SensorConfig& sensor) noexcept;
 double gust_length_m(const WindConfig& wind, const SensorConfig& sensor) noexcept;
 
 /// Sets the integral length of the gusts from the sensor's height, if that is known: 8.1 * 0.7 times the height, up
-/// to 60 m (IEC 61400-1), at least kShortestGusts_m. If the calibration scales speeds to another height, the length
+/// to 60 m (IEC 61400-1), at least kMinGusts_m. If the calibration scales speeds to another height, the length
 /// is scaled by the same factor, so that the time scale is unchanged.
 void set_gust_length(SensorConfig& sensor) noexcept;
 

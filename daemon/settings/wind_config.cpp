@@ -25,7 +25,7 @@ auto of_wind(auto member) {
 
 std::optional<double> length_unless_0(double length_m) {
   if (length_m == 0.0) return std::nullopt;
-  return std::max(length_m, kShortestGusts_m);
+  return std::max(length_m, kMinGusts_m);
 }
 
 const Fields<WindTable>& wind_fields() {

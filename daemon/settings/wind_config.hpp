@@ -22,7 +22,7 @@ struct FallbackConfig {
 };
 
 /// The least integral length that is assumed.
-inline constexpr double kShortestGusts_m = 1.0;
+inline constexpr double kMinGusts_m = 1.0;
 
 /// [wind]: the wind while no sensor is live, and the hand-over between sources.
 struct WindConfig {

@@ -29,9 +29,9 @@ constexpr const char* kAlongKey = "along";
 constexpr const char* kAcrossDeviationKey = "across_deviation";
 constexpr const char* kAlongDeviationKey = "along_deviation";
 /// More sensors than any installation has.
-constexpr std::size_t kMostSensors = 256;
+constexpr std::size_t kMaxSensors = 256;
 /// Many times the size of a valid file: a larger one is refused.
-constexpr std::size_t kLongestSiteFile_bytes = 64UL * 1024;
+constexpr std::size_t kMaxSiteFile_bytes = 64UL * 1024;
 
 nlohmann::json json_of_gains(const wind::judging::LearntByName& gains) {
   nlohmann::json json = nlohmann::json::object();
@@ -94,7 +94,7 @@ class NameCount {
 std::string read_gains(const nlohmann::json& json, std::size_t names, wind::judging::LearntByName& gains) {
   if (!json.is_object()) return "is not an object";
   if (names != json.size()) return "names a sensor twice";
-  if (names > kMostSensors) return fmt::format("names {} sensors", names);
+  if (names > kMaxSensors) return fmt::format("names {} sensors", names);
   wind::judging::LearntByName all;
   for (const auto& [name, learnt] : json.items()) {
     const auto is_number = [&learnt = learnt](const char* key) {
@@ -129,7 +129,7 @@ std::string read_reach(const nlohmann::json& json, wind::blend::GustReach& reach
 }  // namespace
 
 Result<SiteMemory, Failure> SiteFile::read() const {
-  const auto text = platform::read_whole(file_, kLongestSiteFile_bytes);
+  const auto text = platform::read_whole(file_, kMaxSiteFile_bytes);
   if (!text) return Failure{file_.string() + ": " + text.error().message};
 
   const Failure none{file_.string() + ": is not a file of a site's wind"};

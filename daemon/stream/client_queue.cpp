@@ -66,15 +66,15 @@ void ClientQueue::offer_sensors(SharedBytes sensors) {
 }
 
 bool ClientQueue::offer_reply(SharedBytes reply) {
-  constexpr std::size_t kMostWaiting = 16;
-  if (dismissed_ || setup_.size() >= kMostWaiting) return false;
+  constexpr std::size_t kMaxWaiting = 16;
+  if (dismissed_ || setup_.size() >= kMaxWaiting) return false;
   setup_.push_back(std::move(reply));
   return true;
 }
 
 bool ClientQueue::offer_trace(SharedBytes trace) {
-  constexpr std::size_t kMostWaiting = 256;
-  if (dismissed_ || traces_.size() >= kMostWaiting) return false;
+  constexpr std::size_t kMaxWaiting = 256;
+  if (dismissed_ || traces_.size() >= kMaxWaiting) return false;
   traces_.push_back(std::move(trace));
   return true;
 }

@@ -22,7 +22,7 @@ class Access {
   static constexpr double kCodeStep_s = 30.0;
   static constexpr std::int64_t kCodeSteps = 20;
   /// Fewer characters can be guessed.
-  static constexpr std::size_t kShortestToken = 16;
+  static constexpr std::size_t kMinToken = 16;
 
   /// A token that nobody can guess, of 43 characters, by the system's source of randomness.
   static Secret new_token();

@@ -100,7 +100,7 @@ struct ByteArrival {
 
 /// A datagram that is longer than what it is read into loses its end; this is enough for each. A WebSocket's message
 /// that is longer ends the connection.
-inline constexpr std::size_t kLargestDatagram = 65536;
+inline constexpr std::size_t kMaxDatagram = 65536;
 
 /// A port that can be closed and opened again. Carries bytes without interpreting them. A test may substitute another.
 ///

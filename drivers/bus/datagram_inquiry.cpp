@@ -25,7 +25,7 @@ using boost::asio::ip::udp;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostAnswers = 1000;
+constexpr std::size_t kMaxAnswers = 1000;
 constexpr std::array<std::chrono::seconds, 3> kAskedAfter = {std::chrono::seconds(0), std::chrono::seconds(1),
                                                              std::chrono::seconds(3)};
 
@@ -101,10 +101,10 @@ Result<std::vector<DatagramAnswer>, Failure> ask_networks(const DatagramInquiry&
     return Failure{"cannot open a UDP socket: " + error.message(), FailureKind::kUnavailable};
 
   std::vector<DatagramAnswer> answers;
-  std::vector<std::uint8_t> buffer(kLargestDatagram);
+  std::vector<std::uint8_t> buffer(kMaxDatagram);
   const auto start = Clock::now();
   const auto end = start + inquiry.duration;
-  for (std::size_t asked = 0; Clock::now() < end && answers.size() < kMostAnswers;) {
+  for (std::size_t asked = 0; Clock::now() < end && answers.size() < kMaxAnswers;) {
     if (asked < kAskedAfter.size() && Clock::now() >= start + kAskedAfter.at(asked)) {
       error = ask(socket, inquiry, inquiry.to.empty() ? nullptr : &to);
       if (error && asked == 0)

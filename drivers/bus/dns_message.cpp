@@ -15,10 +15,10 @@
 namespace yuragi::drivers::bus {
 namespace {
 
-constexpr std::size_t kMostServices = 16;
+constexpr std::size_t kMaxServices = 16;
 /// No message of multicast DNS is longer (RFC 6762, section 17).
-constexpr std::size_t kLongestMessage = 9000;
-constexpr std::size_t kLongestLabel = 63;
+constexpr std::size_t kMaxMessage = 9000;
+constexpr std::size_t kMaxLabel = 63;
 /// The class of a record, without the bit that tells others to forget what they knew (RFC 6762, section 10.2).
 constexpr unsigned kClassMask = 0x7FFF;
 
@@ -63,7 +63,7 @@ std::string first_label(const std::string& name) {
     label += name[i];
   }
   make_printable(label);
-  return shortened(label, kLongestLabel);
+  return shortened(label, kMaxLabel);
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ std::vector<std::uint8_t> service_question(const std::string& type) {
 
 std::vector<AnnouncedService> services_in(std::span<const std::uint8_t> bytes, const std::string& type) {
   std::vector<AnnouncedService> services;
-  if (bytes.size() > kLongestMessage) return services;
+  if (bytes.size() > kMaxMessage) return services;
   ns_msg message{};
   if (ns_initparse(bytes.data(), static_cast<int>(bytes.size()), &message) != 0) return services;
   if (ns_msg_getflag(message, ns_f_qr) == 0) return services;
@@ -90,7 +90,7 @@ std::vector<AnnouncedService> services_in(std::span<const std::uint8_t> bytes, c
     if (ns_rr_type(record) != ns_t_ptr || !is_same_name(ns_rr_name(record), type)) return;
     auto name = name_at(message, ns_rr_rdata(record));
     const auto is_known = [&](const std::string& other) { return is_same_name(*name, other); };
-    if (name && names.size() < kMostServices && std::ranges::none_of(names, is_known)) names.push_back(*name);
+    if (name && names.size() < kMaxServices && std::ranges::none_of(names, is_known)) names.push_back(*name);
   });
   for (const std::string& name : names) {
     AnnouncedService service{.name = first_label(name)};

@@ -21,7 +21,7 @@ using SteadyClock = std::chrono::steady_clock;
 
 /// From the first byte of a message to its last. While libmodbus waits for the rest nothing can interrupt it, so that
 /// this is also the longest that shutting down may wait for it. At 1200 bit/s there is time for 50 bytes.
-constexpr Nanoseconds kLongestMessage = std::chrono::milliseconds(500);
+constexpr Nanoseconds kMaxMessage = std::chrono::milliseconds(500);
 
 struct FreeModbus {
   void operator()(modbus_t* context) const noexcept { modbus_free(context); }
@@ -124,7 +124,7 @@ class LibmodbusConnection final : public ModbusConnection {
 
     // Then libmodbus cuts out one message.
     std::ranges::fill(buffer, std::uint8_t{0});
-    set_response_timeout(context_.get(), std::min<Nanoseconds>(deadline_ - SteadyClock::now(), kLongestMessage));
+    set_response_timeout(context_.get(), std::min<Nanoseconds>(deadline_ - SteadyClock::now(), kMaxMessage));
     const int size = modbus_receive_confirmation(context_.get(), buffer.data());
     if (size > 0) return {BusStatus::kMessage, static_cast<std::size_t>(size)};
     if (size == 0 || errno == EMBBADCRC) {

@@ -25,7 +25,7 @@ namespace {
 
 using MqttClock = std::chrono::steady_clock;
 
-constexpr int kLongestPayload = 65'536;
+constexpr int kMaxPayload = 65'536;
 constexpr int kAtMostOnce = 0;
 /// The library wants to look at the clock at least so often, to keep the connection alive.
 constexpr Nanoseconds kHousekeeping = std::chrono::milliseconds(500);
@@ -203,7 +203,7 @@ class MosquittoClient final : public MqttClient {
 
   void take_message(const mosquitto_message& message) {
     MqttMessage taken{.topic = message.topic, .payload = {}, .is_retained = message.retain};
-    taken.is_too_long = message.payloadlen > kLongestPayload;
+    taken.is_too_long = message.payloadlen > kMaxPayload;
     const auto* const bytes = static_cast<const std::uint8_t*>(message.payload);
     if (!taken.is_too_long && message.payloadlen > 0) taken.payload.assign(bytes, bytes + message.payloadlen);
     messages_.push_back(std::move(taken));

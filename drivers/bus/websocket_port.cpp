@@ -174,7 +174,7 @@ class WebSocketPort final : public BytePort {
     stream.set_option(websocket::stream_base::decorator([token = address_.token](websocket::request_type& request) {
       if (!token.is_empty()) request.set(beast::http::field::authorization, "Bearer " + token.reveal());
     }));
-    stream.read_message_max(kLargestDatagram);
+    stream.read_message_max(kMaxDatagram);
     stream.text(true);
   }
 

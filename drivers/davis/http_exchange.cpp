@@ -16,16 +16,16 @@ namespace {
 
 namespace http = boost::beast::http;
 
-constexpr std::uint32_t kLongestHeader = 8 * 1024;
-constexpr std::uint64_t kLongestBody = 64UL * 1024;
+constexpr std::uint32_t kMaxHeader = 8 * 1024;
+constexpr std::uint64_t kMaxBody = 64UL * 1024;
 
 }  // namespace
 
 struct HttpExchange::Parser {
   Parser() {
     parser.eager(true);
-    parser.header_limit(kLongestHeader);
-    parser.body_limit(kLongestBody);
+    parser.header_limit(kMaxHeader);
+    parser.body_limit(kMaxBody);
   }
   http::response_parser<http::string_body> parser;
   std::string rest;  ///< bytes that it has not taken yet: the beginning of a line

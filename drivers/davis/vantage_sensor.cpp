@@ -22,7 +22,7 @@ constexpr Nanoseconds kReplyPatience = 2s;
 /// Between a console's reply and the next request: a WeatherLinkIP loses what comes at once (weewx).
 constexpr Nanoseconds kRest = 100ms;
 /// A read returns at least so often, so that time-outs are checked.
-constexpr Nanoseconds kLongestRead = 200ms;
+constexpr Nanoseconds kMaxRead = 200ms;
 constexpr int kForgottenBlocks = 16;
 
 /// Consoles end by themselves after about 220 (weewx).
@@ -88,8 +88,8 @@ Result<MonoTime, Failure> VantageSensor::work(const sensor::Clock& clock, sensor
     if (!send_request(start, sink)) return Failure{where_ + " does not accept requests: reopening it"};
   }
 
-  const MonoTime due = phase_ == Phase::kReceive ? start + kLongestRead : reply_due_;
-  const bus::ByteArrival arrival = port_->read(buffer_, std::clamp<Nanoseconds>(due - start, 0ns, kLongestRead));
+  const MonoTime due = phase_ == Phase::kReceive ? start + kMaxRead : reply_due_;
+  const bus::ByteArrival arrival = port_->read(buffer_, std::clamp<Nanoseconds>(due - start, 0ns, kMaxRead));
   const Instant now = clock.now();
   Result<void, Failure> done;
   switch (arrival.status) {

@@ -39,7 +39,7 @@ WeatherLinkLiveSensor::WeatherLinkLiveSensor(const WeatherLinkLiveSettings& sett
       where_(describe(settings.http)),
       http_(settings.http.host, std::move(http)),
       broadcasts_(std::move(broadcasts)),
-      buffer_(bus::kLargestDatagram) {}
+      buffer_(bus::kMaxDatagram) {}
 
 void WeatherLinkLiveSensor::interrupt() noexcept {
   http_.interrupt();

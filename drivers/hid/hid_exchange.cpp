@@ -6,12 +6,12 @@ namespace yuragi::drivers::hid {
 namespace {
 
 // More than the kernel keeps for a reader (64), so that a device that never stops sending cannot block this.
-constexpr int kMostWaiting = 128;
+constexpr int kMaxWaiting = 128;
 
 }  // namespace
 
 HidMessage HidExchange::read(Nanoseconds timeout) {
-  const bus::HidArrival arrival = device_.read(std::span(buffer_).first(kLongestReport), timeout);
+  const bus::HidArrival arrival = device_.read(std::span(buffer_).first(kMaxReport), timeout);
   if (arrival.status != bus::HidStatus::kReport) return {arrival.status, {}};
   const decode::ByteSpan bytes = decode::ByteSpan(buffer_).first(arrival.size);
   sink_.raw(sensor::RawDirection::kReceived, bytes);
@@ -19,16 +19,15 @@ HidMessage HidExchange::read(Nanoseconds timeout) {
 }
 
 bool HidExchange::send(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() > kLongestReport) return false;
-  std::array<std::uint8_t, kLongestReport + 1> numbered{};
+  if (bytes.size() > kMaxReport) return false;
+  std::array<std::uint8_t, kMaxReport + 1> numbered{};
   std::ranges::copy(bytes, numbered.begin() + 1);
   sink_.raw(sensor::RawDirection::kSent, bytes);
   return device_.write(std::span(numbered).first(bytes.size() + 1));
 }
 
 HidMessage HidExchange::get_input_report(std::uint8_t id, std::size_t size) {
-  const bus::HidArrival arrival =
-      device_.get_input_report(id, std::span(buffer_).first(std::min(size, kLongestReport)));
+  const bus::HidArrival arrival = device_.get_input_report(id, std::span(buffer_).first(std::min(size, kMaxReport)));
   if (arrival.status != bus::HidStatus::kReport) return {arrival.status, {}};
   const decode::ByteSpan bytes = decode::ByteSpan(buffer_).first(arrival.size);
   sink_.raw(sensor::RawDirection::kReceived, bytes);
@@ -36,7 +35,7 @@ HidMessage HidExchange::get_input_report(std::uint8_t id, std::size_t size) {
 }
 
 bool HidExchange::discard_waiting() {
-  for (int i = 0; i < kMostWaiting; ++i) {
+  for (int i = 0; i < kMaxWaiting; ++i) {
     const HidMessage message = read(Nanoseconds::zero());
     if (message.status != bus::HidStatus::kReport) return message.status != bus::HidStatus::kLost;
     refuse(decode::Refusal::kNotMine);

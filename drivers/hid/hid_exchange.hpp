@@ -43,12 +43,12 @@ class HidExchange {
   bool publish(const decode::DecodedWind& wind);
 
  private:
-  static constexpr std::size_t kLongestReport = 64;
+  static constexpr std::size_t kMaxReport = 64;
 
   bus::HidDevice& device_;
   const sensor::Clock& clock_;
   sensor::SensorSink& sink_;
-  std::array<std::uint8_t, kLongestReport + 1> buffer_{};
+  std::array<std::uint8_t, kMaxReport + 1> buffer_{};
 };
 
 }  // namespace yuragi::drivers::hid

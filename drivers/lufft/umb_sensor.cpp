@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 using decode::Refusal;
 
 /// A read returns at least so often, so that time-outs are checked.
-constexpr Nanoseconds kLongestRead = 200ms;
+constexpr Nanoseconds kMaxRead = 200ms;
 /// A reply that is later than this is not expected any more.
 constexpr Nanoseconds kLatestReply = 2s;
 /// After so many requests without a reply the port is opened again.
@@ -65,7 +65,7 @@ Result<MonoTime, Failure> UmbSensor::work(const sensor::Clock& clock, sensor::Se
     if (start < next_request_) return next_request_;
     if (!ask(start, sink)) return Failure{where_ + " does not accept requests: reopening it"};
   }
-  const bus::ByteArrival arrival = port_->read(buffer_, std::clamp<Nanoseconds>(reply_due_ - start, 0ns, kLongestRead));
+  const bus::ByteArrival arrival = port_->read(buffer_, std::clamp<Nanoseconds>(reply_due_ - start, 0ns, kMaxRead));
   const Instant now = clock.now();
   switch (arrival.status) {
     case bus::ByteStatus::kInterrupted:

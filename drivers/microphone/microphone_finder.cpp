@@ -22,14 +22,14 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kProgram = "yuragi";
 constexpr auto kListTimeout = std::chrono::seconds(10);
-constexpr std::size_t kMostText = 1U << 16U;
+constexpr std::size_t kMaxText = 1U << 16U;
 
 /// The output of a program until it ends, or until it takes too long.
 std::string output_of(bus::BytePort& port) {
   std::string text;
   if (!port.open()) return text;
   std::array<std::uint8_t, 4096> buffer{};
-  while (text.size() < kMostText) {
+  while (text.size() < kMaxText) {
     const bus::ByteArrival arrival = port.read(buffer, kListTimeout);
     if (arrival.status != bus::ByteStatus::kBytes) break;
     text.append(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(arrival.size));

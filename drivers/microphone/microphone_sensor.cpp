@@ -12,7 +12,7 @@ namespace {
 constexpr Nanoseconds kBelievableAge = std::chrono::seconds(5);
 
 /// A worker that does not start in time has so many times longer at last: the machine may be slow.
-constexpr int kMostPatience = 8;
+constexpr int kMaxPatience = 8;
 
 }  // namespace
 
@@ -57,7 +57,7 @@ Result<MonoTime, Failure> MicrophoneSensor::work(const sensor::Clock& clock, sen
           "may show why"};
   }
   sink.refused(decode::Refusal::kTimeout);
-  if (!hello_) patience_ = std::min(2 * patience_, kMostPatience);
+  if (!hello_) patience_ = std::min(2 * patience_, kMaxPatience);
   return Failure{hello_ ? fmt::format("{} has been silent for {:g} s: starting it again", hello_->device,
                                       seconds(settings_.sound_timeout))
                         : fmt::format("the microphone's worker has not started within {:g} s: starting it again",

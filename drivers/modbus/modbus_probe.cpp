@@ -23,7 +23,7 @@ constexpr std::array kKnocks = {decode::modbus::ModbusRequest{.function = 3, .ad
                                 decode::modbus::ModbusRequest{.function = 4, .address = 0, .count = 1}};
 
 /// Below this a value counts as 0: a float that is read in a wrong order of words can be 1e-40.
-constexpr double kLeastLive = 0.005;
+constexpr double kMinLive = 0.005;
 
 /// From so many m/s on the wind has 1, 2, ... 12 Beaufort (WMO No. 306, code table 1100).
 constexpr std::array kBeaufortFrom_m_s = {0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7};
@@ -251,7 +251,7 @@ std::vector<std::string> scale_doubts_of(const std::vector<ModbusFit>& fits, con
 
 bool is_live(const ModbusFit& fit) {
   return std::max({fit.speed_m_s.value_or(0.0), fit.direction_deg.value_or(0.0), fit.gust_m_s.value_or(0.0)}) >=
-         kLeastLive;
+         kMinLive;
 }
 
 Result<int, Failure> probe_modbus(const ModbusProbePlan& plan, const ModbusProbeProgress& progress,

@@ -242,10 +242,10 @@ std::optional<sensor::StatedValue> read_value(TableReader& speed) {
     }
     return std::nullopt;
   }
-  constexpr double kLongestAveraging_s = 3600.0;
+  constexpr double kMaxAveraging_s = 3600.0;
   sensor::StatedValue stated;
   stated.value = static_cast<wind::ReadingValue>(speed.choice("value", wind::kReadingValueNames));
-  stated.averaging_s = speed.number("averaging_s", 0.0, kLongestAveraging_s, 0.0);
+  stated.averaging_s = speed.number("averaging_s", 0.0, kMaxAveraging_s, 0.0);
   if (stated.value == wind::ReadingValue::kInstant && stated.averaging_s > 0.0) {
     speed.fail("averaging_s", "is above 0, but an instantaneous value has no averaging time; allowed: none");
   }

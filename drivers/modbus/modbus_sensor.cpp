@@ -10,9 +10,9 @@ namespace yuragi::drivers::modbus {
 namespace {
 
 constexpr Nanoseconds kFirstSlaveWait = std::chrono::milliseconds(250);
-constexpr Nanoseconds kLongestSlaveWait = std::chrono::seconds(10);
+constexpr Nanoseconds kMaxSlaveWait = std::chrono::seconds(10);
 /// For what is recorded only, so that a device without it is hardly asked for it.
-constexpr Nanoseconds kLongestQuantitiesWait = std::chrono::minutes(10);
+constexpr Nanoseconds kMaxQuantitiesWait = std::chrono::minutes(10);
 
 /// Does a gateway report that a slave does not reply?
 bool is_silence_by_proxy(const ModbusTrouble& trouble) {
@@ -46,9 +46,9 @@ ModbusSensor::ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus
     ModbusBus* const line =
         is_direction_apart && what.contains(ModbusMeasure::kDirection) ? direction_bus_.get() : bus_.get();
     const platform::Backoff backoff =
-        what.has_wind() ? platform::Backoff(kFirstSlaveWait, kLongestSlaveWait, ++seed)
+        what.has_wind() ? platform::Backoff(kFirstSlaveWait, kMaxSlaveWait, ++seed)
                         : platform::Backoff(profile_.quantities_interval,
-                                            std::max(profile_.quantities_interval, kLongestQuantitiesWait), ++seed);
+                                            std::max(profile_.quantities_interval, kMaxQuantitiesWait), ++seed);
     reads_.push_back({.what = what, .bus = line, .backoff = backoff, .trouble = {}});
   }
   wind_reads_ =

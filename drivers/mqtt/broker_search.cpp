@@ -8,7 +8,7 @@
 namespace yuragi::drivers::mqtt {
 
 Result<std::vector<sensor::FoundDevice>, Failure> find_announced(const BrokerSearch& search) {
-  constexpr std::size_t kMostBytes = 64U << 20U;
+  constexpr std::size_t kMaxBytes = 64U << 20U;
   constexpr Nanoseconds kLongest = std::chrono::seconds(30);
   bus::MqttSubscription subscription = search.broker;
   subscription.topics = {search.prefix + "/+/+/config", search.prefix + "/+/+/+/config"};
@@ -20,7 +20,7 @@ Result<std::vector<sensor::FoundDevice>, Failure> find_announced(const BrokerSea
   std::size_t bytes = 0;
   const auto end = std::chrono::steady_clock::now() + kLongest;
   bus::MqttMessage message;
-  while (bytes < kMostBytes && std::chrono::steady_clock::now() < end) {
+  while (bytes < kMaxBytes && std::chrono::steady_clock::now() < end) {
     const bus::MqttStatus status = client->receive(message, search.pause);
     if (status == bus::MqttStatus::kLost) return Failure{client->trouble(), FailureKind::kUnavailable};
     if (status != bus::MqttStatus::kMessage) break;

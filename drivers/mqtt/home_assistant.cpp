@@ -18,7 +18,7 @@ namespace {
 using Announcement = nlohmann::json;
 
 /// Longer texts are nobody's names and topics, and would fill the list.
-constexpr std::size_t kLongestAnnouncedText = 200;
+constexpr std::size_t kMaxAnnouncedText = 200;
 
 /// The text under that key, or under its abbreviation; empty where there is none, or no printable one.
 std::string text_of(const Announcement& announcement, const char* key, const char* abbreviation) {
@@ -28,7 +28,7 @@ std::string text_of(const Announcement& announcement, const char* key, const cha
     const auto& text = found->get_ref<const std::string&>();
     std::string shown = text;
     make_printable(shown);
-    if (text.size() <= kLongestAnnouncedText && shown == text) return text;
+    if (text.size() <= kMaxAnnouncedText && shown == text) return text;
   }
   return "";
 }

@@ -146,7 +146,7 @@ class EcowittSensor final : public sensor::ReopeningSensor {
   EcowittSettings settings_;
   std::string where_;
   std::unique_ptr<bus::BytePort> port_;
-  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(decode::network::kLongestEcowittReply);
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(decode::network::kMaxEcowittReply);
   std::vector<std::uint8_t> reply_;
   std::optional<decode::DecodedWind> last_wind_;
   MonoTime published_at_{};

@@ -26,9 +26,9 @@ using boost::asio::ip::tcp;
 
 constexpr int kListenBacklog = 16;
 /// What a client may still send after it has been answered, before its connection is reset.
-constexpr std::size_t kMostDrained = 64UL * 1024;
+constexpr std::size_t kMaxDrained = 64UL * 1024;
 /// What is done of what has come before serve() comes back, so that a flood does not keep it.
-constexpr int kMostSteps = 256;
+constexpr int kMaxSteps = 256;
 
 std::string listen_remedy_of(const boost::system::error_code& error) {
   if (error == boost::asio::error::address_in_use)
@@ -155,7 +155,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
     stream_.async_read_some(boost::asio::buffer(dropped_),
                             [self = shared_from_this()](const beast::error_code& error, std::size_t size) {
                               self->drained_ += size;
-                              if (!error && self->drained_ <= kMostDrained) self->drain();
+                              if (!error && self->drained_ <= kMaxDrained) self->drain();
                             });
   }
 
@@ -214,7 +214,7 @@ Result<void, Failure> HttpServer::serve(Nanoseconds timeout, HttpService& servic
   if (is_interrupted_) return {};
   const Visit visit(service_, service);
   if (context_.run_one_for(timeout) > 0) {
-    for (int step = 0; step < kMostSteps && context_.poll_one() > 0; ++step) {
+    for (int step = 0; step < kMaxSteps && context_.poll_one() > 0; ++step) {
     }
   }
   if (failure_) return *failure_;

@@ -172,7 +172,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
   TempestSettings settings_;
   std::string where_;
   std::unique_ptr<bus::BytePort> port_;
-  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kLargestDatagram);
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kMaxDatagram);
   sensor::ReadingLimit limit_;
   FollowedStation station_;
   StationSilence silence_;

@@ -14,7 +14,7 @@
 namespace yuragi::drivers::network {
 namespace {
 
-constexpr std::size_t kMostStations = 100;
+constexpr std::size_t kMaxStations = 100;
 
 /// Is it what stands on a station or hub? No other text of a datagram's is shown or written into a configuration.
 bool is_serial_number(const std::string& text) {
@@ -31,10 +31,10 @@ void note(Hubs& hubs, std::span<const std::uint8_t> datagram) {
   const auto message =
       decode::network::decode_tempest({reinterpret_cast<const char*>(datagram.data()), datagram.size()});
   if (!message || !is_serial_number(message->hub_serial_number) || !is_serial_number(message->serial_number)) return;
-  if (hubs.size() >= kMostStations && !hubs.contains(message->hub_serial_number)) return;
+  if (hubs.size() >= kMaxStations && !hubs.contains(message->hub_serial_number)) return;
   auto& stations = hubs[message->hub_serial_number];
   const bool has_wind = message->kind != decode::network::TempestKind::kOther;
-  if (has_wind && stations.size() < kMostStations) stations.insert(message->serial_number);
+  if (has_wind && stations.size() < kMaxStations) stations.insert(message->serial_number);
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ std::vector<sensor::FoundDevice> find_tempest_stations(const sensor::NetworkSear
       bus::make_byte_port({.kind = bus::BytePortKind::kUdp, .port = search.tempest_port, .is_port_shared = true});
   port->open().value();
   Hubs hubs;
-  std::vector<std::uint8_t> buffer(bus::kLargestDatagram);
+  std::vector<std::uint8_t> buffer(bus::kMaxDatagram);
   const auto end = std::chrono::steady_clock::now() + search.duration;
   for (auto now = end - search.duration; now < end; now = std::chrono::steady_clock::now()) {
     const bus::ByteArrival arrival = port->read(buffer, end - now);

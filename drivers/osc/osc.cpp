@@ -195,7 +195,7 @@ class OscSensor final : public sensor::ReopeningSensor {
   OscSettings settings_;
   std::string where_;
   std::unique_ptr<bus::BytePort> port_;
-  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kLargestDatagram);
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kMaxDatagram);
   sensor::ReadingLimit limit_;
   std::string strangers_;      // who was refused first, as the status says it; empty: nobody
   std::string future_;         // how far ahead the first was that was refused for its time; empty: none

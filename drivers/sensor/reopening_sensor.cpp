@@ -8,11 +8,11 @@ namespace yuragi::drivers::sensor {
 namespace {
 
 constexpr Nanoseconds kFirstWait = std::chrono::milliseconds(250);
-constexpr Nanoseconds kLongestWait = std::chrono::seconds(10);
+constexpr Nanoseconds kMaxWait = std::chrono::seconds(10);
 
 }  // namespace
 
-ReopeningSensor::ReopeningSensor(std::uint32_t seed) : backoff_(kFirstWait, kLongestWait, seed) {}
+ReopeningSensor::ReopeningSensor(std::uint32_t seed) : backoff_(kFirstWait, kMaxWait, seed) {}
 
 MonoTime ReopeningSensor::poll(const Clock& clock, SensorSink& sink) {
   if (clock.now().mono < next_poll_) {

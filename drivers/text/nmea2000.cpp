@@ -91,7 +91,7 @@ std::vector<sensor::FoundDevice> find_behind_can_interfaces() {
 Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values) {
   Nmea2000SensorSettings settings = kNmea2000Fields.of(values);
   settings.text = text_sensor_settings_of(values);
-  settings.text.longest_line = decode::marine::kLongestBusLine;
+  settings.text.longest_line = decode::marine::kMaxBusLine;
   settings.wind = chosen_wind_settings_of(values);
   if (settings.text.address.kind == bus::BytePortKind::kCan) {
     settings.lines.format = decode::marine::BusLineFormat::kCandump;

@@ -130,7 +130,7 @@ SignalKSensorSettings signalk_sensor_settings_of(const ParameterValues& values) 
                                  .source = keys.source,
                                  .context = keys.context,
                                  .wind = chosen_wind_settings_of(values)};
-  settings.text.longest_line = decode::marine::kLongestDelta;
+  settings.text.longest_line = decode::marine::kMaxDelta;
   const bool is_websocket = settings.text.address.kind == bus::BytePortKind::kWebSocket;
   if (is_websocket) set_up_websocket(settings.text.address, keys.path, values);
   if (settings.text.poll_interval > Nanoseconds::zero())

@@ -9,7 +9,7 @@ namespace yuragi::drivers::text {
 namespace {
 
 /// More sources and quantities than any vessel has.
-constexpr std::size_t kMostFirstTimes = 256;
+constexpr std::size_t kMaxFirstTimes = 256;
 
 using Outcome = Result<std::optional<wind::WindReading>, decode::Refusal>;
 
@@ -73,7 +73,7 @@ bool SignalKSensor::is_remembered(const decode::marine::SignalKUpdate& update, s
   const auto first = std::ranges::find_if(
       first_times_, [&](const FirstTime& each) { return each.quantity == quantity && each.source == update.source; });
   if (first != first_times_.end()) return first->timestamp == update.timestamp;
-  if (first_times_.size() < kMostFirstTimes) first_times_.push_back({update.source, quantity, update.timestamp});
+  if (first_times_.size() < kMaxFirstTimes) first_times_.push_back({update.source, quantity, update.timestamp});
   return true;
 }
 

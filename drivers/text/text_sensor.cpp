@@ -14,7 +14,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// A read returns at least so often, so that time-outs are checked.
-constexpr Nanoseconds kLongestRead = 200ms;
+constexpr Nanoseconds kMaxRead = 200ms;
 /// The messages of one burst follow each other faster.
 constexpr Nanoseconds kBurstEnd = 200ms;
 /// The bytes of one line follow each other faster; a line that pauses for longer was cut off.
@@ -26,7 +26,7 @@ constexpr Nanoseconds kFirstSilence = 120s;
 /// A reply that is later than this is not expected any more.
 constexpr Nanoseconds kLatestReply = 2s;
 /// The silence after which a device is opened again doubles so often.
-constexpr int kMostDoublings = 6;
+constexpr int kMaxDoublings = 6;
 /// A device that does not reply gets fewer requests: the interval grows up to so many times.
 constexpr int kRarestRequest = 8;
 /// So many blocks at most are discarded at the beginning; a device that sends more does not stop.
@@ -69,7 +69,7 @@ TextSensor::TextSensor(const TextSensorSettings& settings, std::unique_ptr<bus::
       where_(describe(settings.address)),
       port_(std::move(port)),
       assembler_(settings.ending, settings.longest_line),
-      buffer_(bus::kLargestDatagram) {
+      buffer_(bus::kMaxDatagram) {
   settings_.response_timeout = std::min(settings_.response_timeout, settings_.poll_interval);
 }
 
@@ -152,7 +152,7 @@ Result<MonoTime, Failure> TextSensor::work(const sensor::Clock& clock, sensor::S
   if (awaits_reply_ && now.mono >= reply_due_) give_up_reply(now.mono, sink);
   if (!is_played() && now.mono - last_bytes_ >= silence_limit()) {
     sink.refused(decode::Refusal::kTimeout);
-    vain_openings_ = std::min(vain_openings_ + 1, kMostDoublings);
+    vain_openings_ = std::min(vain_openings_ + 1, kMaxDoublings);
     return Failure{fmt::format("{} has been silent for {:.0f} s: reopening it; check the device's power and cable",
                                where_, seconds(now.mono - last_bytes_))};
   }
@@ -197,9 +197,9 @@ void TextSensor::give_up_reply(MonoTime now, sensor::SensorSink& sink) {
 }
 
 Nanoseconds TextSensor::longest_read(MonoTime now) const {
-  if (!is_polled()) return kLongestRead;
+  if (!is_polled()) return kMaxRead;
   const MonoTime due = awaits_reply_ ? reply_due_ : next_request_;
-  return std::clamp<Nanoseconds>(due - now, 0ns, kLongestRead);
+  return std::clamp<Nanoseconds>(due - now, 0ns, kMaxRead);
 }
 
 bool TextSensor::take_bytes(const Instant& now, sensor::SensorSink& sink) {

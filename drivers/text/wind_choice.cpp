@@ -7,10 +7,10 @@ namespace {
 
 /// A source that misses so many of its own pauses has fallen silent.
 constexpr int kMissedPauses = 3;
-constexpr Nanoseconds kShortestAbsence = std::chrono::seconds(3);
+constexpr Nanoseconds kMinAbsence = std::chrono::seconds(3);
 /// The same, before a direction in another frame is taken in place of its own.
 constexpr int kMissedPausesOfFrame = 10;
-constexpr Nanoseconds kShortestAbsenceOfFrame = std::chrono::seconds(60);
+constexpr Nanoseconds kMinAbsenceOfFrame = std::chrono::seconds(60);
 
 }  // namespace
 
@@ -40,9 +40,8 @@ bool WindChoice::offer_direction(const Source& source, MonoTime now) {
     return true;
   }
   const WindFrame frame = direction_.source.frame;
-  const bool is_silent = source.frame == frame
-                             ? direction_.is_silent(now, kMissedPauses, kShortestAbsence)
-                             : direction_.is_silent(now, kMissedPausesOfFrame, kShortestAbsenceOfFrame);
+  const bool is_silent = source.frame == frame ? direction_.is_silent(now, kMissedPauses, kMinAbsence)
+                                               : direction_.is_silent(now, kMissedPausesOfFrame, kMinAbsenceOfFrame);
   if (direction_.is_any() && source.frame >= frame && !is_silent) return false;
   direction_ = {.source = source, .last = now};
   return true;
@@ -55,7 +54,7 @@ WindChoice::Verdict WindChoice::offer_speed(const Source& source, MonoTime now) 
     return Verdict::kTake;
   }
   const bool is_better = source.frame < speed_.source.frame;
-  const bool is_silent = speed_.is_any() && speed_.is_silent(now, kMissedPauses, kShortestAbsence);
+  const bool is_silent = speed_.is_any() && speed_.is_silent(now, kMissedPauses, kMinAbsence);
   if (speed_.is_any() && !is_better && !is_silent) return Verdict::kPass;
   speed_ = {.source = source, .last = now};
   if (is_silent) return Verdict::kTake;

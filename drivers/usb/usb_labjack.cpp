@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint8_t kLabjackCommands = 1;  // the end points
 constexpr std::uint8_t kLabjackReplies = 2;
 /// How many replies to other requests are skipped before the request is given up.
-constexpr int kMostStrangers = 16;
+constexpr int kMaxStrangers = 16;
 
 class LabjackDaq final : public UsbDaq {
  public:
@@ -75,7 +75,7 @@ class LabjackDaq final : public UsbDaq {
     sink.raw(sensor::RawDirection::kSent, command.span());
     const bus::UsbTransfer sent = device.write(kLabjackCommands, command.span(), timeout_);
     if (sent.status != bus::UsbStatus::kDone) return trouble_of(sent.status, sink);
-    for (int message = 0; message < kMostStrangers; ++message) {
+    for (int message = 0; message < kMaxStrangers; ++message) {
       const bus::UsbTransfer got = device.read(kLabjackReplies, buffer_, timeout_);
       if (got.status == bus::UsbStatus::kTimeout && message > 0)
         return DaqTrouble{"replies to other requests, not to this one: check that no other program uses it"};

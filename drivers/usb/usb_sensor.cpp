@@ -12,7 +12,7 @@ namespace {
 /// A device that hangs looks like one that is slow: after so many rounds in a row without a sample it counts as hung.
 constexpr int kRoundsBeforeReopen = 3;
 /// Two counts give a speed only if the time between them is so many times its uncertainty: to within 20 %.
-constexpr int kLeastTimesOfDoubt = 5;
+constexpr int kMinTimesOfDoubt = 5;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 }  // namespace
@@ -96,7 +96,7 @@ void UsbSensor::take(const DaqSample& sample, MonoTime requested_at, Instant now
   // The device has counted at some moment since the request. Where bus or scheduler delayed it, the count is kept for
   // the next one: a delayed thread must not appear as a lull or a gust.
   const Nanoseconds doubt = now.mono - requested_at;
-  const bool is_too_vague = kLeastTimesOfDoubt * (doubt + counted_doubt_) > now.mono - counted_at_;
+  const bool is_too_vague = kMinTimesOfDoubt * (doubt + counted_doubt_) > now.mono - counted_at_;
   if (cup_.last_count && is_too_vague) return;
   counted_doubt_ = doubt;
   const double elapsed_s = seconds(now.mono - std::exchange(counted_at_, now.mono));

@@ -11,8 +11,8 @@ namespace yuragi::drivers::windlog {
 
 inline constexpr std::int64_t kBlockRows = 512;
 // More than a recorder makes in years; a file with more is no recording.
-inline constexpr std::size_t kMostSessions = 1'000'000;
-inline constexpr std::size_t kMostSensorsOfRecording = 1'000'000;
+inline constexpr std::size_t kMaxSessions = 1'000'000;
+inline constexpr std::size_t kMaxSensorsOfRecording = 1'000'000;
 
 inline Failure impossible_times(const sqlite::Database& database, std::int64_t session) {
   return {

@@ -32,7 +32,7 @@ inline constexpr std::int64_t kFormatVersion = 2;           ///< `PRAGMA user_ve
 inline constexpr std::int64_t kMaxTime_ns = std::numeric_limits<std::int64_t>::max() / 2;
 
 /// So many names of sensors one recording can hold: a query over all of them joins no more tables.
-inline constexpr std::size_t kMostSeries = 480;
+inline constexpr std::size_t kMaxSeries = 480;
 
 /// The comments stay in the file and explain it to its readers.
 inline constexpr const char* kSchema = R"sql(

@@ -28,8 +28,8 @@ std::optional<std::int64_t> older_format(const std::filesystem::path& file) {
 Result<std::optional<std::filesystem::path>, Failure> set_older_recording_aside(const std::filesystem::path& file) {
   const auto version = older_format(file);
   if (!version) return std::optional<std::filesystem::path>{};
-  constexpr int kMostNames = 1000;
-  for (int number = 1; number <= kMostNames; ++number) {
+  constexpr int kMaxNames = 1000;
+  for (int number = 1; number <= kMaxNames; ++number) {
     std::filesystem::path aside = file.parent_path() / file.stem();
     aside += "-format" + std::to_string(*version) + (number == 1 ? "" : "-" + std::to_string(number));
     aside += file.extension();

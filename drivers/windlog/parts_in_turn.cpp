@@ -136,8 +136,8 @@ Result<std::unique_ptr<PartsInTurn>, Failure> PartsInTurn::open(const std::vecto
 }
 
 Result<StoredFile, Failure> PartsInTurn::open_part(const Part& part) const {
-  constexpr int kMostRenames = 3;
-  for (int renames = 0; renames < kMostRenames; ++renames) {
+  constexpr int kMaxRenames = 3;
+  for (int renames = 0; renames < kMaxRenames; ++renames) {
     const std::filesystem::path name = present_name(part);
     auto opened = open_stored_file(name, stop_);
     if (!part.identity || identity_now(name) == part.identity) return opened;

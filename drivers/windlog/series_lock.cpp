@@ -17,7 +17,7 @@ namespace {
 
 constexpr mode_t kMode = 0640;  // as a recording
 /// A holder removes the file when it ends; whoever opened it before that tries again with the next one.
-constexpr int kMaxTries = 100;
+constexpr int kMaxLockTries = 100;
 
 /// The file that locks a recording; nullopt if its name cannot be looked up.
 std::optional<std::filesystem::path> lock_file_of(const std::filesystem::path& recording) {
@@ -72,7 +72,7 @@ std::string text_of(int error) {
 
 Result<SeriesLock, Failure> SeriesLock::take(const std::filesystem::path& recording) {
   const std::filesystem::path file = lock_file_of(recording).value_or(recording.string() + "-lock");
-  for (int tries = 0; tries < kMaxTries; ++tries) {
+  for (int tries = 0; tries < kMaxLockTries; ++tries) {
     const int descriptor = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, kMode);
     if (descriptor < 0) {
       return Failure{file.string() + ": cannot be opened: " + text_of(errno) +

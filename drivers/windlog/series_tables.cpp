@@ -119,7 +119,7 @@ Result<void, Failure> SeriesTables::load_starts() {
       "SELECT id, begin_ns, started_utc_ns, started_mono_ns, substr(software, 1, 256) FROM session ORDER BY begin_ns");
   if (!rows) return rows.error();
   Statement::Step step = rows->step();
-  for (; step == Statement::Step::kRow && starts_.size() < kMostSessions; step = rows->step()) {
+  for (; step == Statement::Step::kRow && starts_.size() < kMaxSessions; step = rows->step()) {
     Start start{.session = rows->integer(0),
                 .begin_ns = rows->integer(1),
                 .started = {MonoTime(Nanoseconds(rows->integer(3))), UtcTime(Nanoseconds(rows->integer(2)))},
@@ -140,9 +140,9 @@ Result<void, Failure> SeriesTables::load_sensors() {
       "SELECT sensor.id, session, series, substr(name, 1, 256), substr(driver, 1, 256), substr(options, 1, 4096) "
       "FROM sensor JOIN series ON series.id = series WHERE series BETWEEN 1 AND ?1 ORDER BY sensor.id");
   if (!rows) return rows.error();
-  rows->bind(1, static_cast<std::int64_t>(kMostSeries));
+  rows->bind(1, static_cast<std::int64_t>(kMaxSeries));
   Statement::Step step = rows->step();
-  for (; step == Statement::Step::kRow && sensors.size() < kMostSensorsOfRecording; step = rows->step()) {
+  for (; step == Statement::Step::kRow && sensors.size() < kMaxSensorsOfRecording; step = rows->step()) {
     if (!sensor_of_.try_emplace({rows->integer(1), rows->integer(2)}, sensors.size()).second) continue;
     series_of_.push_back(rows->integer(2));
     sensors.push_back({rows->integer(0), rows->integer(1), rows->text(3), rows->text(4), rows->text(5)});

@@ -73,7 +73,7 @@ Result<void, Failure> SharedTable::load_sessions() {
   auto rows = database_.prepare("SELECT id, substr(software, 1, 256) FROM session ORDER BY id");
   if (!rows) return rows.error();
   Statement::Step step = rows->step();
-  for (; step == Statement::Step::kRow && sessions.size() < kMostSessions; step = rows->step()) {
+  for (; step == Statement::Step::kRow && sessions.size() < kMaxSessions; step = rows->step()) {
     LoggedSession session;
     session.id = rows->integer(0);
     session.software = rows->text(1);
@@ -105,7 +105,7 @@ Result<void, Failure> SharedTable::load_sensors() {
       "ORDER BY id");
   if (!rows) return rows.error();
   Statement::Step step = rows->step();
-  for (; step == Statement::Step::kRow && sensors.size() < kMostSensorsOfRecording; step = rows->step()) {
+  for (; step == Statement::Step::kRow && sensors.size() < kMaxSensorsOfRecording; step = rows->step()) {
     sensors.push_back({rows->integer(0), rows->integer(1), rows->text(2), rows->text(3), rows->text(4)});
   }
   if (auto read = end_of_list(database_, step, "sensors"); !read) return read;

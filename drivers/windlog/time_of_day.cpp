@@ -10,7 +10,7 @@ namespace yuragi::drivers::windlog {
 namespace {
 
 constexpr Nanoseconds kDay = std::chrono::hours(24);
-constexpr double kLargestOffset_h = 14.0;
+constexpr double kMaxOffset_h = 14.0;
 
 /// `duration` in [0, a day).
 Nanoseconds within_a_day(Nanoseconds duration) {
@@ -32,7 +32,7 @@ Result<UtcOffset, Failure> parse_utc_offset(std::string_view text) {
   double offset_h = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), offset_h);
   if (error != std::errc{} || end != text.data() + text.size() ||
-      !(offset_h >= -kLargestOffset_h && offset_h <= kLargestOffset_h)) {
+      !(offset_h >= -kMaxOffset_h && offset_h <= kMaxOffset_h)) {
     return Failure{
         "\"" + std::string(text) +
         "\" is not an offset from UTC; give hours from -14 to 14 (1, -3.5), or leave it empty for this machine's zone"};

@@ -7,7 +7,7 @@ namespace yuragi::drivers::windlog {
 namespace {
 
 constexpr Nanoseconds kUnknownInterval = std::chrono::seconds(1);
-constexpr Nanoseconds kLeastInterval = std::chrono::milliseconds(1);
+constexpr Nanoseconds kMinInterval = std::chrono::milliseconds(1);
 // As many intervals as settle a median.
 constexpr std::size_t kIntervalsMeasured = 64;
 
@@ -74,7 +74,7 @@ Result<Nanoseconds, Failure> WindlogCursor::measure_interval() {
   if (intervals.empty()) return kUnknownInterval;
   const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
   std::ranges::nth_element(intervals, middle);
-  return std::max(*middle, kLeastInterval);
+  return std::max(*middle, kMinInterval);
 }
 
 Result<std::optional<LoggedReading>, Failure> WindlogCursor::next() {

@@ -17,10 +17,10 @@ constexpr double kMaxWait_s = 1e9;
 // Nothing comes after the end; a clock can add this to any time.
 constexpr Nanoseconds kAfterTheEnd = std::chrono::hours(24);
 // A cross-fade has so many readings at least, or it would be a step; and is no more than this part of the recording.
-constexpr int kLeastReadingsOfFade = 3;
+constexpr int kMinReadingsOfFade = 3;
 constexpr int kParts = 3;
 // A held reading is repeated no more often than this.
-constexpr Nanoseconds kLeastHoldInterval = std::chrono::milliseconds(100);
+constexpr Nanoseconds kMinHoldInterval = std::chrono::milliseconds(100);
 
 /// A difference of times from `duration_s`, which may be anything.
 Nanoseconds wait_of(double duration_s) {
@@ -239,7 +239,7 @@ Nanoseconds WindlogPlayer::fade_duration() const {
   if (options_.seam_s <= 0.0) return Nanoseconds{0};
   const double interval_s = seconds(playing_.cursor.interval()) / rate_;
   const double span_s = seconds(playing_.cursor.last() - begin_) / rate_;
-  return wait_of(std::min(std::max(options_.seam_s, kLeastReadingsOfFade * interval_s), span_s / kParts));
+  return wait_of(std::min(std::max(options_.seam_s, kMinReadingsOfFade * interval_s), span_s / kParts));
 }
 
 /// Publishes the last reading of the playing playhead, as of a time, blended with that of one that is fading out.
@@ -306,7 +306,7 @@ Nanoseconds WindlogPlayer::usual_interval() const {
 }
 
 Nanoseconds WindlogPlayer::hold_interval() const {
-  return std::max(usual_interval(), kLeastHoldInterval);
+  return std::max(usual_interval(), kMinHoldInterval);
 }
 
 Nanoseconds WindlogPlayer::place_of_day(const Instant& now) {

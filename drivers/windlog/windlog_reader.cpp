@@ -9,12 +9,12 @@
 namespace yuragi::drivers::windlog {
 
 Result<WindlogReader, Failure> WindlogReader::open(const std::filesystem::path& file, const std::stop_token& stop) {
-  constexpr int kMostLooks = 3;
+  constexpr int kMaxLooks = 3;
   for (int tries = 1;; ++tries) {
     const auto files = recording_files(file);
     auto reader = open(file, files, stop);
     // Where its writer completed a file meanwhile, one was missed, or taken for another.
-    if (tries == kMostLooks || recording_files(file) == files) return reader;
+    if (tries == kMaxLooks || recording_files(file) == files) return reader;
   }
 }
 

@@ -12,7 +12,7 @@ namespace {
 // At the end a reader can make a writer wait, not for long.
 constexpr int kCloseTimeout_ms = 200;
 // So many nanoseconds are looked at for one that no other reading of the sensor has; then it is put after the last.
-constexpr int kMostTries = 16;
+constexpr int kMaxTries = 16;
 
 std::int64_t nanoseconds(MonoTime time) {
   return time.time_since_epoch().count();
@@ -259,8 +259,8 @@ Result<std::int64_t, Failure> WindlogWriter::series_named(std::string_view name)
   const auto count = database_.integer("SELECT count(*) FROM series");
   if (!count) return undo().error();
   const std::int64_t series = *count + 1;
-  if (series > static_cast<std::int64_t>(kMostSeries)) {
-    return Failure{database_.file().string() + ": has readings of " + std::to_string(kMostSeries) +
+  if (series > static_cast<std::int64_t>(kMaxSeries)) {
+    return Failure{database_.file().string() + ": has readings of " + std::to_string(kMaxSeries) +
                    " sensors, the maximum of one recording; choose another file"};
   }
   auto insert = database_.prepare("INSERT INTO series (id, name) VALUES (?1, ?2)");
@@ -303,7 +303,7 @@ Result<void, Failure> WindlogWriter::append(std::int64_t sensor, const wind::Win
   into.statement.bind(6, static_cast<std::int64_t>(reading.quality));
   std::int64_t since_ns = into_session.count();
   for (int tries = 0;; ++tries) {
-    if (since_ns == into.last_since_ns || tries == kMostTries) since_ns = std::max(since_ns, into.last_since_ns) + 1;
+    if (since_ns == into.last_since_ns || tries == kMaxTries) since_ns = std::max(since_ns, into.last_since_ns) + 1;
     std::int64_t clock_ns = 0;
     if (since_ns >= kMaxTime_ns - begin_ns_ ||
         __builtin_sub_overflow(nanoseconds(reading.time.utc), nanoseconds(started_.utc), &clock_ns) ||

@@ -164,7 +164,7 @@ Result<ParameterValues, ParameterError> ParameterValues::resolve(std::span<const
     if (parameter == nullptr) {
       std::string known;
       for (const Parameter& candidate : table) known.append(known.empty() ? "" : ", ").append(candidate.name);
-      return ParameterError{name, "is not a parameter here; known: " + known};
+      return ParameterError{name, "is not a known key here; known: " + known};
     }
     auto converted = convert(*parameter, value);
     if (!converted) return converted.error();

@@ -26,7 +26,7 @@ struct Character {
 };
 
 Character first_character(std::string_view text) {
-  constexpr std::uint32_t kLeastCode[] = {0, 0, 0x80, 0x800, 0x10000};  // by the number of bytes
+  constexpr std::uint32_t kMinCode[] = {0, 0, 0x80, 0x800, 0x10000};  // by the number of bytes
   const auto first = static_cast<unsigned char>(text.front());
   const std::size_t bytes = announced_bytes(first);
   if (bytes <= 1) return {bytes, first};
@@ -37,7 +37,7 @@ Character first_character(std::string_view text) {
     code = (code << 6) | (static_cast<unsigned char>(next) & 0x3Fu);
   }
   const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
-  if (code < kLeastCode[bytes] || code > 0x10FFFF || is_surrogate) return {};
+  if (code < kMinCode[bytes] || code > 0x10FFFF || is_surrogate) return {};
   return {bytes, code};
 }
 

@@ -59,11 +59,11 @@ struct RealFft::Plans {
 
 RealFft::RealFft(int dims, std::size_t size) {
   if (dims < 1 || dims > 3 || size < 1 || size > kMaxSize) {
-    throw std::invalid_argument("a transform has 1 to 3 dimensions of 1 to 2^22 samples");
+    throw std::invalid_argument("a transform must have 1 to 3 dimensions of 1 to 2^22 samples each");
   }
   std::size_t rows = 1;
   for (int axis = 1; axis < dims; ++axis) rows *= size;
-  if (rows > kMaxSamples / size) throw std::invalid_argument("a transform has at most 2^31 samples");
+  if (rows > kMaxSamples / size) throw std::invalid_argument("a transform must have at most 2^31 samples");
 
   const std::size_t mode_count = rows * (size / 2 + 1);
   plans_ = std::make_unique<Plans>(Plans{dims, size, rows * size, mode_count, make_buffer<double>(rows * size),

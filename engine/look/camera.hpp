@@ -11,7 +11,7 @@
 namespace yuragi::look {
 
 /// More than any installation needs; no client takes more.
-inline constexpr std::size_t kMostCameras = 32;
+inline constexpr std::size_t kMaxCameras = 32;
 
 /// A place to see the scenes from, and how it moves: a [[camera]] of the configuration. It looks at a target from
 /// `distance_m` away. sway, pan, dolly and track go slowly to one side and to the other, each time in `period_s`, all

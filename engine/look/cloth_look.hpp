@@ -16,8 +16,8 @@ struct Color {
 
 /// A picture: row after row from its upper left corner, 3 bytes a pixel (sRGB).
 struct Image {
-  static constexpr std::size_t kMostPixels = std::size_t{1} << 20;
-  static constexpr std::uint32_t kLongestSide_px = 4096;
+  static constexpr std::size_t kMaxPixels = std::size_t{1} << 20;
+  static constexpr std::uint32_t kMaxSide_px = 4096;
 
   std::uint32_t width_px = 0, height_px = 0;
   std::vector<std::uint8_t> rgb;  ///< 3 * width_px * height_px

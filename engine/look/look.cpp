@@ -29,10 +29,10 @@ const Fields<Look>& look_fields() {
   static const Fields<Look> kFields{
       {{.name = "sun",
         .default_value = std::string("evening"),
-        .help = "\"evening\": always low in the south-west; \"time\": where sun and moon are at a place and time; "
-                "\"fixed\": where sun_height and sun_azimuth say",
+        .help = "\"evening\": always low in the south-west; \"time\": as sun and moon stand at a place and time; "
+                "\"fixed\": at sun_height and sun_azimuth",
         .choices = kSuns,
-        .left_out = "\"time\" where a place or a time is given, \"fixed\" where a height or an azimuth is, otherwise "
+        .left_out = "\"time\" if a place or a time is given, \"fixed\" if a height or an azimuth is given, otherwise "
                     "\"evening\""},
        &Look::sun},
       {{.name = "latitude",
@@ -88,11 +88,11 @@ const Fields<Look>& look_fields() {
         .default_value = kDefault.exposure_ev,
         .min = -4.0,
         .max = 4.0,
-        .help = "Makes the picture brighter by so many doublings, or darker"},
+        .help = "Makes the picture brighter by this many doublings; negative: darker"},
        &Look::exposure_ev},
       {{.name = "quality",
         .default_value = std::string("auto"),
-        .help = "How much work a picture is; \"auto\": as much as the machine can draw in time",
+        .help = "Quality of the picture; \"auto\": the best that the machine can draw in time",
         .choices = kQualities},
        &Look::quality},
       {{.name = "palette",
@@ -108,10 +108,9 @@ const Fields<Look>& look_fields() {
        &Look::ground},
       {{.name = "ground_image",
         .default_value = std::string(),
-        .help =
-            "A PNG or JPEG file, from the configuration's folder on: it lies on the ground, again and again, where no "
-            "grass grows; with ground = \"sand\", \"stone\" or \"snow\" that is everywhere. Needs a scene of the kind "
-            "\"ground\"",
+        .help = "A PNG or JPEG file, relative to the configuration's folder: it is repeated on the ground wherever no "
+                "grass grows; with ground = \"sand\", \"stone\" or \"snow\" everywhere. Needs a scene of the kind "
+                "\"ground\"",
         .left_out = "the ground as it is built in",
         .change = KeyChange::kTakesReload}},
       {{.name = "ground_image_width",

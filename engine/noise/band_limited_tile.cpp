@@ -41,7 +41,7 @@ NoiseTile2 without_waves_from(double end, const NoiseTile2& base, fft::RealFft& 
 
 BandLimitedTile2::BandLimitedTile2(NoiseTile2 base, std::size_t levels) {
   if (!is_readable(base)) throw std::invalid_argument("a band-limited noise needs a readable tile");
-  if (levels < 1 || levels > kMaxLevels) throw std::invalid_argument("a band-limited noise has 1 to 8 levels");
+  if (levels < 1 || levels > kMaxLevels) throw std::invalid_argument("a band-limited noise must have 1 to 8 levels");
   levels_.reserve(levels);
   levels_.push_back(std::move(base));
   fft::RealFft fft(2, levels_[0].size);

@@ -63,9 +63,9 @@ SharedVariance shared_variance(int dims, std::size_t size, const WavePower& one,
 }
 
 MovingNoise::MovingNoise(int dims, std::size_t size, std::span<const MovingField> fields) : fft_(dims, size) {
-  if (dims != 2 && dims != 3) throw std::invalid_argument("a moving noise has two dimensions or three");
+  if (dims != 2 && dims != 3) throw std::invalid_argument("a moving noise must have two or three dimensions");
   if (check_noise(dims, {.size = size})) throw std::invalid_argument(std::string(explain(NoiseError::kSizeNotAllowed)));
-  if (fields.empty()) throw std::invalid_argument("a moving noise has a field at least");
+  if (fields.empty()) throw std::invalid_argument("a moving noise must have at least one field");
 
   // All fields turn alike: their modes are independent of each other all the same.
   const std::vector<std::int8_t> signs = turning_signs(fft_, fields[0].seed);

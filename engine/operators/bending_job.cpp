@@ -11,14 +11,14 @@ namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<BendingKernels> kBendingRows = YURAGI_KERNEL_ROWS(bending_kernels);
-constexpr double kSmallestHalfBendSpeed_m_s = 0.01;
+constexpr double kMinHalfBendSpeed_m_s = 0.01;
 constexpr double kStrongestWind = 1e9;  ///< in half-bend speeds: beyond it nothing bends any further
 
 }  // namespace
 
 BendingJob::Problem BendingJob::validate() const noexcept {
   if (!std::isfinite(wind_east_m_s * wind_east_m_s + wind_south_m_s * wind_south_m_s)) return Problem::kWindNotFinite;
-  if (!std::isfinite(half_bend_speed_m_s) || half_bend_speed_m_s < kSmallestHalfBendSpeed_m_s) {
+  if (!std::isfinite(half_bend_speed_m_s) || half_bend_speed_m_s < kMinHalfBendSpeed_m_s) {
     return Problem::kHalfBendSpeed;
   }
   if (!(max_bend_rad >= 0.0 && max_bend_rad <= kPi)) return Problem::kMaxBend;

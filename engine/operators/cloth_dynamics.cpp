@@ -12,15 +12,15 @@ namespace {
 constexpr KernelRows<ClothDynamicsKernels> kDynamicsRows = YURAGI_KERNEL_ROWS(cloth_dynamics_kernels);
 
 constexpr double kGravity_m_s2 = 9.81;
-constexpr double kLongestSubstep_s = 1.0 / 600.0;
-constexpr double kLongestTick_s = 0.1;
+constexpr double kMaxSubstep_s = 1.0 / 600.0;
+constexpr double kMaxTick_s = 0.1;
 
 constexpr float kAtRest_m = 2e-5F;
 constexpr float kAtRest_m_s = 2e-4F;
 constexpr float kTiniest_m_s = 1e-6F;
 
 /// Of a spring: times the substep squared it stays far below 4, where explicit steps would no longer be stable.
-constexpr double kStiffest_s2 = 0.2 / (kLongestSubstep_s * kLongestSubstep_s);
+constexpr double kStiffest_s2 = 0.2 / (kMaxSubstep_s * kMaxSubstep_s);
 
 /// The value at a place between two columns' values.
 double between_columns(std::span<const float> values, double at) {
@@ -40,7 +40,7 @@ double edge_length_m(std::span<const float> x_m, std::span<const float> y_m, std
 
 /// As many columns as are about `apart_m` from one another.
 std::size_t coarse_columns(std::size_t columns, double edge_m, double apart_m) {
-  const auto most = static_cast<double>(std::min(columns, CoarseCloth::kMostColumns));
+  const auto most = static_cast<double>(std::min(columns, CoarseCloth::kMaxColumns));
   return static_cast<std::size_t>(std::clamp(std::nearbyint(edge_m / apart_m) + 1.0, 2.0, most));
 }
 
@@ -60,7 +60,7 @@ bool all_below(std::span<const float> values, float limit) noexcept {
 
 CoarseCloth::CoarseCloth(const ClothThreads& threads, std::size_t columns, std::span<const float> edge_x_m,
                          std::span<const float> edge_y_m, std::span<const float> edge_z_m, bool is_first_column_fixed)
-    : rows_(std::clamp<std::size_t>(threads.links + 1, 2, kMostRows)),
+    : rows_(std::clamp<std::size_t>(threads.links + 1, 2, kMaxRows)),
       columns_(coarse_columns(columns, edge_length_m(edge_x_m, edge_y_m, edge_z_m, columns),
                               threads_length_m(threads) / static_cast<double>(rows_ - 1))),
       stride_(pose::padded_to_blocks(columns_ + 2)),
@@ -131,8 +131,8 @@ ClothDynamicsJob::Problem ClothDynamicsJob::validate() const noexcept {
 ClothDynamicsJob::Problem ClothDynamicsJob::run() const noexcept {
   const Problem problem = validate();
   if (problem != Problem::kNone) return problem;
-  const double tick_s = std::min(dt_s, kLongestTick_s);
-  const double substeps = std::max(std::ceil(tick_s / kLongestSubstep_s - 1e-6), 1.0);
+  const double tick_s = std::min(dt_s, kMaxTick_s);
+  const double substeps = std::max(std::ceil(tick_s / kMaxSubstep_s - 1e-6), 1.0);
   const double substep_s = tick_s / substeps;
 
   // The tension of a link of a hanging thread, a point's weight below; where the links are so short that it would be

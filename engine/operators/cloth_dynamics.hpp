@@ -19,11 +19,11 @@ namespace yuragi::operators {
 /// Allocates when it is made. Thread-safe: no.
 class CoarseCloth {
  public:
-  static constexpr std::size_t kMostColumns = 30;
-  static constexpr std::size_t kMostRows = 38;
+  static constexpr std::size_t kMaxColumns = 30;
+  static constexpr std::size_t kMaxRows = 38;
 
   /// The coarse version of a cloth of `columns` threads and `threads.links` links, whose fixed joints are at these
-  /// places (a value a column, metres): at most kMostColumns x kMostRows points, about as far apart in both directions.
+  /// places (a value a column, metres): at most kMaxColumns x kMaxRows points, about as far apart in both directions.
   CoarseCloth(const ClothThreads& threads, std::size_t columns, std::span<const float> edge_x_m,
               std::span<const float> edge_y_m, std::span<const float> edge_z_m, bool is_first_column_fixed);
 

@@ -10,12 +10,12 @@ namespace yuragi::operators {
 namespace {
 
 constexpr KernelRows<BendingKernels> kLocalBendingRows = YURAGI_KERNEL_ROWS(bending_kernels);
-constexpr double kSmallestSpeed_m_s = 0.01;
+constexpr double kMinSpeed_m_s = 0.01;
 
 }  // namespace
 
 LocalBendingJob::Problem LocalBendingJob::validate() const noexcept {
-  if (!std::isfinite(half_bend_speed_m_s) || half_bend_speed_m_s < kSmallestSpeed_m_s) return Problem::kHalfBendSpeed;
+  if (!std::isfinite(half_bend_speed_m_s) || half_bend_speed_m_s < kMinSpeed_m_s) return Problem::kHalfBendSpeed;
   if (!(max_bend_rad >= 0.0 && max_bend_rad <= kPi)) return Problem::kMaxBend;
   const std::size_t count = flexibility.size();
   if (wind_east_m_s.size() != count || wind_south_m_s.size() != count || strength.size() != count ||

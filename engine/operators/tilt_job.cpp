@@ -17,7 +17,7 @@ TiltJob::Problem TiltJob::validate() const noexcept {
   if (!(force >= 0.0 && force <= 1e6)) return Problem::kForce;
   if (!std::isfinite(alpha_vertical) || !std::isfinite(beta_horizontal)) return Problem::kConstants;
   if (!(max_tilt_rad >= 0.0 && max_tilt_rad <= kPi && max_swing_rad >= 0.0 && max_swing_rad <= kPi)) {
-    return Problem::kLargestAngles;
+    return Problem::kMaxAngles;
   }
   const std::size_t count = vertical.size();
   for (const std::size_t size : {toward_east.size(), toward_south.size(), horizontal.size(), distance.size(),

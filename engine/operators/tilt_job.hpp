@@ -44,9 +44,9 @@ struct TiltJob {
 
   enum class Problem : std::uint8_t {
     kNone,
-    kForce,          ///< not a number from 0 to 1e6
-    kConstants,      ///< alpha or beta is not finite
-    kLargestAngles,  ///< max_tilt or max_swing is not a number from 0 to pi
+    kForce,      ///< not a number from 0 to 1e6
+    kConstants,  ///< alpha or beta is not finite
+    kMaxAngles,  ///< max_tilt or max_swing is not a number from 0 to pi
     kSizesDiffer,
     kRowNotRunnable,
   };

@@ -12,10 +12,10 @@ namespace yuragi::output {
 namespace {
 
 constexpr double kFarthestCorner = 1.0;  // beyond the monitor, in monitors: a projection can be larger than it
-constexpr double kLeastCrop = 0.001;
+constexpr double kMinCrop = 0.001;
 constexpr double kFarthestPlace_m = 1000.0;
-constexpr double kLeastSide_m = 0.01;      // of a screen, and the least distance to the eye
-constexpr double kLeastSquareness = 0.01;  // the most cosine between a screen's sides
+constexpr double kMinSide_m = 0.01;      // of a screen, and the least distance to the eye
+constexpr double kMinSquareness = 0.01;  // the most cosine between a screen's sides
 
 /// Numbers with spaces or commas between them. Nothing where they are not `count` finite ones.
 std::optional<std::vector<double>> read_numbers(std::string_view text, std::size_t count) {
@@ -47,7 +47,7 @@ Result<Size, Failure> read_size(std::string_view text) {
   const auto width = std::from_chars(text.data(), end, size.width_px);
   if (width.ec != std::errc{} || width.ptr == end || *width.ptr != 'x') return refusal;
   const auto height = std::from_chars(width.ptr + 1, end, size.height_px);
-  const auto is_possible = [](int side_px) { return side_px >= 16 && side_px <= kLargestSide_px; };
+  const auto is_possible = [](int side_px) { return side_px >= 16 && side_px <= kMaxSide_px; };
   if (height.ec != std::errc{} || height.ptr != end) return refusal;
   if (!is_possible(size.width_px) || !is_possible(size.height_px)) return refusal;
   return size;
@@ -59,7 +59,7 @@ Result<Crop, Failure> read_crop(std::string_view text) {
   if (!numbers) return refusal;
   const Crop crop{.x = (*numbers)[0], .y = (*numbers)[1], .width = (*numbers)[2], .height = (*numbers)[3]};
   constexpr double kRounding = 1e-6;
-  const bool is_inside = crop.x >= 0.0 && crop.y >= 0.0 && crop.width >= kLeastCrop && crop.height >= kLeastCrop &&
+  const bool is_inside = crop.x >= 0.0 && crop.y >= 0.0 && crop.width >= kMinCrop && crop.height >= kMinCrop &&
                          crop.x + crop.width <= 1.0 + kRounding && crop.y + crop.height <= 1.0 + kRounding;
   if (!is_inside) return refusal;
   return crop;
@@ -79,13 +79,13 @@ Result<Corners, Failure> read_corners(std::string_view text) {
     const auto is_near = [](double part) { return part >= -kFarthestCorner && part <= 1.0 + kFarthestCorner; };
     if (!is_near(corners.at(i).x) || !is_near(corners.at(i).y)) return refusal;
   }
-  constexpr double kLeastTurn = 1e-4;
+  constexpr double kMinTurn = 1e-4;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Place& before = corners.at(i);
     const Place& at = corners.at((i + 1) % 4);
     const Place& after = corners.at((i + 2) % 4);
     const double turn = (at.x - before.x) * (after.y - at.y) - (at.y - before.y) * (after.x - at.x);
-    if (turn < kLeastTurn) return refusal;
+    if (turn < kMinTurn) return refusal;
   }
   return corners;
 }
@@ -117,18 +117,18 @@ std::optional<ParameterError> mistake_of(const Screen& screen) {
   const RoomPlace up = between(screen.lower_left_m, screen.upper_left_m);
   const double width_m = std::sqrt(dot(right, right));
   const double height_m = std::sqrt(dot(up, up));
-  if (width_m < kLeastSide_m || height_m < kLeastSide_m) {
-    return ParameterError{"screen_lower_right", "makes a screen of no size with the other corners"};
+  if (width_m < kMinSide_m || height_m < kMinSide_m) {
+    return ParameterError{"screen_lower_right", "gives a screen without area; measure the corners again"};
   }
-  if (std::abs(dot(right, up)) > kLeastSquareness * width_m * height_m) {
-    return ParameterError{"screen_upper_left", "makes no rectangle with the other corners; measure them again"};
+  if (std::abs(dot(right, up)) > kMinSquareness * width_m * height_m) {
+    return ParameterError{"screen_upper_left", "does not form a rectangle with the other corners; measure them again"};
   }
   const RoomPlace to_front{right[1] * up[2] - right[2] * up[1], right[2] * up[0] - right[0] * up[2],
                            right[0] * up[1] - right[1] * up[0]};
-  if (dot(to_front, between(screen.lower_left_m, screen.eye_m)) < kLeastSide_m * width_m * height_m) {
+  if (dot(to_front, between(screen.lower_left_m, screen.eye_m)) < kMinSide_m * width_m * height_m) {
     return ParameterError{"eye",
-                          "is behind the screen or in its plane; who looks at it from the front has the lower left "
-                          "corner to the left, in axes that are right-handed"};
+                          "is behind the screen or in its plane; seen from the front the lower left corner is on the "
+                          "left, and the axes are right-handed"};
   }
   return std::nullopt;
 }
@@ -145,16 +145,15 @@ const Fields<OutputKeys>& output_fields() {
       {{.name = "size",
         .default_value = std::string(),
         .help = "Pixels of the whole picture, WIDTHxHEIGHT, of which each window shows its crop",
-        .left_out = "as many as its windows have, so that each pixel of the picture is one of a monitor"},
+        .left_out = "the size of its windows, so that each pixel of the picture is one of a monitor"},
        &OutputKeys::size,
        read_size},
       {{.name = "refreshes",
         .default_value = std::int64_t{1},
         .min = 1,
         .max = 4,
-        .help =
-            "Refreshes of the display for each picture: 2 makes even 30 pictures a second on a display of 60 Hz, where "
-            "the machine is too slow for 60"},
+        .help = "Refreshes of the display for each picture: 2 gives an even 30 pictures a second on a display of 60 "
+                "Hz, for a machine that is too slow for 60"},
        &OutputKeys::refreshes},
       {{.name = "screen_lower_left",
         .default_value = std::string(),
@@ -223,8 +222,8 @@ const Fields<Window>& window_fields() {
         .default_value = 0.0,
         .min = 0.0,
         .max = 1.0,
-        .help = "How broad the strip at this side is that another projector shows, too: there it fades out. As part of "
-                "the picture's width"},
+        .help = "Width of the strip at this side that another projector shows, too, as a part of the picture's width: "
+                "the picture fades out in it"},
        of(&Sides::left)},
       {{.name = "blend_right", .default_value = 0.0, .min = 0.0, .max = 1.0, .help = "The same"}, of(&Sides::right)},
       {{.name = "blend_top",
@@ -238,7 +237,7 @@ const Fields<Window>& window_fields() {
         .default_value = 2.2,
         .min = 1.0,
         .max = 4.0,
-        .help = "The projector's gamma, for the blend: less where the strip is too bright, more where it is too dark"},
+        .help = "The projector's gamma, for the blend: less if the strip is too bright, more if it is too dark"},
        &Window::gamma},
   };
   return kFields;

@@ -13,9 +13,9 @@
 namespace yuragi::output {
 
 /// More than any wall has.
-inline constexpr std::size_t kMostOutputs = 32;
-inline constexpr std::size_t kMostWindows = 16;
-inline constexpr int kLargestSide_px = 16384;
+inline constexpr std::size_t kMaxOutputs = 32;
+inline constexpr std::size_t kMaxWindows = 16;
+inline constexpr int kMaxSide_px = 16384;
 
 /// A place in a picture or on a monitor, as parts of its width and height: x to the right, y down.
 struct Place {

@@ -28,7 +28,7 @@ OutputTable read_output(const toml::table& entry, tables::TomlMistakes& mistakes
   table.output = taken(output_of(std::move(name), table.values), entry, prefix, mistakes);
 
   const std::string windows = prefix + std::string(kWindowList);
-  for (const toml::table* window : tables::entries_of(entry, kWindowList, windows, kMostWindows, mistakes)) {
+  for (const toml::table* window : tables::entries_of(entry, kWindowList, windows, kMaxWindows, mistakes)) {
     table.windows.push_back(tables::read_values(*window, windows + ".", window_parameters(), {}, mistakes));
     table.output.windows.push_back(taken(window_of(table.windows.back()), *window, windows + ".", mistakes));
     const std::string& monitor = table.output.windows.back().monitor;
@@ -36,7 +36,7 @@ OutputTable read_output(const toml::table& entry, tables::TomlMistakes& mistakes
     if (same > 1) {
       mistakes.add(window->source(), windows + ".monitor",
                    monitor.empty() ? "is missing; only one window can be on the primary monitor"
-                                   : "\"" + monitor + "\" is that of another window, too");
+                                   : "\"" + monitor + "\" is used by another window, too");
     }
   }
   if (table.output.windows.empty()) table.output.windows.emplace_back();
@@ -48,7 +48,7 @@ OutputTable read_output(const toml::table& entry, tables::TomlMistakes& mistakes
 std::vector<OutputTable> read_outputs(const toml::table& root, tables::TomlMistakes& mistakes) {
   std::vector<OutputTable> outputs;
   for (const toml::table* entry :
-       tables::entries_of(root, kOutputList, std::string(kOutputList), kMostOutputs, mistakes)) {
+       tables::entries_of(root, kOutputList, std::string(kOutputList), kMaxOutputs, mistakes)) {
     OutputTable read = read_output(*entry, mistakes);
     const auto has_its_name = [&read](const OutputTable& other) { return other.output.name == read.output.name; };
     if (std::ranges::any_of(outputs, has_its_name)) {

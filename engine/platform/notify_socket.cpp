@@ -29,7 +29,7 @@ std::optional<std::int64_t> positive_number(std::string_view text) {
   return number;
 }
 
-constexpr std::int64_t kLongestTimeout_us = 1'000'000'000'000;  // 11 days; more does not have to be fed
+constexpr std::int64_t kMaxTimeout_us = 1'000'000'000'000;  // 11 days; more does not have to be fed
 
 }  // namespace
 
@@ -56,7 +56,7 @@ bool NotifySocket::send(std::string_view message) const {
 ServiceEnvironment ServiceEnvironment::read() {
   ServiceEnvironment service{.socket_name = std::string(environment_value("NOTIFY_SOCKET")), .watchdog = {}};
   const auto timeout_us = positive_number(environment_value("WATCHDOG_USEC"));
-  if (timeout_us && *timeout_us <= kLongestTimeout_us) service.watchdog = std::chrono::microseconds(*timeout_us);
+  if (timeout_us && *timeout_us <= kMaxTimeout_us) service.watchdog = std::chrono::microseconds(*timeout_us);
   const std::string_view whose = environment_value("WATCHDOG_PID");
   service.is_ours = whose.empty() || positive_number(whose) == getpid();
   return service;

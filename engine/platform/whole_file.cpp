@@ -49,7 +49,7 @@ OutputFile::OutputFile(std::filesystem::path file, bool force, std::span<const s
   }
   const auto folder = file_.parent_path();
   if (!folder.empty() && !std::filesystem::is_directory(folder, error)) {
-    throw cannot_create(folder.string() + ": there is no such folder");
+    throw cannot_create(folder.string() + ": the folder does not exist");
   }
 }
 
@@ -83,7 +83,7 @@ Result<std::string, Failure> read_whole(const std::filesystem::path& file, std::
   struct stat status {};
   if (fstat(in.get(), &status) != 0) return failure_of(errno);
   if (!S_ISREG(status.st_mode))
-    return Failure{"is no regular file, but a folder, a pipe or a device", FailureKind::kNoInput};
+    return Failure{"is not a regular file, but a folder, a pipe or a device", FailureKind::kNoInput};
   std::string text(most_bytes + 1, '\0');
   std::size_t length = 0;
   while (length < text.size()) {

@@ -18,7 +18,7 @@ const QuantiseKernels& quantise_row(std::optional<SimdRow> row) noexcept {
   return kQuantiseRows[row.value_or(best_simd_row())];
 }
 
-constexpr float kLargestUnit = 32767.0F;
+constexpr float kMaxUnit = 32767.0F;
 
 constexpr std::size_t kExtentSamples = 16;  // along each side of a grid
 constexpr float kFinestStep_m = 1e-6F;
@@ -47,7 +47,7 @@ float way_step_of(const Points& points, std::size_t columns, std::size_t rows, s
     }
     square_m2 += (most_m - least_m) * (most_m - least_m);
   }
-  return std::clamp(reach * std::sqrt(square_m2) / kLargestUnit, kFinestStep_m, kCoarsestStep_m);
+  return std::clamp(reach * std::sqrt(square_m2) / kMaxUnit, kFinestStep_m, kCoarsestStep_m);
 }
 
 }  // namespace
@@ -56,9 +56,9 @@ void quantise(std::span<const float> angle_rad, std::span<std::int16_t> units, s
   assert(angle_rad.size() == units.size());
   quantise_row(row).to_int16({.count = units.size(),
                               .values = angle_rad.data(),
-                              .units_per_one = kLargestUnit / 0x1.921fb6p1F,
-                              .smallest = -kLargestUnit,
-                              .largest = kLargestUnit,
+                              .units_per_one = kMaxUnit / 0x1.921fb6p1F,
+                              .smallest = -kMaxUnit,
+                              .largest = kMaxUnit,
                               .units = units.data()});
 }
 
@@ -74,8 +74,8 @@ void quantise_ways(std::span<const float> way_m, float step_m, std::span<std::in
   quantise_row(row).to_int16({.count = units.size(),
                               .values = way_m.data(),
                               .units_per_one = 1.0F / step_m,
-                              .smallest = -kLargestUnit,
-                              .largest = kLargestUnit,
+                              .smallest = -kMaxUnit,
+                              .largest = kMaxUnit,
                               .units = units.data()});
 }
 

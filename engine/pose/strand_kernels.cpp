@@ -23,14 +23,14 @@ namespace {
 constexpr std::size_t kStrandsPerBlock = 16;  // as skeleton.hpp, whose vectors may not come in here
 
 /// Components of a bend beyond this are taken as this: what is longer than pi is cut to pi anyway.
-constexpr float kLargestComponent_rad = 32.0F;
-constexpr float kLargestBend_rad = 0x1.921fb6p1F;
+constexpr float kMaxComponent_rad = 32.0F;
+constexpr float kMaxBend_rad = 0x1.921fb6p1F;
 
 /// From this many links on a link's share of the bend is at most pi/4.
 constexpr std::size_t kLinksOfSmallAngles = 4;
 
 /// A smaller bend is none.
-constexpr float kSmallestSquare_rad2 = 1e-30F;
+constexpr float kMinSquare_rad2 = 1e-30F;
 
 struct Phasor {
   math::Lanes re;
@@ -79,16 +79,16 @@ template <bool is_small>
 [[gnu::always_inline]] inline Chains first_links(const StrandKernelArguments& in, std::size_t strand) noexcept {
   // The bend's direction b and angle. No bend (or one whose square is lost to underflow) has no direction: any will do,
   // and east it is.
-  const math::Lanes east = math::clamp_lanes(math::load_lanes(in.bend_east_rad + strand), kLargestComponent_rad);
-  const math::Lanes south = math::clamp_lanes(math::load_lanes(in.bend_south_rad + strand), kLargestComponent_rad);
+  const math::Lanes east = math::clamp_lanes(math::load_lanes(in.bend_east_rad + strand), kMaxComponent_rad);
+  const math::Lanes south = math::clamp_lanes(math::load_lanes(in.bend_south_rad + strand), kMaxComponent_rad);
   const math::Lanes square = east * east + south * south;
-  const auto bent = square > kSmallestSquare_rad2;
+  const auto bent = square > kMinSquare_rad2;
   const math::Lanes one = math::same_lanes(1.0F);
   const math::Lanes length = math::sqrt_lanes(bent ? square : math::same_lanes(0.0F));
   const math::Lanes inverse = 1.0F / (bent ? length : one);
   const math::Lanes b_east = bent ? east * inverse : one;
   const math::Lanes b_south = bent ? south * inverse : math::same_lanes(0.0F);
-  const math::Lanes angle = length > kLargestBend_rad ? math::same_lanes(kLargestBend_rad) : length;
+  const math::Lanes angle = length > kMaxBend_rad ? math::same_lanes(kMaxBend_rad) : length;
 
   // Half of rest and curl, in the plane of the bend and across it; the link's length is carried in them.
   const math::Lanes half = 0.5F * math::load_lanes(in.link_length_m + strand);

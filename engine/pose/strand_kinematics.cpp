@@ -22,7 +22,7 @@ bool has_its_sizes(const StrandSkeleton& skeleton) noexcept {
 }
 
 /// Larger curls are taken as this.
-constexpr float kLargestCurl_rad = 32.0F;
+constexpr float kMaxCurl_rad = 32.0F;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ JointPositions::JointPositions(const StrandSkeleton& skeleton)
     : links_(skeleton.links_per_strand), data_(skeleton.padded_count() * links_ * 3) {
   // In double, so that the versine of a small curl is as exact as a float can be.
   for (const float curl_rad : skeleton.rest_curl_rad) {
-    const auto curl = static_cast<double>(std::clamp(curl_rad, -kLargestCurl_rad, kLargestCurl_rad));
+    const auto curl = static_cast<double>(std::clamp(curl_rad, -kMaxCurl_rad, kMaxCurl_rad));
     const double half_sin = std::sin(0.5 * curl);
     curl_sin_.push_back(static_cast<float>(std::sin(curl)));
     curl_versine_.push_back(static_cast<float>(2.0 * half_sin * half_sin));

@@ -15,9 +15,9 @@ constexpr std::size_t kTurnsAtOnce = 16;
 constexpr std::uint32_t kBlock = 16;  // kStrandsPerBlock of skeleton.hpp, whose vectors may not come in here
 
 // As in strand_kernels.cpp: longer bends are cut to this, and shorter ones are none.
-constexpr float kLargestComponent_rad = 32.0F;
-constexpr float kLargestBend_rad = 0x1.921fb6p1F;
-constexpr float kSmallestBendSquare_rad2 = 1e-30F;
+constexpr float kMaxComponent_rad = 32.0F;
+constexpr float kMaxBend_rad = 0x1.921fb6p1F;
+constexpr float kMinBendSquare_rad2 = 1e-30F;
 
 [[gnu::always_inline]] inline float within(float value, float limit) noexcept {
   const float above = value < -limit ? -limit : value;
@@ -60,13 +60,13 @@ void turn(const TreeKernelArguments& arguments) noexcept {
     float* const __restrict z = in.turn.z + begin;
     for (std::size_t i = 0; i < kTurnsAtOnce; ++i) {
       // The link's share of the bend: (bw, bx, 0, bz). No bend is exactly (1, 0, 0, 0).
-      const float east = within(parents.east_rad[i], kLargestComponent_rad);
-      const float south = within(parents.south_rad[i], kLargestComponent_rad);
+      const float east = within(parents.east_rad[i], kMaxComponent_rad);
+      const float south = within(parents.south_rad[i], kMaxComponent_rad);
       const float square = east * east + south * south;
-      const bool bent = square > kSmallestBendSquare_rad2;
+      const bool bent = square > kMinBendSquare_rad2;
       const float length = __builtin_sqrtf(bent ? square : 0.0F);
       const float inverse = 1.0F / (bent ? length : 1.0F);
-      const float angle = length > kLargestBend_rad ? kLargestBend_rad : length;
+      const float angle = length > kMaxBend_rad ? kMaxBend_rad : length;
       const math::SinCos<float> half = math::sin_cos(angle * parents.half_share[i]);
       const float bw = half.cos;
       const float bx = half.sin * (south * inverse);

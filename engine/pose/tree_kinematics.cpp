@@ -16,7 +16,7 @@ constexpr KernelRows<TreeKernels> kTreeRows = YURAGI_KERNEL_ROWS(tree_kernels);
 /// So many blocks are carried at a time, and stay in the fastest cache until their joints are computed.
 constexpr std::size_t kBlocksAtOnce = 8;
 /// The places of a level's numbers are computed in 32 bits.
-constexpr std::size_t kMostNumbers = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kMaxNumbers = std::numeric_limits<std::uint32_t>::max();
 
 constexpr std::size_t kStrandsAtOnce = kBlocksAtOnce * kStrandsPerBlock;
 
@@ -35,7 +35,7 @@ bool has_its_parents(const TreeSkeleton& tree, std::size_t index, const TreeKern
   const std::size_t count = level.strands.padded_count();
   if (level.parent_level >= index || level.parent.size() != count || level.parent_link.size() != count) return false;
   const StrandSkeleton& parents = tree.levels[level.parent_level].strands;
-  if (parents.padded_count() > kMostNumbers / 3 / parents.links_per_strand) return false;
+  if (parents.padded_count() > kMaxNumbers / 3 / parents.links_per_strand) return false;
   const auto all_below = [&](const std::vector<std::uint32_t>& numbers, std::size_t limit) {
     return kernels.all_below(numbers.data(), count, static_cast<std::uint32_t>(limit));
   };

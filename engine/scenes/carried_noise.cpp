@@ -103,9 +103,9 @@ CarriedNoise::CarriedNoise(const CarriedNoiseSpec& spec)
 }
 
 CarriedNoiseSpec CarriedNoise::band(double shortest_m, double longest_m, std::uint64_t seed, bool has_two_tiles) {
-  constexpr double kLongestWaves = 8.0;
+  constexpr double kMaxWaves = 8.0;
   constexpr double kSamplesAWave = 4.5;
-  const double period_m = kLongestWaves * longest_m;
+  const double period_m = kMaxWaves * longest_m;
   // The second tile is larger, and has as many samples.
   const double largest_m = has_two_tiles ? kPeriodRatio * period_m : period_m;
   const auto samples = static_cast<std::size_t>(std::ceil(kSamplesAWave * largest_m / shortest_m));

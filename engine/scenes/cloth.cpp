@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kBandLinks = 16;
 
 /// How fast the hybrid's leans may go: some four times as fast as a swinging curtain's do.
-constexpr double kLargestLean_per_s = 8.0;
+constexpr double kMaxLean_per_s = 8.0;
 
 /// What is left of the wave as detail where the cloth is all dynamics.
 constexpr double kDetail = 0.4;
@@ -170,7 +170,7 @@ void Cloth::project(double dt_s, double rest_kept, ClothTurn turn) noexcept {
                                 .normal_drag_per_m = spec_.normal_drag_per_m,
                                 .skin_drag_per_m = spec_.skin_drag_per_m,
                                 .across_stiffness_s2 = spec_.across_stiffness_s2,
-                                .largest_lean_per_s = kLargestLean_per_s,
+                                .largest_lean_per_s = kMaxLean_per_s,
                                 .row = row_,
                                 .cloth = &coarse_}
         .run();
@@ -225,7 +225,7 @@ double Cloth::largest_joint_step_m(double dt_s, double lean_step, double turn_st
     }
   }
   const double reach_m = edge_reach_m + spec_.length_m;
-  const double step = lean_step + spec_.hybrid * std::numbers::sqrt2 * kLargestLean_per_s * dt_s;
+  const double step = lean_step + spec_.hybrid * std::numbers::sqrt2 * kMaxLean_per_s * dt_s;
   constexpr double kRounding_m = 1e-5;
   return std::min(2.0 * spec_.length_m * step + turn_step_rad * reach_m, 2.0 * reach_m) + kRounding_m;
 }

@@ -36,13 +36,13 @@
 //
 // At rest it hangs in gathered folds that open a little toward the hem.
 //
-// The bound of largest_joint_step_m. The knots' P are within kLargestPull and change by at most r = kLargestPull_per_s
+// The bound of largest_joint_step_m. The knots' P are within kMaxPull and change by at most r = kMaxPull_per_s
 // dt a tick (ClothSwing's limits), P of both axes by at most sqrt(2) r. A lean T / (1 + sqrt(1 + T^2)) changes by at
 // most half of what T does, and T by 0.8 of what P does. The flutter is S n: it changes by d = d_n + 2.2 d_S a tick
 // (ClothNoise, ClothStrength), and its history no faster (propagation_history.hpp), but that the delay changes too:
 // |d delay / dP| is at most 0.2155 of that in calm air, and P changes by r. It adds the flutter times w (1 + l^2), l
 // the sway's lean, below 1, and w half the hem's angle. So a lean changes by at most
-//   0.4 sqrt(2) r (1 + 2 * 2.2 w) + 2 w d (1 + 0.2155 delay kLargestPull_per_s).
+//   0.4 sqrt(2) r (1 + 2 * 2.2 w) + 2 w d (1 + 0.2155 delay kMaxPull_per_s).
 
 namespace yuragi::scenes {
 namespace {
@@ -81,7 +81,7 @@ const Fields<CurtainSettings> kCurtainFields = {
      &CurtainSettings::max_sway_deg},
     {{"half_sway_speed", "m/s", 5.0, 0.1, 60, "the wind that blows it up to 45 degrees; heavier cloth needs more"},
      &CurtainSettings::half_sway_speed_m_s},
-    {{"give_sideways", "", 0.25, 0, 1, "how far it gives way along itself, as a part of how far across"},
+    {{"give_sideways", "", 0.25, 0, 1, "how far the cloth gives way along itself, as a part of that across"},
      &CurtainSettings::give_sideways},
     {{"bulges", "", 0.22, 0, 0.45,
       "how unequally gusts fill it, from place to place and in time; 0: it swings as a board"},
@@ -123,8 +123,8 @@ constexpr double kChainSecondPerFirst = 2.2954172674276943;
 constexpr double kSecondShare = 0.2;
 
 /// tan(a) of a part of the curtain: nothing blows or swings it farther (78.7 degrees), or faster.
-constexpr double kLargestPull = 5.0;
-constexpr double kLargestPull_per_s = 20.0;
+constexpr double kMaxPull = 5.0;
+constexpr double kMaxPull_per_s = 20.0;
 
 /// No wave passes faster: 0.1 m a tick, a quarter of the hem's shortest.
 constexpr double kFastestCurtainWave_m_s = 6.0;
@@ -185,10 +185,10 @@ class Curtain final : public Scene {
   const pose::Pose& pose() const noexcept override { return cloth_.pose(); }
 
   double largest_joint_step_m(double dt_s) const noexcept override {
-    const double pull_step = 0.4 * std::numbers::sqrt2 * kLargestPull_per_s * dt_s;
+    const double pull_step = 0.4 * std::numbers::sqrt2 * kMaxPull_per_s * dt_s;
     const double flutter_step = hem_noise_.largest_change(kFastestCurtainWave_m_s, dt_s) +
                                 ClothNoise::kLargest * ClothStrength::largest_step(dt_s);
-    const double later = 1.0 + 0.2155 * calm_delay_s_ * kLargestPull_per_s;
+    const double later = 1.0 + 0.2155 * calm_delay_s_ * kMaxPull_per_s;
     return cloth_.largest_joint_step_m(
         dt_s, pull_step * (1.0 + 2.0 * ClothNoise::kLargest * flutter_) + 2.0 * flutter_ * flutter_step * later);
   }
@@ -334,7 +334,7 @@ class Curtain final : public Scene {
   /// `stretched` by so much, it swings faster.
   void swing(ClothSwing& part, double stretched, double target, double calm_hz, double dt_s) const noexcept {
     const double hz = calm_hz * std::sqrt(std::sqrt(1.0 + stretched * stretched));
-    part.step(target, hz, 4.0 * kPi * hz * damping_, {kLargestPull, kLargestPull_per_s}, dt_s);
+    part.step(target, hz, 4.0 * kPi * hz * damping_, {kMaxPull, kMaxPull_per_s}, dt_s);
   }
 
   SimdRow row_;
@@ -368,7 +368,7 @@ class Curtain final : public Scene {
 
 const std::array kRetiredCurtainParameters = {
     RetiredParameter{"quickness", "is now damping: how soon the curtain swings out"},
-    RetiredParameter{"travel_time", "is gone: waves go down as the cloth's height and weight have it"},
+    RetiredParameter{"travel_time", "was removed: the speed of the waves follows from the cloth's height and weight"},
     RetiredParameter{"tile_period", "is now wave_length, of the longest bulges"},
     RetiredParameter{"growth", "is gone: the hem's weight shapes the cloth"},
     RetiredParameter{"beta", "is gone: bulges are a band of lengths, see wave_length"},

@@ -97,7 +97,9 @@ const Fields<FlagSettings> kFlagFields = {
      &FlagSettings::wave_length_m},
     {{"wave_speed", "", 0.6, 0, 2, "how fast the waves run to the fly, as a part of the wind's speed"},
      &FlagSettings::wave_speed},
-    {{"growth", "", 0.8, 0.1, 4, "the waves grow as the way from the hoist to this power; more: a calmer hoist"},
+    {{"growth", "", 0.8, 0.1, 4,
+      "how the waves grow from the hoist to the fly: the exponent of their growth with the distance; more: a calmer "
+      "hoist"},
      &FlagSettings::growth},
     {{"edge_flutter", "", 0.25, 0, 1, "how high the short waves near the fly are, as a part of the long ones"},
      &FlagSettings::edge_flutter},

@@ -51,7 +51,7 @@ namespace {
 /// what ticks of 1/60 s show (|k| U < pi rate). It lies at a slant, so that nothing repeats after that time.
 constexpr double kCrossed_s = 10.24;
 constexpr std::size_t kNoiseSamples = 256;
-constexpr double kFewestWaves = 28.0;  ///< a tile: no tongue is longer than nine tenths of a metre at 2.5 m/s
+constexpr double kMinWaves = 28.0;  ///< a tile: no tongue is longer than nine tenths of a metre at 2.5 m/s
 constexpr double kSecondFaster = 1.25;
 
 /// How much of a tile the flame is wide. Its height is rise_speed's: tongues are four times as long as they are wide.
@@ -123,7 +123,7 @@ const Fields<FlameSettings> kFlameFields = {
     {{"width", "m", 0.5, 0.02, 20, "of its thickest part; a wider fire leans less, and puffs more slowly"},
      &FlameSettings::width_m},
     {{"foot", "m", 0.35, 0, 10, "how high over the ground its foot is: it burns in a bowl"}, &FlameSettings::foot_m},
-    {{"rise_speed", "m/s", 2.5, 0.05, 20, "how fast its tongues rise, and a gust bends it from the foot upward"},
+    {{"rise_speed", "m/s", 2.5, 0.05, 20, "how fast its tongues rise, and how fast a gust moves up from its foot"},
      &FlameSettings::rise_speed_m_s},
     {{"flicker", "", 0.3, 0, 0.8,
       "how far the noise moves the shape, as a part of its radius, and lets it sway: 0 burns like a candle"},
@@ -140,7 +140,8 @@ const Fields<FlameSettings> kFlameFields = {
 };
 
 constexpr std::array kRetiredFlameParameters = {
-    RetiredParameter{"max_lean", "is now exposure: it lies over as fires of its size do; below 1 it leans less"},
+    RetiredParameter{"max_lean",
+                     "is now exposure: at 1 the flame leans as real fires of its size do, below 1 it leans less"},
     RetiredParameter{"half_speed", "is now exposure: how much of the wind reaches it"},
 };
 
@@ -161,7 +162,7 @@ std::array<NoiseLayerSpec, 2> flame_layers(const FlameSettings& settings, std::u
   const double period_m = settings.rise_speed_m_s * kCrossed_s;
   const auto layer = [&](std::uint64_t which, double longer, float weight) {
     return NoiseLayerSpec{
-        .noise = {.size = kNoiseSamples, .beta = settings.beta, .seed = seed ^ which, .from_cycles = kFewestWaves},
+        .noise = {.size = kNoiseSamples, .beta = settings.beta, .seed = seed ^ which, .from_cycles = kMinWaves},
         .period_x_m = longer * period_m,
         .period_z_m = longer * period_m,
         .weight = weight,

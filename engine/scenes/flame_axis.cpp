@@ -22,7 +22,7 @@ constexpr double kAir_kg_m3 = 1.2;
 /// Where the wind is known, and the roughness of open land.
 constexpr double kWindHeight_m = 10.0;
 constexpr double kRoughness_m = 0.03;
-constexpr double kLowestWindHeight_m = 0.1;
+constexpr double kMinWindHeight_m = 0.1;
 
 constexpr double kSway_hz = 1.0;
 constexpr double kSwayDamping = 0.7;
@@ -86,7 +86,7 @@ FlameAxis::FlameAxis(const FlameAxisSpec& spec)
       wobble_largest_(largest_of(wobble_)),
       history_(kChannels, spec.height_m / spec.rise_m_s) {
   // Rounded to floats, so that the last bit of a library's logarithm decides about nothing.
-  const double felt_m = std::max(spec.felt_at_m, kLowestWindHeight_m);
+  const double felt_m = std::max(spec.felt_at_m, kMinWindHeight_m);
   const double felt = std::log(felt_m / kRoughness_m) / std::log(kWindHeight_m / kRoughness_m);
   const double own_m_s = math::cube_root(kFlameGravity_m_s2 * kBurnt_kg_m2_s * spec.foot_m / kAir_kg_m3);
   relative_wind_s_m_ = static_cast<double>(static_cast<float>(felt / own_m_s));

@@ -36,7 +36,7 @@ namespace {
 /// The strokes' waves, the shortest and the longest; how many standard deviations they reach; and across the wind
 /// against along it.
 constexpr std::array kStrokeWaves_m = {0.24, 0.52};
-constexpr double kLargestStroke = 2.2;
+constexpr double kMaxStroke = 2.2;
 constexpr double kStrokeAcross = 0.5;
 
 /// Where the coat reads its strokes for the second time: so far away that it is an independent noise.
@@ -61,7 +61,7 @@ const Fields<CoatSpec> kCoatFields = {
      &CoatSpec::length_variation},
     {{"lie", "deg", 55.0, 0, 85, "how far a hair's foot lies over in calm air"}, &CoatSpec::lie_deg},
     {{"curl", "deg", 30.0, 0, 180, "how much farther it curls to its tip"}, &CoatSpec::curl_deg},
-    {{"parting", "deg", 20.0, 0, 90, "standard deviation of where hairs lie to"}, &CoatSpec::parting_deg},
+    {{"parting", "deg", 20.0, 0, 90, "standard deviation of the direction in which hairs lie"}, &CoatSpec::parting_deg},
 };
 
 /// How the hairs sway.
@@ -85,13 +85,14 @@ const Fields<FurSway> kFurSwayFields = {
      &FurSway::fastest_stroke_m_s},
     {{"hybrid", "", 1.0, 0, 1, "0: hairs follow the wind at once; 1: each is a damped oscillator that sways on"},
      &FurSway::hybrid},
-    {{"natural_frequency", "Hz", 4.0, 0.1, 20, "how fast a hair sways by itself"}, &FurSway::natural_hz},
-    {{"damping", "", 0.35, 0.02, 0.95, "how soon that dies away: the damping ratio"}, &FurSway::damping_ratio},
+    {{"natural_frequency", "Hz", 4.0, 0.1, 20, "frequency at which a hair sways by itself"}, &FurSway::natural_hz},
+    {{"damping", "", 0.35, 0.02, 0.95, "how soon that sway ends: the damping ratio"}, &FurSway::damping_ratio},
 };
 const std::vector<Parameter> kFurParameters = together(kCoatFields.parameters(), kFurSwayFields.parameters());
 
 const std::array kRetiredFurParameters = {
-    RetiredParameter{"gusts", "is gone: gusts are longer than a body, so all hairs have those of the wind outside"},
+    RetiredParameter{"gusts",
+                     "was removed: gusts are longer than a body, so all hairs have the gusts of the wind outside"},
     RetiredParameter{"turbulence", "is now strokes: by how many degrees hairs part"},
     RetiredParameter{"gust_strength", "is gone: the wind's own gusts swell enough"},
     RetiredParameter{"tile_period", "is gone: strokes are 0.24 to 0.52 m long"},
@@ -134,7 +135,7 @@ class Fur final : public Scene {
   void sample_part(Part part) noexcept override {
     const auto read = [&](const CarriedPlaces& places, std::vector<float>& all, double scale) {
       const std::span<float> out = strands_of(part, std::span(all));
-      const auto largest = static_cast<float>(scale * kLargestStroke);
+      const auto largest = static_cast<float>(scale * kMaxStroke);
       strokes_.sample(places, row_, out, static_cast<float>(scale), 0.0F, -largest, largest,
                       static_cast<std::size_t>(out.data() - all.data()));
     };
@@ -177,7 +178,7 @@ class Fur final : public Scene {
   /// strokes change by what their noise does. A projection onto the skin changes by no more than what it is of. Never
   /// more than from one extreme to the other; an oscillator and the joints as in StrandSway.
   double largest_joint_step_m(double dt_s) const noexcept override {
-    const double largest_stroke = math::length(1.0, kStrokeAcross) * kLargestStroke;
+    const double largest_stroke = math::length(1.0, kStrokeAcross) * kMaxStroke;
     const double largest_bend_rad = sway_.max_bend_rad + sway_.stroke_rad * largest_stroke;
     const double s = largest_flexibility_ / sway_.half_bend_speed_m_s * SceneWind::largest_step_m_s(dt_s);
     const double slope = operators::kSteepestBendShare * largest_bend_rad + 0.5 * kSheltered * sway_.max_bend_rad;

@@ -32,9 +32,9 @@ const Fields<MeadowSpec> kMeadowFields = {
     {{"tilt", "deg", 8.0, 0, 60, "how far a blade's foot leans in calm air, on average"}, &MeadowSpec::tilt_deg},
     {{"curl", "deg", 35.0, 0, 180, "how far a blade droops from foot to tip in calm air, on average"},
      &MeadowSpec::curl_deg},
-    {{"droop_heading", "deg", 0.0, 0, 360, "where blades droop to on average, clockwise from north"},
+    {{"droop_heading", "deg", 0.0, 0, 360, "mean direction in which blades droop, clockwise from north"},
      &MeadowSpec::heading_deg},
-    {{"droop_spread", "deg", 150.0, 0, 180, "standard deviation of where they droop to"},
+    {{"droop_spread", "deg", 150.0, 0, 180, "standard deviation of the direction in which they droop"},
      &MeadowSpec::heading_spread_deg},
 };
 const Fields<StrandSwaySpec> kGrassSwayFields = strand_sway_fields(kGrassSway);

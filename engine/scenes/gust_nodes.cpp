@@ -10,15 +10,15 @@
 namespace yuragi::scenes {
 namespace {
 
-constexpr std::size_t kFewestCoarseNodes = 4;
-constexpr double kLargestCoarseCell_m = 16.0;
+constexpr std::size_t kMinCoarseNodes = 4;
+constexpr double kMaxCoarseCell_m = 16.0;
 
 /// So many nodes that they are near enough to each other, and no more than there are fine ones.
 std::size_t coarse_nodes(std::size_t nodes, double cell_m) {
   if (nodes == 0) return 0;
   const double extent_m = static_cast<double>(nodes - 1) * cell_m;
-  const auto cells = static_cast<std::size_t>(std::ceil(extent_m / kLargestCoarseCell_m));
-  return std::min(nodes, std::max(kFewestCoarseNodes, cells + 1));
+  const auto cells = static_cast<std::size_t>(std::ceil(extent_m / kMaxCoarseCell_m));
+  return std::min(nodes, std::max(kMinCoarseNodes, cells + 1));
 }
 
 double stretched_cell_m(std::size_t nodes, double cell_m, std::size_t coarse) {

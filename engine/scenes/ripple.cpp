@@ -67,8 +67,8 @@ constexpr double kFinestCell_m = 0.5;
 /// The long field's part of the height's variance, in a wind of so much.
 constexpr double kShortWind_m_s = 1.0;
 constexpr double kLongWind_m_s = 8.0;
-constexpr double kLeastLong = 0.2;
-constexpr double kMostLong = 0.8;
+constexpr double kMinLong = 0.2;
+constexpr double kMaxLong = 0.8;
 
 /// Gusts of the water's own, where the wind brings none: their standard deviation, as a part of the wind.
 constexpr double kOwnGusts = 0.2;
@@ -100,7 +100,7 @@ const Fields<RippleSettings> kRippleFields = {
     {{"onset", "m/s", 1.2, 0.1, 20, "the wind that raises the first ripples: a weaker one leaves a mirror"},
      &RippleSettings::onset_m_s},
     {{"gustiness", "", 1.0, 0, 3,
-      "how much darker and rougher the water is where gusts pass: 1 as it is, 0 everywhere the same"},
+      "how much darker and rougher the water is under a gust: 1 as in nature, 0 the same everywhere"},
      &RippleSettings::gustiness},
     {{"beta", "", 4.0, 2, 6, "exponent of the waves' spectrum beyond the strongest: less is rougher"},
      &RippleSettings::beta},
@@ -216,7 +216,7 @@ class Ripple final : public Scene {
   }
 
   void sample() noexcept override {
-    const double long_part = kLeastLong + (kMostLong - kLeastLong) * long_part_.value;
+    const double long_part = kMinLong + (kMaxLong - kMinLong) * long_part_.value;
     waves_.set_weight(0, static_cast<float>(std::sqrt(long_part)));
     waves_.set_weight(1, static_cast<float>(std::sqrt(1.0 - long_part)));
     height_per_slope_m_ = 1.0 / std::sqrt(long_part * square_of(waves_.slope_rms_per_m(0)) +
@@ -242,8 +242,8 @@ class Ripple final : public Scene {
   double largest_joint_step_m(double dt_s) const noexcept override {
     const double largest_wave = std::max(waves_.highest(), -waves_.lowest());
     const double followed = std::min(RoughWater::kBuildUp_rad_s * dt_s / std::numbers::e, 1.0);
-    const double part_step = (kMostLong - kLeastLong) * followed;
-    double wave_step = part_step / (2.0 * std::sqrt(kLeastLong)) * largest_wave;
+    const double part_step = (kMaxLong - kMinLong) * followed;
+    double wave_step = part_step / (2.0 * std::sqrt(kMinLong)) * largest_wave;
     for (std::size_t i = 0; i < 2; ++i) {
       wave_step += waves_.largest_change(i, wave_speed_m_s_[i] * dt_s, wave_speed_m_s_[i] * dt_s);
     }

@@ -13,14 +13,14 @@ namespace {
 
 constexpr double kStillSlopes = 0.003;
 constexpr double kSlopesPerWind_s_m = 0.00512;
-constexpr std::size_t kMostWaterCells = 62;  ///< a side: with one more node, and one to read beyond, 64
+constexpr std::size_t kMaxWaterCells = 62;  ///< a side: with one more node, and one to read beyond, 64
 
 /// What is left of a slope that has died away: it moves nothing, and is not worth a denormal number.
 constexpr float kFlatSlope = 1e-12F;
 
 std::size_t cells_over(double extent_m, double finest_cell_m) {
   const double cells = std::ceil(std::min(extent_m / finest_cell_m, 1e6));
-  return std::clamp(static_cast<std::size_t>(cells), std::size_t{1}, kMostWaterCells);
+  return std::clamp(static_cast<std::size_t>(cells), std::size_t{1}, kMaxWaterCells);
 }
 
 /// Where `points` are, evenly from the first node to the last, on a torus of `size` nodes.

@@ -24,7 +24,7 @@ constexpr double kPaceSpread = 0.15;
 
 constexpr std::array<std::string_view, 2> kGusts = {"outside", "own"};
 /// How many standard deviations the canopy's waves reach.
-constexpr double kLargestCanopyWave = 2.2;
+constexpr double kMaxCanopyWave = 2.2;
 
 /// The shorter, the faster: each strand's own rate against that of one of mean length.
 std::vector<float> natural_rates_hz(const pose::StrandSkeleton& strands, double mean_hz) {
@@ -110,7 +110,7 @@ void StrandSway::sample_part(Part part) noexcept {
     const auto first = static_cast<std::size_t>(east_m_s.data() - outside_->east_m_s.data());
     outside_->grid.sample(first, east_m_s, strands_of(part, std::span(outside_->south_m_s)));
     if (spec_.canopy_waves > 0.0) {
-      const auto largest = static_cast<float>(spec_.canopy_waves * kLargestCanopyWave);
+      const auto largest = static_cast<float>(spec_.canopy_waves * kMaxCanopyWave);
       outside_->canopy.sample(outside_->places, row_, strands_of(part, std::span(outside_->strength)),
                               static_cast<float>(spec_.canopy_waves), 1.0F, 1.0F - largest, 1.0F + largest, first);
     }
@@ -171,7 +171,7 @@ void StrandSway::project_part(Part part, double) noexcept {
 double StrandSway::largest_bend_input_step(double dt_s) const noexcept {
   const double wind_step_m_s = SceneWind::largest_step_m_s(dt_s);
   if (outside_) {
-    const double largest_wave = spec_.canopy_waves * kLargestCanopyWave;
+    const double largest_wave = spec_.canopy_waves * kMaxCanopyWave;
     const double wave_step =
         spec_.canopy_waves *
         outside_->canopy.largest_change(canopy_carry_ * kStrongestSceneWind_m_s, canopy_carry_ * wind_step_m_s, dt_s);
@@ -212,7 +212,7 @@ Fields<StrandSwaySpec> strand_sway_fields(const StrandSwaySpec& defaults) {
         std::string(kGusts[defaults.has_own_gusts ? 1 : 0]),
         {},
         {},
-        "outside: as the wind outside has them, passing over all scenes; own: a noise of the scene's own",
+        "outside: the gusts of the wind outside, which pass over all scenes; own: a noise of this scene",
         kGusts},
        &StrandSwaySpec::has_own_gusts,
        [](const std::string& word) { return word == kGusts[1]; }},
@@ -220,19 +220,19 @@ Fields<StrandSwaySpec> strand_sway_fields(const StrandSwaySpec& defaults) {
         "own gusts: how much the wind differs from place to place: its standard deviation, as a part of it"},
        &StrandSwaySpec::turbulence},
       {{"gust_strength", "", defaults.gust_strength, 0, 2,
-        "own gusts: how much it swells along its path, in the same measure; a wind with gusts swells enough"},
+        "own gusts: how much the wind swells in time, in the same measure; a wind with gusts needs none"},
        &StrandSwaySpec::gust_strength},
       {{"canopy_waves", "", defaults.canopy_waves, 0, 0.4,
-        "outside gusts: how much waves of the stand's own, 2 to 4 m long, vary the wind: the bands that run over a "
+        "outside gusts: how much waves of the meadow itself, 2 to 4 m long, vary the wind: the bands that run over a "
         "meadow"},
        &StrandSwaySpec::canopy_waves},
       {{"hybrid", "", defaults.hybrid, 0, 1,
         "0: bends follow the noise alone; 1: each strand is a damped oscillator that overshoots and sways on"},
        &StrandSwaySpec::hybrid},
       {{"natural_frequency", "Hz", defaults.natural_hz, 0.1, 20,
-        "how fast a strand of mean length sways by itself; shorter ones are up to 15 % faster"},
+        "frequency at which a strand of mean length sways by itself; shorter ones sway up to 15 % faster"},
        &StrandSwaySpec::natural_hz},
-      {{"damping", "", defaults.damping_ratio, 0.02, 0.95, "how soon that dies away: the damping ratio"},
+      {{"damping", "", defaults.damping_ratio, 0.02, 0.95, "how soon that sway ends: the damping ratio"},
        &StrandSwaySpec::damping_ratio},
       {{"carry", "", defaults.carry, 0, 1, "the noise travels with this part of the wind's speed"},
        &StrandSwaySpec::carry},

@@ -88,7 +88,7 @@ const Fields<TreeSettings> kTreeFields = {
     {{"species", "", "cherry"s, {}, {}, "how it grows, and how stiff wood and petioles are", kTreeSpeciesNames},
      &TreeSettings::species,
      species_named},
-    {{"size", "", 1.0, 0.1, 10, "all lengths, against the species' own (8, 11 and 15 m high)"},
+    {{"size", "", 1.0, 0.1, 10, "factor on all lengths of the species (cherry 8, zelkova 11, poplar 15 m high)"},
      of_model(&TreeSpec::size)},
     {{"limbs", "", std::int64_t{15}, 1, 500, "branches on the trunk"}, of_model(&TreeSpec::limbs)},
     {{"twigs", "", std::int64_t{240}, 1, 20000, "branches on the limbs"}, of_model(&TreeSpec::twigs)},
@@ -109,8 +109,7 @@ const Fields<TreeSettings> kTreeFields = {
       "trees in all: the others are this one, turned and scaled; they cost the stream nothing"},
      &TreeSettings::grove},
     {{"grove_radius", "m", 20.0, 1, 500, "how far from it they stand"}, &TreeSettings::grove_radius_m},
-    {{"flexibility", "", 1.0, 0, 10,
-      "how far wood bends in every wind: 2 bends and sways it twice as far as its species does, 0 not at all"},
+    {{"flexibility", "", 1.0, 0, 10, "factor on how far wood bends and sways: 1 as the species does, 0 not at all"},
      &TreeSettings::flexibility},
     {{"streamline_speed", "m/s", 6.0, 0.1, 60,
       "the wind in which the crown begins to fold: the lower, the less a storm bends wood beyond a breeze"},
@@ -118,13 +117,15 @@ const Fields<TreeSettings> kTreeFields = {
     {{"max_tilt", "deg", 60.0, 0, 120, "no wind bends a branch farther than this along the wind"},
      &TreeSettings::max_tilt_rad,
      radians_of},
-    {{"max_swing", "deg", 60.0, 0, 120, "nor farther than this sideways"}, &TreeSettings::max_swing_rad, radians_of},
+    {{"max_swing", "deg", 60.0, 0, 120, "no wind bends a branch farther than this sideways"},
+     &TreeSettings::max_swing_rad,
+     radians_of},
     {{"crown_gusts", "", 0.12, 0, 1,
       "gusts that arise in the crown, as a part of the wind: the stronger, the less its limbs and leaves move "
       "as one"},
      &TreeSettings::crown_gusts},
     {{"turbulence", "", 0.2, 0, 2,
-      "gusts of its own where the wind brings none: their standard deviation, as a part of the wind"},
+      "gusts of its own if the wind brings none: their standard deviation, as a part of the wind"},
      &TreeSettings::turbulence},
     {{"hybrid", "", 1.0, 0, 1, "0: wood follows the gusts alone; 1: each branch is a damped oscillator"},
      &TreeSettings::hybrid},
@@ -133,8 +134,7 @@ const Fields<TreeSettings> kTreeFields = {
       "their length"},
      &TreeSettings::natural_hz},
     {{"damping", "", 0.12, 0.02, 0.95,
-      "how soon that dies away: the damping ratio; low, and limbs swing on long after a gust; of twigs a "
-      "quarter more"},
+      "how soon that sway ends: the damping ratio; if low, limbs swing long after a gust; of twigs a quarter more"},
      &TreeSettings::damping_ratio},
     {{"tile_period", "m", 64.0, 4, 4096, "after how many metres the wind on the ground repeats; 128 samples"},
      of_noise(&CarriedNoiseSpec::period_m)},
@@ -172,7 +172,7 @@ constexpr double kWindSideFloor = 0.4;
 constexpr double kSidelessWind_m_s = 1.0;
 
 /// Below this the mean wind is no measure of its gusts.
-constexpr double kLeastMean_m_s = 0.3;
+constexpr double kMinMean_m_s = 0.3;
 
 /// The standard deviation of BranchForceJob's noise in a usual wind, of turbulence intensity 0.2 and with the crown's
 /// own gusts: 0.45 in a weak wind, where the force goes with the square of the speed, and 0.3 in a storm.
@@ -185,7 +185,7 @@ constexpr double kThreshold = -1.5 * kUsualNoise - kThresholdRise * kWindSideFlo
 constexpr double kSplitWidth = kUsualNoise;
 
 /// Beyond it the tree's own gusts are cut, in standard deviations; and the finer noises of crown and leaves.
-constexpr double kLargestOwnGust = 3.0;
+constexpr double kMaxOwnGust = 3.0;
 constexpr double kLargestFine = 2.2;
 
 /// Gusts that differ within less than this move a crown as one.
@@ -199,11 +199,11 @@ constexpr double kCrownCarry = 0.5;
 /// How much faster limbs and twigs sway than the trunk, and how much more that is damped.
 constexpr std::array<double, 3> kPace = {1.0, 2.0, 4.0};
 constexpr std::array<double, 3> kDamping = {1.0, 1.0, 1.25};
-constexpr double kLargestDamping = 0.95;
+constexpr double kMaxDamping = 0.95;
 
 // A branch sways the faster the shorter it is against the median of its kind: by the power of 3/4, up to 30 percent.
 constexpr double kPacePower = 0.75;
-constexpr double kLargestPace = 1.3;
+constexpr double kMaxPace = 1.3;
 
 // The noise that leaves read. Its waves, as long as some leaves of a spray, go along it at a speed that rises with the
 // wind but slowly, so that leaves flutter at 2 to 6 Hz: 0.75 (2.5 + 0.22 u) u / (u + 0.2), u in m/s.
@@ -219,7 +219,7 @@ double leaf_carry(double wind_m_s) {
 constexpr std::array<double, 2> kHeightSkew = {0.5, 0.7};
 
 /// How far the axis of a leaf's flutter is turned at most from its own direction.
-constexpr double kLargestTwist_rad = 40.0 * kRadPerDeg;
+constexpr double kMaxTwist_rad = 40.0 * kRadPerDeg;
 
 /// A bare twig leaves its branch at this part of the angle of a leaf, and gives way to the wind as this part of one.
 constexpr double kBareTwigAngle = 0.75;
@@ -463,7 +463,7 @@ void Tree::add_wood(const pose::TreeSkeleton& tree, std::size_t level, const Sce
   Wood& wood = wood_[level];
   wood.level = level;
   wood.count = strands.strand_count;
-  wood.damping_ratio = std::min(kDamping[level] * damping_ratio_, kLargestDamping);
+  wood.damping_ratio = std::min(kDamping[level] * damping_ratio_, kMaxDamping);
 
   // Thickness and length relative to the median branch of its kind set how far it bends, and how fast it sways.
   std::vector<double> thickness_m;
@@ -492,7 +492,7 @@ void Tree::add_wood(const pose::TreeSkeleton& tree, std::size_t level, const Sce
     const double thinness = is_there ? std::pow(median_thickness_m / thickness_m[i], species_.thinness_power) : 0.0;
     wood.gain.push_back(static_cast<float>(flexibility_ * species_.sway_deg[level] * kRadPerDeg * thinness));
     const double pace = is_there ? std::pow(median_length_m / length_m[i], kPacePower) : 1.0;
-    const double hz = natural_hz_ * kPace[level] * std::clamp(pace, 1.0 / kLargestPace, kLargestPace);
+    const double hz = natural_hz_ * kPace[level] * std::clamp(pace, 1.0 / kMaxPace, kMaxPace);
     wood.natural_hz.push_back(static_cast<float>(hz));
     wood.largest_hz = std::max(wood.largest_hz, hz);
   }
@@ -527,7 +527,7 @@ void Tree::add_leaves(const pose::TreeLevel& level, std::uint64_t seed) {
     leaves_.liveliest = std::max(leaves_.liveliest, liveliness);
 
     // It nods about an axis across its own direction; one that hangs straight down, about any level axis.
-    const double twist_rad = kLargestTwist_rad * (2.0 * random.uniform(2 * i + 1) - 1.0);
+    const double twist_rad = kMaxTwist_rad * (2.0 * random.uniform(2 * i + 1) - 1.0);
     const auto rest_x = static_cast<double>(strands.rest_x[i]);
     const auto rest_z = static_cast<double>(strands.rest_z[i]);
     const double level_part = std::sqrt(rest_x * rest_x + rest_z * rest_z);
@@ -558,7 +558,7 @@ void Tree::blow_on(Wood& wood) noexcept {
     }
     return;
   }
-  const auto largest_own = static_cast<float>(kLargestOwnGust * turbulence_);
+  const auto largest_own = static_cast<float>(kMaxOwnGust * turbulence_);
   noise_.sample(wood.places, row_, wood.noise, static_cast<float>(turbulence_), 0.0F, -largest_own, largest_own);
   const auto east_m_s = static_cast<float>(wind_.east_m_s());
   const auto south_m_s = static_cast<float>(wind_.south_m_s());
@@ -573,7 +573,7 @@ void Tree::sample_wood(Wood& wood) noexcept {
   blow_on(wood);
   const operators::BranchForceJob force{.mean_m_s = wind_.speed_m_s(),
                                         .streamline_speed_m_s = streamline_speed_m_s_,
-                                        .calm_m_s = kLeastMean_m_s,
+                                        .calm_m_s = kMinMean_m_s,
                                         .row = row_,
                                         .wind_east_m_s = wood.east_m_s,
                                         .wind_south_m_s = wood.south_m_s,
@@ -654,8 +654,8 @@ double Tree::largest_leaf_step_rad(double dt_s) const noexcept {
   double gust = 1.0 + crown_gusts_ * kLargestFine;
   double gust_step = crown_gusts_ * change(crown_noise_, kCrownCarry, kLargestFine);
   if (!outside_) {
-    gust += turbulence_ * kLargestOwnGust;
-    gust_step += turbulence_ * change(noise_, 1.0, kLargestOwnGust);
+    gust += turbulence_ * kMaxOwnGust;
+    gust_step += turbulence_ * change(noise_, 1.0, kMaxOwnGust);
   }
   const double step_m_s = wind_step_m_s * gust + kStrongestSceneWind_m_s * gust_step;
 

@@ -18,7 +18,7 @@ constexpr double kTwigRadiusPerHeight = 0.008 / 8.0;
 constexpr double kTipRadiusShare = 0.3;  ///< of the radius at the foot, for a twig
 
 /// No branch is longer than this times the habit's length.
-constexpr double kLargestVigour = 1.06;
+constexpr double kMaxVigour = 1.06;
 
 /// Leaves stand at nodes, this many from a twig's foot to its tip, a spray at 16 that follow one another. (So the
 /// joints that they grow from are few, and lie in the cache.)
@@ -175,7 +175,7 @@ class Grower {
                                 std::sin(angle_rad) * across(course.direction[link], around_rad);
         const double rank = i % 2 == 0 ? 1.0 : habit.minor_share;
         // None outgrows its neighbours by much: what stands out of a crown is in the wind, and light is everywhere.
-        const double vigour = std::min(random_factor(random, index + 4, 0.15), kLargestVigour);
+        const double vigour = std::min(random_factor(random, index + 4, 0.15), kMaxVigour);
         const double length_m = rank * interpolated(habit.length_share, part) * height_m_ * vigour;
         const double lift_rad = habit.lift_deg * kRadPerDeg * random_factor(random, index + 6, 0.3);
         Shoot& branch = branches.emplace_back(shoot(course.joint[link], rest, {0.0, lift_rad < 0.0 ? -1.0 : 1.0, 0.0},

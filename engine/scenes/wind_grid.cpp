@@ -13,8 +13,8 @@
 namespace yuragi::scenes {
 namespace {
 
-constexpr std::size_t kFewestNodes = 4;
-constexpr std::size_t kMostNodes = 64;
+constexpr std::size_t kMinNodes = 4;
+constexpr std::size_t kMaxNodes = 64;
 
 /// Below this a wind is set to 0: denormal numbers are slow.
 constexpr float kNoWind_m_s = 1e-12F;
@@ -39,7 +39,7 @@ WindGrid::Layout::Layout(std::span<const float> x_m, std::span<const float> z_m,
   const double extent_m =
       std::max(static_cast<double>(*east) - nodes.west_m, static_cast<double>(*south) - nodes.north_m);
   const auto cells = static_cast<std::size_t>(std::ceil(std::min(extent_m / finest_cell_m, 1e6)));
-  torus_nodes = std::clamp(std::bit_ceil(cells + 2), kFewestNodes, kMostNodes);
+  torus_nodes = std::clamp(std::bit_ceil(cells + 2), kMinNodes, kMaxNodes);
   const double cell_m = std::max(extent_m / static_cast<double>(torus_nodes - 2), finest_cell_m);
   const double period_m = cell_m * static_cast<double>(torus_nodes);
   for (std::size_t i = 0; i < x_m.size(); ++i) {

@@ -264,10 +264,10 @@ bool read(const fb::Camera& from, look::Camera& to) {
   return read_text(from.name(), to.name) && read_text(from.scene(), to.scene);
 }
 
-/// The first kMostCameras of them: a newer server may have more.
+/// The first kMaxCameras of them: a newer server may have more.
 bool read_cameras(const fb::Sensors& from, Sensors& to) {
   const std::size_t count = from.cameras() == nullptr ? 0 : from.cameras()->size();
-  for (std::size_t i = 0; i < std::min(count, look::kMostCameras); ++i) {
+  for (std::size_t i = 0; i < std::min(count, look::kMaxCameras); ++i) {
     if (!read(*from.cameras()->Get(static_cast<flatbuffers::uoffset_t>(i)), to.cameras.emplace_back())) return false;
   }
   to.camera = from.camera() < to.cameras.size() ? from.camera() : 0;

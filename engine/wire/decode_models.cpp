@@ -278,8 +278,8 @@ bool read(const fb::Cloth& from, look::ClothLook& to) {
   to.color_2 = color_of(from.color_2());
   const std::size_t width_px = from.image_width();
   const std::size_t height_px = from.image_height();
-  if (width_px > look::Image::kLongestSide_px || height_px > look::Image::kLongestSide_px ||
-      width_px * height_px > look::Image::kMostPixels || size_of(from.image_rgb()) != 3 * width_px * height_px)
+  if (width_px > look::Image::kMaxSide_px || height_px > look::Image::kMaxSide_px ||
+      width_px * height_px > look::Image::kMaxPixels || size_of(from.image_rgb()) != 3 * width_px * height_px)
     return false;
   if (width_px * height_px == 0) return true;
   const auto* const rgb = from.image_rgb();

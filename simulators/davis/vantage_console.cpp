@@ -15,7 +15,7 @@ constexpr char kNak = '\x21';
 constexpr const char* kAwake = "\n\r";
 constexpr double kSleepsAfter_s = 120.0;
 constexpr double kMphOfOneMetrePerSecond = 3600.0 / 1609.344;
-constexpr std::size_t kLongestCommand = 64;
+constexpr std::size_t kMaxCommand = 64;
 constexpr std::size_t kConsoleGarbage = 99;
 constexpr std::size_t kConsolePieces = 4;
 constexpr double kConsolePieceGap_s = 0.1;
@@ -94,7 +94,7 @@ void VantageConsole::receive(std::string_view bytes, double time_s, std::optiona
     if (!std::exchange(is_awake_, true)) continue;
     if (c == '\n' || c == '\r') {
       obey(std::exchange(command_, ""), time_s, fault);
-    } else if (command_.size() < kLongestCommand) {
+    } else if (command_.size() < kMaxCommand) {
       command_ += c;
     }
   }

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kLiveMphOfOneMetrePerSecond = 3600.0 / 1609.344;
 constexpr int kUsualDuration_s = 1200;
-constexpr int kLongestDuration_s = 86400;
-constexpr std::size_t kLongestRequest = 4096;
+constexpr int kMaxDuration_s = 86400;
+constexpr std::size_t kMaxRequest = 4096;
 constexpr std::size_t kLiveGarbage = 300;
 /// The delay of a late reply: longer than a client should wait.
 constexpr double kLiveLate_s = 8.0;
@@ -52,7 +52,7 @@ void WeatherLinkLive::serve(std::span<const int> ready, double time_s, std::opti
   for (std::size_t end = 0; (end = received_.find("\r\n\r\n")) != std::string::npos; received_.erase(0, end + 4)) {
     obey(std::string_view(received_).substr(0, end), time_s, fault);
   }
-  if (received_.size() > kLongestRequest) received_.clear();
+  if (received_.size() > kMaxRequest) received_.clear();
   while (!waiting_.empty() && waiting_.front().time_s <= time_s) {
     http_->write(waiting_.front().bytes);
     waiting_.pop_front();
@@ -74,7 +74,7 @@ void WeatherLinkLive::obey(std::string_view request, double time_s, std::optiona
   if (!has_duration && line != "GET /v1/real_time HTTP/1.1") {
     return reply(404, R"({"data":null,"error":{"code":404,"message":"HTTP Page Not Found"}})", time_s, fault);
   }
-  if (duration_s < 1 || duration_s > kLongestDuration_s) {
+  if (duration_s < 1 || duration_s > kMaxDuration_s) {
     return reply(400, R"({"data":null,"error":{"code":400,"message":"Bad Request"}})", time_s, fault);
   }
   ++broadcast_requests_;

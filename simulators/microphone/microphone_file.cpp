@@ -17,7 +17,7 @@ namespace yuragi::simulators::microphone {
 namespace {
 
 constexpr double kStep_s = 0.05;
-constexpr double kMostInWav_bytes = 4.0e9;  // its sizes have 32 bits
+constexpr double kMaxInWav_bytes = 4.0e9;  // its sizes have 32 bits
 
 struct CloseFile {
   void operator()(std::FILE* file) const noexcept { std::fclose(file); }
@@ -86,8 +86,7 @@ void write_microphone_file(const std::string& path, SampleFormat format, const M
   const double bytes = static_cast<double>(frames) * static_cast<double>(options.channels) *
                        (format == SampleFormat::kFloat32 ? 4.0 : 2.0);
   if (path.ends_with(".wav")) {
-    if (bytes > kMostInWav_bytes)
-      throw std::runtime_error("too long for a WAV file: shorten --duration, or write .raw");
+    if (bytes > kMaxInWav_bytes) throw std::runtime_error("too long for a WAV file: shorten --duration, or write .raw");
     put_wav_header(out, format, options, static_cast<std::uint32_t>(bytes));
   }
 

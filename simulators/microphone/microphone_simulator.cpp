@@ -20,10 +20,10 @@
 namespace yuragi::simulators::microphone {
 namespace {
 
-constexpr double kMostAtOnce_s = 1.0;  // a halted machine does not make up for more
+constexpr double kMaxAtOnce_s = 1.0;  // a halted machine does not make up for more
 // Of sound that a client has not taken. What is lost is a click in what is heard: a client on a busy machine is late by
 // seconds, one that hangs for longer.
-constexpr double kMostWaiting_s = 20.0;
+constexpr double kMaxWaiting_s = 20.0;
 // Not a whole sample; and large enough for the socket, which holds a few hundred pieces whatever their size, to hold
 // many turns' sound.
 constexpr std::size_t kSplitBytes = 1021;
@@ -96,7 +96,7 @@ struct MicrophoneSimulator::State {
   /// False: the reader has gone.
   bool give(Client& client) const {
     const auto bytes = std::as_bytes(std::span(samples));
-    const auto most = static_cast<std::size_t>(kMostWaiting_s * options.rate_hz) * options.channels * sizeof(float);
+    const auto most = static_cast<std::size_t>(kMaxWaiting_s * options.rate_hz) * options.channels * sizeof(float);
     if (client.waiting.size() + bytes.size() <= most) {
       const auto* const begin = reinterpret_cast<const std::uint8_t*>(bytes.data());
       client.waiting.insert(client.waiting.end(), begin, begin + bytes.size());
@@ -162,7 +162,7 @@ void MicrophoneSimulator::serve(std::span<const int> ready, double time_s, std::
   }
 
   // The sound up to now.
-  state.rendered_s = std::max(state.rendered_s, time_s - kMostAtOnce_s);
+  state.rendered_s = std::max(state.rendered_s, time_s - kMaxAtOnce_s);
   const auto frames = static_cast<std::size_t>(std::max(0.0, (time_s - state.rendered_s) * state.options.rate_hz));
   state.rendered_s += static_cast<double>(frames) / state.options.rate_hz;
   state.samples.clear();

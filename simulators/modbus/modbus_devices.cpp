@@ -237,7 +237,7 @@ constexpr std::array<DeviceEntry, 21> kModbusDevices = {{
     {"generic-rs485-cup", kRenkeCup},
 }};
 
-constexpr int kHighestSlaveId = 247;
+constexpr int kMaxSlaveId = 247;
 
 /// 0 for a text that is no id.
 int slave_id_in(std::string_view text) {
@@ -295,8 +295,8 @@ std::vector<ModbusSlave> modbus_slaves(std::string_view name_and_id) {
 
   const int first = slave_id_in(name_and_id.substr(at + 1));
   const int last = first + static_cast<int>(slaves.size()) - 1;
-  if (first < 1 || last > kHighestSlaveId) {
-    throw std::runtime_error(fmt::format("\"{}\" is not a slave id; allowed: 1 to {}", name_and_id, kHighestSlaveId));
+  if (first < 1 || last > kMaxSlaveId) {
+    throw std::runtime_error(fmt::format("\"{}\" is not a slave id; allowed: 1 to {}", name_and_id, kMaxSlaveId));
   }
   for (std::size_t i = 0; i < slaves.size(); ++i) slaves[i].id = static_cast<std::uint8_t>(first + static_cast<int>(i));
   return slaves;

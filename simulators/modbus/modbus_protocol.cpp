@@ -7,9 +7,9 @@ namespace yuragi::simulators::modbus {
 namespace {
 
 constexpr std::size_t kTcpHeader = 6;  // transaction, protocol, length; the unit is counted by the length
-constexpr std::size_t kLongestTcpBody = 254;
-constexpr std::size_t kShortestRtu = 4;
-constexpr std::size_t kLongestRtu = 256;
+constexpr std::size_t kMaxTcpBody = 254;
+constexpr std::size_t kMinRtu = 4;
+constexpr std::size_t kMaxRtu = 256;
 
 std::uint16_t word_at(const ModbusBytes& bytes, std::size_t at) {
   return at + 1 < bytes.size() ? static_cast<std::uint16_t>((bytes[at] << 8U) | bytes[at + 1]) : std::uint16_t{0};
@@ -48,7 +48,7 @@ std::size_t rtu_length(const ModbusBytes& bytes) {
 std::optional<SlaveRequest> take_tcp_request(ModbusBytes& incoming) {
   if (incoming.size() < kTcpHeader) return std::nullopt;
   const std::size_t length = word_at(incoming, 4);
-  if (word_at(incoming, 2) != 0 || length < 2 || length > kLongestTcpBody) {
+  if (word_at(incoming, 2) != 0 || length < 2 || length > kMaxTcpBody) {
     incoming.clear();
     return std::nullopt;
   }
@@ -63,11 +63,11 @@ std::optional<SlaveRequest> take_tcp_request(ModbusBytes& incoming) {
 }
 
 std::optional<SlaveRequest> take_rtu_request(ModbusBytes& incoming) {
-  while (incoming.size() >= kShortestRtu) {
+  while (incoming.size() >= kMinRtu) {
     const std::size_t length = rtu_length(incoming);
     if (length == 0) return std::nullopt;
-    if (length <= kLongestRtu && incoming.size() < length) return std::nullopt;
-    const bool is_whole = length <= kLongestRtu && sum_of(std::span(incoming).first(length)) == 0;
+    if (length <= kMaxRtu && incoming.size() < length) return std::nullopt;
+    const bool is_whole = length <= kMaxRtu && sum_of(std::span(incoming).first(length)) == 0;
     if (!is_whole) {
       incoming.erase(incoming.begin());
       continue;

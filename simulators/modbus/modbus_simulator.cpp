@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kWindow_s = 3.0;         // of gust, lull and mean
 constexpr double kPauseOfSplit_s = 0.03;  // between the pieces of a reply
-constexpr std::size_t kMostRegisters = 125;
+constexpr std::size_t kMaxRegisters = 125;
 constexpr std::size_t kGarbageBytes = 24;
 
 /// The speeds of the last seconds.
@@ -112,7 +112,7 @@ class ModbusSimulator::State {
   /// The reply of a device without a fault; reading a clearing register clears.
   static ModbusBytes right_reply(SimulatedSlave& slave, const SlaveRequest& request) {
     if (request.function != slave.model.function) return exception_reply(request.function, kIllegalFunction);
-    if (request.count < 1 || request.count > kMostRegisters) {
+    if (request.count < 1 || request.count > kMaxRegisters) {
       return exception_reply(request.function, kIllegalValue);
     }
     std::vector<std::uint16_t> values;

@@ -13,7 +13,7 @@ constexpr std::size_t kPieces = 3;
 constexpr double kPieceGap_s = 0.03;
 /// The delay of a late reply: longer than a client should wait.
 constexpr double kLate_s = 1.3;
-constexpr std::size_t kLongestRequest = 256;
+constexpr std::size_t kMaxRequest = 256;
 
 }  // namespace
 
@@ -59,7 +59,7 @@ void TextSimulator::serve(std::span<const int> ready, double time_s, std::option
 void TextSimulator::receive(std::string_view bytes, double time_s, std::optional<core::FaultKind> fault) {
   for (const char c : bytes) {
     if (c != '\r' && c != '\n') {
-      if (request_.size() < kLongestRequest) request_ += c;
+      if (request_.size() < kMaxRequest) request_ += c;
       continue;
     }
     const std::string request = std::exchange(request_, "");

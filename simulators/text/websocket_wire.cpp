@@ -31,9 +31,9 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 /// What a client may say at once.
-constexpr std::size_t kLongestSaid = 4096;
+constexpr std::size_t kMaxSaid = 4096;
 /// More than this waits only for a client that does not read: it is dropped.
-constexpr std::size_t kMostWaiting = 1000;
+constexpr std::size_t kMaxWaiting = 1000;
 
 /// A client from its request on. Its handlers own it, so that it outlives what is under way.
 class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
@@ -53,7 +53,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
     const bool is_whole = bytes.ends_with('\n');
     while (bytes.ends_with('\n') || bytes.ends_with('\r')) bytes.remove_suffix(1);
     waiting_.push_back({std::string(bytes), is_whole});
-    if (waiting_.size() > kMostWaiting) return end();
+    if (waiting_.size() > kMaxWaiting) return end();
     send_next();
   }
   /// What it has said, each message with a line's end.
@@ -79,7 +79,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
       return refuse(http::status::unauthorized);
     if (!websocket::is_upgrade(request_) || !std::string_view(request_.target()).starts_with(options_.path))
       return refuse(http::status::not_found);
-    stream_.read_message_max(kLongestSaid);
+    stream_.read_message_max(kMaxSaid);
     stream_.auto_fragment(false);
     stream_.async_accept(request_, [self = shared_from_this()](const error_code& error) {
       if (error) return self->end();
@@ -118,7 +118,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
   websocket::stream<tcp::socket, false> stream_;
   WebSocketWireOptions options_;
   bool is_refused_;
-  beast::flat_buffer buffer_{kLongestSaid};
+  beast::flat_buffer buffer_{kMaxSaid};
   http::request<http::empty_body> request_;
   std::deque<Frame> waiting_;
   std::string said_;

@@ -9,7 +9,7 @@ namespace yuragi::simulators::usb {
 namespace {
 
 constexpr double kKeptFor_s = 5.0;  // longer than a slow virtual machine takes to fetch a report
-constexpr std::size_t kLongestQueue = 256;
+constexpr std::size_t kMaxQueue = 256;
 constexpr std::uint8_t kTheEndpoint = 1;
 
 // bmRequestType and bRequest of the HID class (7.2).
@@ -145,7 +145,7 @@ bool HidModel::out(std::uint8_t endpoint, std::span<const std::uint8_t> data) {
 }
 
 void HidModel::queue_report(UsbBytes report, double delay_s) {
-  if (waiting_.size() == kLongestQueue) waiting_.pop_front();
+  if (waiting_.size() == kMaxQueue) waiting_.pop_front();
   waiting_.push_back({now_s_ + delay_s, std::move(report)});
 }
 

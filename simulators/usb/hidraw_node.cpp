@@ -22,9 +22,9 @@ constexpr std::uint16_t kHidrawOutputReport = 2;
 constexpr std::uint16_t kHidrawFeatureReport = 3;
 
 constexpr std::uint8_t kInterruptEndpoint = 3;
-constexpr std::size_t kMostReports = 64;       // HIDRAW_BUFFER_SIZE
-constexpr std::size_t kLongestReport = 16384;  // HID_MAX_BUFFER_SIZE
-constexpr double kTimeout_s = 5.0;             // USB_CTRL_GET_TIMEOUT
+constexpr std::size_t kMaxReports = 64;    // HIDRAW_BUFFER_SIZE
+constexpr std::size_t kMaxReport = 16384;  // HID_MAX_BUFFER_SIZE
+constexpr double kTimeout_s = 5.0;         // USB_CTRL_GET_TIMEOUT
 
 /// An ioctl's number without the size that is part of it.
 constexpr unsigned long without_size(unsigned long request) {
@@ -84,7 +84,7 @@ void HidrawNode::read_reports() {
   reading_ = host_->submit(std::move(transfer), [this](const UsbOutcome& outcome) {
     reading_.reset();
     if (outcome.is_refused) return;
-    if (reports_.size() < kMostReports) reports_.push_back(outcome.data);
+    if (reports_.size() < kMaxReports) reports_.push_back(outcome.data);
     read_reports();
   });
 }
@@ -170,7 +170,7 @@ void HidrawNode::obey_ioctl(ProgramCall call) {
 // wire.
 
 void HidrawNode::get_report(ProgramCall call, const ProgramMemory& buffer, std::uint16_t type) {
-  if (buffer.bytes().size() < 2 || buffer.bytes().size() > kLongestReport) return call.fail(EINVAL);
+  if (buffer.bytes().size() < 2 || buffer.bytes().size() > kMaxReport) return call.fail(EINVAL);
   const std::uint8_t number = buffer.bytes()[0];
   const std::size_t skipped = number == 0 ? 1 : 0;
   UsbTransfer transfer;
@@ -187,7 +187,7 @@ void HidrawNode::get_report(ProgramCall call, const ProgramMemory& buffer, std::
 }
 
 void HidrawNode::set_report(ProgramCall call, std::span<const std::uint8_t> report, std::uint16_t type) {
-  if (report.size() < 2 || report.size() > kLongestReport) return call.fail(EINVAL);
+  if (report.size() < 2 || report.size() > kMaxReport) return call.fail(EINVAL);
   const std::uint8_t number = report[0];
   const std::size_t whole = report.size();
   if (number == 0) report = report.subspan(1);

@@ -23,7 +23,7 @@ namespace {
 constexpr std::uint8_t kCommandEndpoint = 1;
 constexpr std::uint8_t kReplyEndpoint = 2;
 constexpr std::size_t kFrameHeader = 6;
-constexpr std::size_t kMostReplies = 16;
+constexpr std::size_t kMaxReplies = 16;
 constexpr std::uint32_t kSerialNumber = 320'012'345;
 constexpr std::uint8_t kCounterPin = 4;  // where the cup is wired to: FIO4
 /// Error codes. The maker has a list; that these are the right ones of it is unconfirmed. None is 0.
@@ -136,7 +136,7 @@ class Labjack final : public UsbDevice {
     if (std::optional<UsbBytes> reply = reply_to(data)) {
       (fault_ == core::FaultKind::kLate ? late_ : replies_).push_back(spoilt(std::move(*reply)));
     }
-    while (replies_.size() > kMostReplies) replies_.pop_front();
+    while (replies_.size() > kMaxReplies) replies_.pop_front();
     return true;
   }
 

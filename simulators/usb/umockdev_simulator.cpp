@@ -20,7 +20,7 @@ constexpr const char* kRootHub = "/devices/pci0000:00/0000:00:14.0/usb1";
 constexpr std::uint8_t kHidClass = 3;
 constexpr unsigned kUsbMajor = 189;
 constexpr unsigned kHidrawMajor = 241;
-constexpr unsigned kMostDeviceNumbers = 127;
+constexpr unsigned kMaxDeviceNumbers = 127;
 
 std::string hex(std::span<const std::uint8_t> bytes) {
   return fmt::format("{:02X}", fmt::join(bytes, ""));
@@ -53,7 +53,7 @@ struct UmockdevSimulator::State {
     Socket& socket = *sockets[index];
     const UsbSummary& summary = socket.port->summary();
     const bool is_hid = !summary.interfaces.empty() && summary.interfaces[0].device_class == kHidClass;
-    device_number = device_number % kMostDeviceNumbers + 1;
+    device_number = device_number % kMaxDeviceNumbers + 1;
     PluggedDevice device;
     const std::string usb_path = fmt::format("{}/1-{}", kRootHub, index + 1);
     const std::string usb_node = fmt::format("bus/usb/001/{:03}", device_number);

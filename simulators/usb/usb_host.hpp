@@ -41,7 +41,7 @@ class UsbHost {
 
   /// Calls the functions of the transfers that have completed; these may submit others.
   void serve() {
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       const auto outcomes = port_.take_outcomes();
       if (outcomes.empty()) return;
       for (const UsbOutcome& outcome : outcomes) {
@@ -51,7 +51,7 @@ class UsbHost {
   }
 
  private:
-  static constexpr int kMostRounds = 64;  // a device that never stops talking must not keep the others waiting
+  static constexpr int kMaxRounds = 64;  // a device that never stops talking must not keep the others waiting
 
   UsbPort& port_;
   std::uint64_t last_id_ = 0;

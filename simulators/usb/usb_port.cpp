@@ -12,10 +12,10 @@ constexpr std::array kFaultsOfAPort = {core::FaultKind::kSilence, core::FaultKin
                                        core::FaultKind::kUnplug};
 
 /// The most transfers that a host may have pending; a kernel has a few.
-constexpr std::size_t kMostWaiting = 1024;
+constexpr std::size_t kMaxWaiting = 1024;
 
 /// The most messages that are read and dropped at once: a device that always has data would never be empty.
-constexpr int kMostLost = 1000;
+constexpr int kMaxLost = 1000;
 
 }  // namespace
 
@@ -45,14 +45,14 @@ void UsbPort::advance(double time_s, std::optional<core::FaultKind> fault) {
 void UsbPort::lose_what_waits() {
   for (const UsbEndpoint& endpoint : summary_.endpoints) {
     if ((endpoint.address & 0x80U) == 0) continue;
-    for (int i = 0; i < kMostLost; ++i) {
+    for (int i = 0; i < kMaxLost; ++i) {
       if (!device_->in(endpoint.address & 0x0FU, endpoint.max_packet_size)) break;
     }
   }
 }
 
 void UsbPort::submit(UsbTransfer transfer) {
-  if (is_plugged_in_ && waiting_.size() < kMostWaiting) waiting_.push_back(std::move(transfer));
+  if (is_plugged_in_ && waiting_.size() < kMaxWaiting) waiting_.push_back(std::move(transfer));
 }
 
 bool UsbPort::cancel(std::uint64_t id) {

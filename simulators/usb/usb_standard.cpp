@@ -28,7 +28,7 @@ constexpr std::uint8_t kHidDescriptor = 0x21;
 constexpr std::uint8_t kHidReportDescriptor = 0x22;
 
 constexpr std::uint16_t kLanguageEnglish = 0x0409;
-constexpr std::size_t kLongestString = 126;  // bLength is one byte, a character is two
+constexpr std::size_t kMaxString = 126;  // bLength is one byte, a character is two
 
 std::uint8_t byte_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return at < bytes.size() ? bytes[at] : std::uint8_t{0};
@@ -48,7 +48,7 @@ void each_descriptor(std::span<const std::uint8_t> configuration, Use&& use) {
 }
 
 UsbBytes string_descriptor(const std::string& text) {
-  const std::size_t length = std::min(text.size(), kLongestString);
+  const std::size_t length = std::min(text.size(), kMaxString);
   UsbBytes bytes = {static_cast<std::uint8_t>(2 + 2 * length), kStringDescriptor};
   for (const char c : text.substr(0, length)) {
     bytes.push_back(static_cast<std::uint8_t>(c));

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kCapabilities =
     USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_NO_PACKET_SIZE_LIM | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
 constexpr std::size_t kSetupSize = 8;
-constexpr int kLongestBuffer = 64 * 1024;
+constexpr int kMaxBuffer = 64 * 1024;
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void UsbfsNode::submit(ProgramCall call) {
   if (urb.memory.bytes().size() < sizeof(usbdevfs_urb)) return call.fail(EFAULT);
   usbdevfs_urb head;  // its last member has no size: it cannot be initialised in standard C++
   std::memcpy(&head, urb.memory.bytes().data(), sizeof head);
-  if (head.buffer_length < 0 || head.buffer_length > kLongestBuffer) return call.fail(EINVAL);
+  if (head.buffer_length < 0 || head.buffer_length > kMaxBuffer) return call.fail(EINVAL);
   const auto length = static_cast<std::size_t>(head.buffer_length);
   urb.buffer = urb.memory.pointed_to(offsetof(usbdevfs_urb, buffer), length);
   std::span<const std::uint8_t> bytes = urb.buffer.bytes();

@@ -19,8 +19,8 @@ namespace asio = boost::asio;
 using tcp = asio::ip::tcp;
 
 /// A host that leaves so many bytes unread has gone, or is hostile.
-constexpr std::size_t kMostUnread = std::size_t{1024} * 1024;
-constexpr std::size_t kMostClients = 64;
+constexpr std::size_t kMaxUnread = std::size_t{1024} * 1024;
+constexpr std::size_t kMaxClients = 64;
 
 }  // namespace
 
@@ -65,7 +65,7 @@ struct UsbipServer::State {
     for (boost::system::error_code error;;) {
       tcp::socket socket = acceptor.accept(error);
       if (error) return;
-      if (clients.size() >= kMostClients) continue;
+      if (clients.size() >= kMaxClients) continue;
       socket.non_blocking(true, error);
       socket.set_option(tcp::no_delay(true), error);
       clients.push_back(std::make_unique<Client>(std::move(socket)));
@@ -90,7 +90,7 @@ struct UsbipServer::State {
       client.out.erase(client.out.begin(), client.out.begin() + static_cast<std::ptrdiff_t>(size));
     }
     const bool is_broken = error && error != asio::error::would_block;
-    if (is_broken || client.out.size() > kMostUnread || (client.ends_after_reply && client.out.empty())) {
+    if (is_broken || client.out.size() > kMaxUnread || (client.ends_after_reply && client.out.empty())) {
       client.is_gone = true;
     }
   }

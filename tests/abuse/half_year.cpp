@@ -65,9 +65,9 @@ void record(std::span<char*> arguments) {
   std::uint64_t pushed = 0;
   std::uint64_t looks = 0;
   // The clock goes on by six hours at most between two commits.
-  constexpr std::uint64_t kMostAtOnce = 5000;
+  constexpr std::uint64_t kMaxAtOnce = 5000;
   const std::uint64_t at_once =
-      std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::chrono::hours(6) / interval), 1, kMostAtOnce);
+      std::clamp<std::uint64_t>(static_cast<std::uint64_t>(std::chrono::hours(6) / interval), 1, kMaxAtOnce);
   for (Nanoseconds since{0}; since < days; since += interval) {
     wind::WindReading reading;
     reading.time = {begin.mono + since, begin.utc + since};

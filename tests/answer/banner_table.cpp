@@ -49,7 +49,7 @@ class BannerMeter final : public Meter {
     }
     const auto quick_sd_m = [&](Joint joint) { return welch.of(across_m(joint)).deviation_above(kAcrossFrom_hz); };
     // Of ways aside, not of slopes down the thread: a wave that grows slopes with a phase of its own.
-    const Lag lag = lag_of(quick_m(Joint::kHalf), quick_m(Joint::kLate), kRate_hz, -kLongestLag_s, kLongestLag_s);
+    const Lag lag = lag_of(quick_m(Joint::kHalf), quick_m(Joint::kLate), kRate_hz, -kMaxLag_s, kMaxLag_s);
     return {
         {"arm against the wind of 3 s, rms", arm_against_wind_deg(wind)},
         {"free corner across, sd / width", quick_sd_m(Joint::kTip) / width_m_},
@@ -74,7 +74,7 @@ class BannerMeter final : public Meter {
  private:
   using Joint = ClothThreads::Joint;
   static constexpr std::size_t kPole = 0, kFree = 1;  ///< its two sides
-  static constexpr double kLongestLag_s = 1.5;
+  static constexpr double kMaxLag_s = 1.5;
 
   explicit BannerMeter(const pose::GridSkeleton& grid)
       : columns_(grid.columns),

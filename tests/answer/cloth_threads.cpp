@@ -11,7 +11,7 @@ namespace yuragi::answer {
 namespace {
 
 /// A wave that takes longer between two places of a cloth than this is none that the wind carries.
-constexpr double kLongestLag_s = 1.5;
+constexpr double kMaxLag_s = 1.5;
 
 std::size_t row_at(std::size_t rows, double way) {
   return static_cast<std::size_t>(std::lround(way * static_cast<double>(rows - 1)));
@@ -61,7 +61,7 @@ Series ClothThreads::slope(std::size_t thread, Joint from, Joint to, Horizontal 
 
 Lag ClothThreads::lag(std::size_t thread, Horizontal aside) const {
   return lag_of(slope(thread, Joint::kHalf, Joint::kHalfNext, aside),
-                slope(thread, Joint::kLate, Joint::kLateNext, aside), kRate_hz, -kLongestLag_s, kLongestLag_s);
+                slope(thread, Joint::kLate, Joint::kLateNext, aside), kRate_hz, -kMaxLag_s, kMaxLag_s);
 }
 
 double ClothThreads::speed_m_s(Lag lag) const {

@@ -111,7 +111,7 @@ class FurMeter final : public Meter {
     std::vector<double> speeds_m_s;
     for (const double distance_m : {0.13, 0.195, 0.26}) {
       speeds_m_s.push_back(field_speed_m_s(
-          field, {.distance_m = distance_m, .along_tolerance_m = 0.02, .across_tolerance_m = 0.03, .most = kMostPairs},
+          field, {.distance_m = distance_m, .along_tolerance_m = 0.02, .across_tolerance_m = 0.03, .most = kMaxPairs},
           kRate_hz, kSlowest_m_s));
     }
     return {
@@ -136,7 +136,7 @@ class FurMeter final : public Meter {
   static constexpr double kExposed = 1.0 / 6.0;
   static constexpr double kOwnFrom_hz = 0.3;
   static constexpr double kSlowest_m_s = 0.15;
-  static constexpr std::size_t kMostPairs = 48;
+  static constexpr std::size_t kMaxPairs = 48;
 
   explicit FurMeter(const pose::StrandSkeleton& hairs) : FurMeter(hairs, hairs_of(hairs)) {}
   FurMeter(const pose::StrandSkeleton& strands, const std::vector<std::size_t>& hairs)

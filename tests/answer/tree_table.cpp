@@ -126,15 +126,15 @@ class TreeMeter final : public Meter {
 
  private:
   static constexpr std::size_t kLimbs = 1, kTwigs = 2, kLeaves = 3;  ///< levels, in the order in which they grow
-  static constexpr std::size_t kMostTwigs = 60, kMostLeaves = 100;
+  static constexpr std::size_t kMaxTwigs = 60, kMaxLeaves = 100;
 
   explicit TreeMeter(const pose::TreeSkeleton& tree)
       : trunk_({0}, 0),
         limbs_(spread(strands_in(tree, kLimbs), strands_in(tree, kLimbs)), kLimbs),
-        twigs_(spread(strands_in(tree, kTwigs), kMostTwigs), kTwigs),
-        leaves_(spread(strands_in(tree, kLeaves), kMostLeaves), kLeaves),
-        twig_speeds_(tips(tree, kTwigs, kMostTwigs)),
-        leaf_speeds_(tips(tree, kLeaves, kMostLeaves)) {}
+        twigs_(spread(strands_in(tree, kTwigs), kMaxTwigs), kTwigs),
+        leaves_(spread(strands_in(tree, kLeaves), kMaxLeaves), kLeaves),
+        twig_speeds_(tips(tree, kTwigs, kMaxTwigs)),
+        leaf_speeds_(tips(tree, kLeaves, kMaxLeaves)) {}
 
   static std::size_t strands_in(const pose::TreeSkeleton& tree, std::size_t level) {
     return tree.levels[level].strands.strand_count;

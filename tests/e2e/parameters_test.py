@@ -102,7 +102,7 @@ class Parameters(reload_test.RunningDaemon):
         told = self.refused(64, "look", "set", "haze=4").removeprefix("yuragi: ").strip()
         self.assertIn("look.haze: is 4; allowed: number from 0 to 1", told)
         self.assertIn(told, of_file.stderr)
-        self.assertIn("look.mist: is not a parameter here; known: ", self.refused(64, "look", "set", "mist=1"))
+        self.assertIn("look.mist: is not a known key here; known: ", self.refused(64, "look", "set", "mist=1"))
         self.assertIn('there is no scene "oak"; there are: grass, elm', self.refused(64, "scene", "set", "oak", "gain=1"))
         self.assertIn('there is no scene "oak"; there are: grass, elm', self.refused(64, "scene", "values", "oak"))
         self.assertIn("scene.gain: is -1; allowed: number from 0 to 10", self.refused(64, "scene", "set", "elm", "x=1", "gain=-1"))

@@ -256,7 +256,7 @@ class Reload(RunningDaemon):
             make()
             done = reload("--connect", self.address)
             self.assertEqual(done.returncode, 78, kind)
-            self.assertRegex(done.stderr, "wall.toml:1:1: file: (cannot be read|does not exist|is no regular file|is too large)", kind)
+            self.assertRegex(done.stderr, "wall.toml:1:1: file: (cannot be read|does not exist|is not a regular file|is too large)", kind)
             frames.more(2)
             if kind == "gone":
                 self.write("")  # to be put aside

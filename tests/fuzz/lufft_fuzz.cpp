@@ -26,7 +26,7 @@ void require(bool holds) {
 void read_frame(decode::ByteSpan frame) {
   const auto reply = decode::lufft::decode_umb_reply({}, frame);
   if (!reply) return;
-  require(reply->count <= decode::lufft::kMostUmbChannels);
+  require(reply->count <= decode::lufft::kMaxUmbChannels);
   const auto wind = decode::lufft::wind_of(*reply);
   require(!wind || decode::checked(*wind).has_value());
   static_cast<void>(wind::plausible_part(decode::lufft::quantities_of(*reply)));

@@ -23,11 +23,11 @@ bool is_part(double value) {
 }
 
 void demand_that_it_can_be_shown(const output::Output& wall) {
-  demand(!wall.windows.empty() && wall.windows.size() <= output::kMostWindows);
+  demand(!wall.windows.empty() && wall.windows.size() <= output::kMaxWindows);
   demand(wall.refreshes >= 1);
   if (wall.size) {
-    demand(wall.size->width_px > 0 && wall.size->width_px <= output::kLargestSide_px);
-    demand(wall.size->height_px > 0 && wall.size->height_px <= output::kLargestSide_px);
+    demand(wall.size->width_px > 0 && wall.size->width_px <= output::kMaxSide_px);
+    demand(wall.size->height_px > 0 && wall.size->height_px <= output::kMaxSide_px);
   }
   if (wall.screen) {
     for (const output::RoomPlace& place :
@@ -64,7 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     demand(std::string_view(outputs.error().message).starts_with("wall.toml"));
     return 0;
   }
-  demand(outputs->size() <= output::kMostOutputs);
+  demand(outputs->size() <= output::kMaxOutputs);
   for (const output::Output& wall : *outputs) demand_that_it_can_be_shown(wall);
   return 0;
 }

@@ -24,8 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   const std::size_t pixels = std::size_t{picture->width_px} * picture->height_px;
-  if (pixels == 0 || pixels > look::Image::kMostPixels || picture->rgb.size() != 3 * pixels) std::abort();
-  if (picture->width_px > look::Image::kLongestSide_px || picture->height_px > look::Image::kLongestSide_px)
-    std::abort();
+  if (pixels == 0 || pixels > look::Image::kMaxPixels || picture->rgb.size() != 3 * pixels) std::abort();
+  if (picture->width_px > look::Image::kMaxSide_px || picture->height_px > look::Image::kMaxSide_px) std::abort();
   return 0;
 }

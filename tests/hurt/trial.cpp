@@ -77,8 +77,8 @@ Message made_by(const Protocol& protocol, Chance& chance) {
 }
 
 void keep_example(std::vector<std::string>& examples, std::string_view bytes) {
-  constexpr std::size_t kMostExamples = 20;
-  if (examples.size() < kMostExamples) examples.push_back(printable(bytes));
+  constexpr std::size_t kMaxExamples = 20;
+  if (examples.size() < kMaxExamples) examples.push_back(printable(bytes));
 }
 
 }  // namespace

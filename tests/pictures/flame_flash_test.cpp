@@ -24,7 +24,7 @@ constexpr double kLength_s = 1.7;  // YURAGI_FLASH_S sets another length
 /// In the storm's gusts after it sparks of a pixel cross one place again and again: when they were as bright as large
 /// ones 0.30 of a field flashed.
 constexpr double kSettling_s = 13.6;
-constexpr double kMostShare = 0.25;  // of a field, W3C
+constexpr double kMaxShare = 0.25;  // of a field, W3C
 
 double length_s() {
   const char* const wanted = std::getenv("YURAGI_FLASH_S");  // NOLINT(concurrency-mt-unsafe): nobody sets it
@@ -59,8 +59,8 @@ FlashMeter seen(const Weather& weather) {
 
 TEST_P(FlameFlash, FlashesNoMoreThanThreeTimesInASecond) {
   const FlashMeter meter = seen(GetParam());
-  EXPECT_LE(meter.general_share(), kMostShare);
-  EXPECT_LE(meter.red_share(), kMostShare);
+  EXPECT_LE(meter.general_share(), kMaxShare);
+  EXPECT_LE(meter.red_share(), kMaxShare);
   EXPECT_FALSE(meter.has_field_that_flashes());
   std::printf("%s: of a field %.3f flash, red %.3f\n", std::string(GetParam().name).c_str(), meter.general_share(),
               meter.red_share());

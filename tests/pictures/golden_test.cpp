@@ -24,12 +24,12 @@ namespace {
 // 0.29 and no square changed; with shaders computed 4 pixels at a time in place of 8, not a bit. To be seen: the least
 // that a scene in the next stronger or weaker wind differs by is 0.013 of the squares (a poplar in a breeze, from calm
 // air). (One sample a pixel in place of 4 changes up to 0.12.)
-constexpr double kMostMean = 0.60;
-constexpr double kMostChangedPart = 0.001;
+constexpr double kMaxMean = 0.60;
+constexpr double kMaxChangedPart = 0.001;
 
 bool is_like(const Picture& a, const Picture& b) {
   const PictureDifference differs = difference(a, b);
-  return differs.mean <= kMostMean && differs.changed_part <= kMostChangedPart;
+  return differs.mean <= kMaxMean && differs.changed_part <= kMaxChangedPart;
 }
 
 testing::AssertionResult is_golden(const Picture& picture, const std::string& file) {
@@ -54,7 +54,7 @@ testing::AssertionResult is_golden(const Picture& picture, const std::string& fi
              "differs from the golden picture {}: mean {:.2f} (allowed {:.2f}), changed part {:.4f} (allowed "
              "{:.4f})\ndrawn:      {}\ngolden:     {}\ndifference: {}\nIf what is drawn is right: "
              "tests/pictures/renew.sh",
-             file, differs.mean, kMostMean, differs.changed_part, kMostChangedPart, drawn, save("golden", *golden),
+             file, differs.mean, kMaxMean, differs.changed_part, kMaxChangedPart, drawn, save("golden", *golden),
              save("difference", difference_picture(picture, *golden)));
 }
 

@@ -26,7 +26,7 @@ namespace {
 constexpr int kSkipped = 77;
 constexpr double kNoiseBound_db = 1.0;
 /// An octave in which the tiles have hardly a wave says nothing about them: this part of the noise above kToHz.
-constexpr double kLeastShare = 0.02;
+constexpr double kMinShare = 0.02;
 
 /// What is asked of a sensor's interval.
 struct Bounds {
@@ -39,18 +39,18 @@ constexpr Bounds kQuick = {1.5, 0.85, 1.1, 0.01, 0.9};
 constexpr Bounds kSlow = {4.0, 0.7, 1.3, 0.03, 0.88};
 /// Of what passes along the ground, far from the sensor: octaves over those at the sensor, variance over the record's.
 constexpr double kBladeOctave_db = 4.0;
-constexpr double kLeastBladeVariance = 0.85;
-constexpr double kMostBladeVariance = 1.15;
+constexpr double kMinBladeVariance = 0.85;
+constexpr double kMaxBladeVariance = 1.15;
 /// Above kToHz, of a quick sensor: to kFastHz and from there on, over the record with its folding taken out.
 constexpr double kFastHz = 2.4;
 constexpr double kFast_db = 4.0;
 constexpr double kFastest_db = 6.0;
 /// How sharp gusts are, of a quick sensor and with gustiness: over the record's. (4.0 to 5.2 of 4.7, what records of
 /// steady wind have; where the wind swells and dies away in half an hour, the record itself has 6.)
-constexpr double kLeastKurtosis = 0.85;
-constexpr double kMostKurtosis = 1.1;
-constexpr double kLeastFar = 0.6;
-constexpr double kMostFar = 1.4;
+constexpr double kMinKurtosis = 0.85;
+constexpr double kMaxKurtosis = 1.1;
+constexpr double kMinFar = 0.6;
+constexpr double kMaxFar = 1.4;
 /// From this interval on a sensor is slow.
 constexpr double kSlow_s = 5.0;
 
@@ -127,14 +127,14 @@ void judge_fast(const BlendComparison& blend, Verdict& verdict) {
   }
   if (blend.gustiness == 0.0) return;
   const double kurtosis = blend.increments.kurtosis / blend.record_increments.kurtosis;
-  verdict.check(is_within(kurtosis, kLeastKurtosis, kMostKurtosis),
+  verdict.check(is_within(kurtosis, kMinKurtosis, kMaxKurtosis),
                 fmt::format("kurtosis of increments over {:g} s {:g} to {:g} of the record's: {:.2f} ({:.2f}, {:.2f})",
-                            kIncrement_s, kLeastKurtosis, kMostKurtosis, kurtosis, blend.increments.kurtosis,
+                            kIncrement_s, kMinKurtosis, kMaxKurtosis, kurtosis, blend.increments.kurtosis,
                             blend.record_increments.kurtosis));
   const double far = blend.increments.far_part / blend.record_increments.far_part;
-  verdict.check(is_within(far, kLeastFar, kMostFar),
+  verdict.check(is_within(far, kMinFar, kMaxFar),
                 fmt::format("increments beyond 4 sigma {:g} to {:g} times as frequent as in the record: {:.2f}",
-                            kLeastFar, kMostFar, far));
+                            kMinFar, kMaxFar, far));
 }
 
 void judge(const BlendComparison& blend, Verdict& verdict) {
@@ -155,7 +155,7 @@ void judge(const BlendComparison& blend, Verdict& verdict) {
   double all = 0.0;
   for (const double power : blend.model_above) all += power;
   for (std::size_t i = 0; i < blend.above.size(); ++i) {
-    if (blend.model_above[i] < kLeastShare * all) continue;
+    if (blend.model_above[i] < kMinShare * all) continue;
     verdict.check(std::abs(blend.synthetic_above[i]) <= kNoiseBound_db,
                   fmt::format("noise at {} Hz within {:g} dB of its model: {:+.2f}", name_of(blend.above[i]),
                               kNoiseBound_db, blend.synthetic_above[i]));
@@ -164,11 +164,11 @@ void judge(const BlendComparison& blend, Verdict& verdict) {
   for (std::size_t i = 0; i < kBlades.size(); ++i) {
     const PlaceComparison& blade = blend.blades[i];
     const double octaves_db = furthest_apart(blade.octaves, blend.signal.octaves);
-    verdict.check(octaves_db <= kBladeOctave_db && is_within(blade.variance, kLeastBladeVariance, kMostBladeVariance),
+    verdict.check(octaves_db <= kBladeOctave_db && is_within(blade.variance, kMinBladeVariance, kMaxBladeVariance),
                   fmt::format("blade {} ({:g} m east, {:g} m south): octaves within {:g} dB of the sensor's place: "
                               "{:.2f}; variance {:g} to {:g} of the record's: {:.3f}",
                               i + 1, kBlades[i].east_m, kBlades[i].south_m, kBladeOctave_db, octaves_db,
-                              kLeastBladeVariance, kMostBladeVariance, blade.variance));
+                              kMinBladeVariance, kMaxBladeVariance, blade.variance));
   }
 }
 

@@ -52,10 +52,10 @@ constexpr double kDelayReach_m = 30.0 * std::numbers::sqrt2;
 /// Beyond the way over the wind's speed, what is left of a wave lags by a part of it between these: what is lost is
 /// lost by the bands' causal low passes, and all waves are read sooner by what they lag together. Slow waves lag most,
 /// and quick ones are a little early.
-constexpr double kLeastLag = -0.03;
-constexpr double kMostLag = 0.25;
+constexpr double kMinLag = -0.03;
+constexpr double kMaxLag = 0.25;
 /// Where less is left of a wave than this part, it is noise that moves the place.
-constexpr double kLeastKept = 0.5;
+constexpr double kMinKept = 0.5;
 
 double turn_rad_s(double frequency_hz) {
   return 2.0 * std::numbers::pi * frequency_hz;
@@ -288,7 +288,7 @@ void expect_on_time_at_places(const Passage& passage) {
   fmt::print("| --- | --- | --- | --- | --- | --- |\n");
   for (std::size_t i = 0; i < passage.pairs().size(); ++i) {
     for (std::size_t place = 0; place < kDelayPlaces.size(); ++place) {
-      if (passage.kept(i, place) < kLeastKept) continue;
+      if (passage.kept(i, place) < kMinKept) continue;
       const double crossing_s = passage.crossing_s(place);
       const double derived_s = passage.derived_lag_s(i, place);
       const double measured_s = passage.lag_s(i, place);
@@ -296,9 +296,9 @@ void expect_on_time_at_places(const Passage& passage) {
       fmt::print("| {:.4g} | {} | {:.2f} | {:.3f} | {:.3f} | {:.2f} |\n", centre_hz, kDelayPlaces.at(place).name,
                  crossing_s, derived_s, measured_s, passage.kept(i, place));
       EXPECT_NEAR(measured_s, derived_s, kDelayTick_s) << kDelayPlaces.at(place).name << ", " << centre_hz << " Hz";
-      EXPECT_GE(measured_s, kLeastLag * crossing_s - kDelayTick_s)
+      EXPECT_GE(measured_s, kMinLag * crossing_s - kDelayTick_s)
           << kDelayPlaces.at(place).name << ", " << centre_hz << " Hz";
-      EXPECT_LE(measured_s, kMostLag * crossing_s + kDelayTick_s)
+      EXPECT_LE(measured_s, kMaxLag * crossing_s + kDelayTick_s)
           << kDelayPlaces.at(place).name << ", " << centre_hz << " Hz";
     }
   }

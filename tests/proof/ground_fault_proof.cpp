@@ -30,8 +30,8 @@ constexpr double kChangeEnd_s = 660.0;
 constexpr double kRecordEnd_s = 1800.0;
 constexpr double kSilenceEnd_s = kChange_s + 100.0;
 constexpr std::uint64_t kGroundSeeds = 3;
-constexpr double kMostStep = 1.5;
-constexpr double kMostSpeed = 1.3;
+constexpr double kMaxStep = 1.5;
+constexpr double kMaxSpeed = 1.3;
 
 /// How a wind has moved.
 struct Motion {
@@ -209,9 +209,9 @@ TEST_P(GroundFaults, NoPlaceMovesMuchMoreThanItMovesAnyway) {
     const double speed = at_places[i].highest_speed_m_s / usual.highest_speed_m_s;
     fmt::print("| {} | {:.3f} | {:.3f} | {:.2f} | {:.2f} | {:.2f} |\n", cases[i].name, at_places[i].largest_step_m_s,
                at_sensor[i].largest_step_m_s, step, at_places[i].highest_speed_m_s, speed);
-    EXPECT_LE(step, kMostStep) << cases[i].name;
+    EXPECT_LE(step, kMaxStep) << cases[i].name;
     if (cases[i].is_stronger_wind) continue;
-    EXPECT_LE(speed, kMostSpeed) << cases[i].name;
+    EXPECT_LE(speed, kMaxSpeed) << cases[i].name;
   }
 }
 

@@ -113,12 +113,12 @@ class WindowTest : public testing::Test {
   /// What is seen when nothing changes any more.
   ScreenPixels settled() const {
     constexpr int kStill = 50;  // a second, so that a machine that is busy has drawn meanwhile
-    constexpr double kLeastChange = 0.5;
+    constexpr double kMinChange = 0.5;
     ScreenPixels before = screen_.pixels();
     int still = 0;
     EXPECT_TRUE(comes_true([&] {
       ScreenPixels now = screen_.pixels();
-      still = difference(now, before, kWindow) < kLeastChange ? still + 1 : 0;
+      still = difference(now, before, kWindow) < kMinChange ? still + 1 : 0;
       before = std::move(now);
       return still == kStill;
     }));

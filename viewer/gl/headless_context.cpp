@@ -11,7 +11,7 @@
 namespace yuragi::viewer::gl {
 namespace {
 
-constexpr EGLint kMostDevices = 16;
+constexpr EGLint kMaxDevices = 16;
 
 bool is_software(EGLDeviceEXT device) {
   const char* const extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
@@ -25,9 +25,9 @@ std::vector<EGLDisplay> displays(const HeadlessOptions& options) {
   std::vector<EGLDisplay> of_processor;
   if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") &&
       epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration")) {
-    std::array<EGLDeviceEXT, kMostDevices> devices{};
+    std::array<EGLDeviceEXT, kMaxDevices> devices{};
     EGLint count = 0;
-    if (eglQueryDevicesEXT(kMostDevices, devices.data(), &count) != EGL_TRUE) count = 0;
+    if (eglQueryDevicesEXT(kMaxDevices, devices.data(), &count) != EGL_TRUE) count = 0;
     for (EGLint i = 0; i < count; ++i) {
       const EGLDeviceEXT device = devices[static_cast<std::size_t>(i)];
       const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);

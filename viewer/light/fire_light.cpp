@@ -8,7 +8,7 @@
 namespace yuragi::viewer::light {
 namespace {
 
-constexpr double kLeastHeat = 0.01;
+constexpr double kMinHeat = 0.01;
 /// After a jump in time the light is what it is, as after the first picture; and where no time has passed: that is
 /// another stream, or a test.
 constexpr double kJump_s = 2.0;
@@ -45,7 +45,7 @@ float flame_brightness(float exposure) {
 }
 
 float FireFlicker::follow(float heat, double time_s) {
-  const double wanted = std::log(std::max(static_cast<double>(heat), kLeastHeat));
+  const double wanted = std::log(std::max(static_cast<double>(heat), kMinHeat));
   const double passed_s = std::abs(time_s - time_s_);
   if (!has_begun_ || passed_s == 0.0 || passed_s > kJump_s) {
     log_ = wanted;
@@ -56,7 +56,7 @@ float FireFlicker::follow(float heat, double time_s) {
   has_begun_ = true;
   time_s_ = time_s;
   const double shown = std::exp(log_);
-  return shown < 1.01 * kLeastHeat ? 0.0F : static_cast<float>(shown);
+  return shown < 1.01 * kMinHeat ? 0.0F : static_cast<float>(shown);
 }
 
 }  // namespace yuragi::viewer::light

@@ -20,7 +20,7 @@ constexpr int kColumnsInAHurry = 64;  // while the sky changes
 constexpr float kFilter_rad = 0.02F;   // columns aside that a filter reaches into
 constexpr float kDriftedAside = 6.0F;  // at most so far do clouds move aside in the map, of what they have drifted
 
-constexpr float kLowestSun = -0.12F;  // the sine of its height; farther below the clouds have the moon's light
+constexpr float kMinSun = -0.12F;  // the sine of its height; farther below the clouds have the moon's light
 
 }  // namespace
 
@@ -39,7 +39,7 @@ CloudMap::CloudMap() : program_(gl::link_program("clouds", gl::shaders::kDoorVer
 CloudMap::Sky CloudMap::sky_of(const light::Light& light) {
   return {.drift = {light.drift.x, light.drift.y},
           .clouds_begin = light.air.z,
-          .to_sun = glm::vec3(light.sun_disc.y > kLowestSun ? light.sun_disc : light.to_sun)};
+          .to_sun = glm::vec3(light.sun_disc.y > kMinSun ? light.sun_disc : light.to_sun)};
 }
 
 void CloudMap::draw_columns(const Map& map, int first, int count) {

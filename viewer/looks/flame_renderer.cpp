@@ -268,15 +268,15 @@ void FlameRenderer::draw_bowl_shade() {
   if (!(bowl_m.y > 0.05F && above_m > 0.05F)) return;
   const float drawn_out = bowl_m.y / above_m;
   const float radius_m = 1.15F * bowl_.embers_radius_m;
-  constexpr float kMostDrawnOut = 3.0F;
+  constexpr float kMaxDrawnOut = 3.0F;
   const glm::vec2 aside_m =
-      std::min(drawn_out, kMostDrawnOut) * glm::vec2(bowl_m.x - hot_middle_m_.x, bowl_m.z - hot_middle_m_.z);
+      std::min(drawn_out, kMaxDrawnOut) * glm::vec2(bowl_m.x - hot_middle_m_.x, bowl_m.z - hot_middle_m_.z);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(-2.0F, -2.0F);
   glUseProgram(shade_program_.name());
   glUniform4f(shade_place_, bowl_m.x + aside_m.x, bowl_m.z + aside_m.y,
-              radius_m * (0.6F + 0.3F * std::min(drawn_out, kMostDrawnOut)),
-              radius_m * (1.3F + 1.4F * std::min(drawn_out, kMostDrawnOut)));
+              radius_m * (0.6F + 0.3F * std::min(drawn_out, kMaxDrawnOut)),
+              radius_m * (1.3F + 1.4F * std::min(drawn_out, kMaxDrawnOut)));
   glBindVertexArray(no_attributes_.name());
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   glDisable(GL_POLYGON_OFFSET_FILL);

@@ -14,7 +14,7 @@ namespace {
 
 // Of the hairs of a limb: shorter ones are not seen; of those that are shorter than kAllHairs_px, a part is drawn, and
 // wider.
-constexpr float kSmallestHair_px = 2.0F;
+constexpr float kMinHair_px = 2.0F;
 constexpr float kAllHairs_px = 12.0F;
 
 /// Hairs a strand.
@@ -108,7 +108,7 @@ void FurRenderer::draw(const meshes::View& view) {
   const float distance_m = glm::distance(glm::vec3(view.eye_m), body_.middle_m);
   const float hair_px = limb_hair_m_ / (view.eye_m.w * std::max(distance_m, 1e-3F));
   const float part = std::min(hair_px / kAllHairs_px, 1.0F);
-  draw_skin(hair_px > kSmallestHair_px ? part * part : 0.0F);
+  draw_skin(hair_px > kMinHair_px ? part * part : 0.0F);
 }
 
 void FurRenderer::draw_shadow(const meshes::View& view) {

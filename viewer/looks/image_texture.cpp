@@ -6,7 +6,7 @@ namespace yuragi::viewer::looks {
 namespace {
 
 /// Samples along the longer side of a pixel's footprint: what lies flat is sharp at flat angles, too.
-constexpr float kMostAnisotropy = 8.0F;
+constexpr float kMaxAnisotropy = 8.0F;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ gl::GlTexture image_texture(const look::Image& image, GLint wrap) {
   if (wrap == GL_REPEAT && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic")) {
     float most = 1.0F;
     glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &most);
-    glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(most, kMostAnisotropy));
+    glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(most, kMaxAnisotropy));
   }
   return texture;
 }

@@ -29,9 +29,9 @@ int shadow_texels(look::Quality quality) {
   return 2048;
 }
 
-constexpr int kMirror = 2;           // a mirror's pixel is as large as so many of the picture, across and upright
-constexpr int kLowMirror = 3;        // with quality low
-constexpr float kLowestSun = 0.02F;  // the sine of its height: below it shadows have no end
+constexpr int kMirror = 2;        // a mirror's pixel is as large as so many of the picture, across and upright
+constexpr int kLowMirror = 3;     // with quality low
+constexpr float kMinSun = 0.02F;  // the sine of its height: below it shadows have no end
 
 constexpr float kShadowPixels = 2.5F;  // with quality low a shadow is drawn as coarsely as if its texels were so large
 constexpr float kSmallest_px = 2.0F;   // half as wide, nothing is drawn of a thing
@@ -217,7 +217,7 @@ void Stage::look_around(const stream::PoseMoment& moment, const meshes::View& vi
     const bool is_field = renderer.is_field();
     const meshes::Bounds box = with_room(views_[scene]->bounds);
     seen_[scene].in_picture = is_field || is_large_in_view(view, planes, box);
-    if (!renderer.casts_shadow() || to_sun.y <= kLowestSun) continue;
+    if (!renderer.casts_shadow() || to_sun.y <= kMinSun) continue;
     // It falls on whatever stands between the thing and the ground, too.
     const meshes::Bounds shadow = shadow_of(box, to_sun);
     seen_[scene].in_shadow = is_field || is_large_in_view(view, planes, united(box, shadow));
@@ -440,7 +440,7 @@ void Stage::draw(const stream::PoseMoment& moment, const meshes::OrbitCamera& ca
   meshes::View view = meshes::view_of(from, target.drawn_width_px(), target.drawn_height_px());
   if (clock_ != nullptr) clock_->begin();
   const glm::vec3 to_sun(light_.to_sun);
-  const bool has_shadows = to_sun.y > kLowestSun;
+  const bool has_shadows = to_sun.y > kMinSun;
   look_around(moment, view);
   move_to(moment);
   view_buffer_.set(light::nearest_fires(fires_, glm::vec3(view.eye_m)));

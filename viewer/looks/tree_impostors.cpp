@@ -12,7 +12,7 @@ namespace {
 constexpr int kPicture_px = 256;
 constexpr int kWidth_px = kPicture_px * static_cast<int>(meshes::trees::kImpostorSides);
 constexpr int kHeight_px = kPicture_px * static_cast<int>(meshes::trees::kImpostorRows);
-constexpr int kSmallestLevel = 5;  // a picture is 8 pixels wide there
+constexpr int kMinLevel = 5;  // a picture is 8 pixels wide there
 
 const void* offset_in_tree(std::size_t offset) {
   return reinterpret_cast<const void*>(offset);  // NOLINT(performance-no-int-to-ptr)
@@ -22,7 +22,7 @@ void make_atlas(GLint unit, const gl::GlTexture& texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, texture.name());
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, kWidth_px, kHeight_px, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, kSmallestLevel);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, kMinLevel);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);

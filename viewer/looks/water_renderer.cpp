@@ -265,7 +265,7 @@ void WaterRenderer::feel_ground(const GroundMaps& ground) {
   // A gust bends grass this much farther than the mean wind, radians, where it wakes the water wholly.
   constexpr float kGustAtRest_rad = 0.03F;
   constexpr float kGustPart = 0.15F;
-  constexpr float kMostCalmed = 0.8F;
+  constexpr float kMaxCalmed = 0.8F;
   // Foam comes to the lee shore from Beaufort 5 on: what floats is driven by waves that break.
   constexpr float kFoamFrom_m_s = 6.0F;
   constexpr float kFoamFull_m_s = 13.0F;
@@ -274,7 +274,7 @@ void WaterRenderer::feel_ground(const GroundMaps& ground) {
   const float mean_rad = glm::length(ground.mean_bend());
   for (std::size_t i = 0; i < gusts_.size(); ++i) {
     const float more_rad = glm::length(ground.bend_at(memory_m_[i])) - mean_rad;
-    gusts_[i] = std::clamp(more_rad / (kGustAtRest_rad + kGustPart * mean_rad), -kMostCalmed, 1.0F);
+    gusts_[i] = std::clamp(more_rad / (kGustAtRest_rad + kGustPart * mean_rad), -kMaxCalmed, 1.0F);
   }
   sum_up_breaking();
   memory_.advance_to(moment_.time_s, {.wind_m_s = moment_.wind_m_s, .gusts = gusts_, .breaking = breaking_});

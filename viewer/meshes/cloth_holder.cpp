@@ -30,13 +30,13 @@ glm::vec3 on_ground(const glm::vec3& place) {
 std::vector<glm::vec3> crests(const pose::GridSkeleton& cloth, const glm::vec3& aside) {
   constexpr float kFlat_m = 0.002F;
   constexpr float kEvery_m = 0.15F;
-  constexpr std::size_t kMostRings = 400;
+  constexpr std::size_t kMaxRings = 400;
   std::vector<glm::vec3> found;
   const auto out_m = [&](std::size_t column) { return glm::dot(cloth_joint(cloth, column, 0), aside); };
   for (std::size_t i = 1; i + 1 < cloth.columns; ++i) {
     const bool is_crest = (out_m(i) - out_m(i - 1)) * (out_m(i + 1) - out_m(i)) < 0.0F;
     const glm::vec3 place = cloth_joint(cloth, i, 0);
-    if (is_crest && found.size() < kMostRings && (found.empty() || glm::distance(found.back(), place) > kFlat_m))
+    if (is_crest && found.size() < kMaxRings && (found.empty() || glm::distance(found.back(), place) > kFlat_m))
       found.push_back(place);
   }
   if (found.size() >= 2) return found;

@@ -22,7 +22,7 @@ GridLayout refined(const GridLayout& joints, int level, int finer_down) {
     points.columns = refined(joints.columns, level);
     points.rows =
         refined(joints.rows, std::clamp(level + finer_down, 2 * ClothSurface::kCoarsest, ClothSurface::kFinest));
-  } while (points.columns * points.rows > ClothSurface::kMostPoints && --level >= ClothSurface::kCoarsest);
+  } while (points.columns * points.rows > ClothSurface::kMaxPoints && --level >= ClothSurface::kCoarsest);
   points.stride = points.columns;
   return points;
 }

@@ -21,10 +21,10 @@ class ClothSurface {
  public:
   static constexpr int kCoarsest = -4;  ///< a sixteenth of the joints along each side, but at least five
   static constexpr int kFinest = 2;     ///< four times as many
-  static constexpr std::size_t kMostPoints = std::size_t{1} << 18;
+  static constexpr std::size_t kMaxPoints = std::size_t{1} << 18;
 
   /// Of joints that lie so. 2 to the power of `level` cells for each cell of theirs along a row, of `level` and
-  /// `finer_down` along a column, but no more than kMostPoints points in all.
+  /// `finer_down` along a column, but no more than kMaxPoints points in all.
   ClothSurface(const GridLayout& joints, int level, int finer_down = 0);
 
   /// `joints`: all x, then all y, then all z.

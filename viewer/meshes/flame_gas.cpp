@@ -38,8 +38,8 @@ constexpr float kHeatPerStreamed = 1.5F;
 /// What is shown follows the gas with a time constant of 0.11 s, like a picture with a long exposure: flashes are
 /// weaker (flame_flash_test.cpp: in 20 s of calm 0.22 of a field flashes).
 constexpr float kShownPerStep = 0.145F;
-constexpr float kLeastHeat = 0.06F;
-constexpr float kLeastSoot = 0.02F;
+constexpr float kMinHeat = 0.06F;
+constexpr float kMinSoot = 0.02F;
 /// Soot is gone before it comes to the grid's sides and its end, which are never seen: from these parts of the way on.
 constexpr float kSootThins = 0.55F;
 constexpr float kSootIsGone = 0.95F;
@@ -315,7 +315,7 @@ void FlameGas::write_texels(float part) {
       const float soot = left * mix(shown_[at].soot, cells_[at].soot, kShownPerStep * part);
       texels_[2 * at] = byte_of(heat);
       texels_[2 * at + 1] = byte_of(soot);
-      if (heat < kLeastHeat && soot < kLeastSoot) continue;
+      if (heat < kMinHeat && soot < kMinSoot) continue;
       farthest = std::max(farthest, to_side_[i]);
     }
     extents_[layer] = farthest > 0.0F ? std::min(farthest + 2.0F / static_cast<float>(kAcross), 1.1F) : 0.0F;

@@ -17,7 +17,7 @@ constexpr float kRoom = 1.45F;
 constexpr float kSoftEdge = 0.40F;
 /// No layer is thinner than this part of the thickest: where the body ends its tongues do, of their own.
 constexpr float kThinnest = 0.66F;
-constexpr float kLeastRadius_m = 1e-3F;
+constexpr float kMinRadius_m = 1e-3F;
 constexpr float kTurn_rad = static_cast<float>(2.0 * kPi);
 
 }  // namespace
@@ -27,7 +27,7 @@ FlameVolume::FlameVolume(const pose::SurfaceSkeleton& surface) {
   shells_ = surface.shells;
   around_ = surface.columns / shells_;
   rows_count_ = surface.rows;
-  layers_ = std::min(rows_count_, kMostLayers);
+  layers_ = std::min(rows_count_, kMaxLayers);
   rows_.resize(static_cast<std::size_t>(std::lrint(kReach * static_cast<float>(layers_ - 1))) + 1);
   middles_m_.resize(rows_.size());
   heat_.assign(kAcross * kAcross * layers_, 0);
@@ -55,7 +55,7 @@ FlameVolume::FlameVolume(const pose::SurfaceSkeleton& surface) {
   for (std::size_t layer = 0; layer < layers_; ++layer) {
     const float v = static_cast<float>(layer) / static_cast<float>(layers_ - 1);
     const float least_m = kThinnest * thickest_m_ * std::min(1.0F, 0.3F + 4.0F * v);
-    rows_[layer].half_m = kRoom * std::max({radii_m[layer], least_m, kLeastRadius_m});
+    rows_[layer].half_m = kRoom * std::max({radii_m[layer], least_m, kMinRadius_m});
   }
 
   for (std::size_t layer = layers_; layer < rows_.size(); ++layer) rows_[layer].half_m = rows_[layers_ - 1].half_m;
@@ -72,7 +72,7 @@ FlameVolume::FlameVolume(const pose::SurfaceSkeleton& surface) {
   const float way = first_m.x * second_m.y - first_m.y * second_m.x < 0.0F ? -1.0F : 1.0F;
   for (std::size_t shell = 0; shell < shells_; ++shell) {
     const glm::vec2 at_m = out_m(shell * around_);
-    shell_parts_.push_back(std::hypot(at_m.x, at_m.y) / std::max(thickest_m_, kLeastRadius_m));
+    shell_parts_.push_back(std::hypot(at_m.x, at_m.y) / std::max(thickest_m_, kMinRadius_m));
   }
   for (std::size_t z = 0; z < kAcross; ++z) {
     for (std::size_t x = 0; x < kAcross; ++x) {
@@ -149,7 +149,7 @@ void FlameVolume::move_to(const pose::SurfaceSkeleton& surface, const pose::Surf
         const std::size_t i = first + shell * around_ + column;
         const float east = surface.normal_x[i];
         const float south = surface.normal_z[i];
-        const float radius_m = std::max(shell_parts_[shell] * here.half_m / kRoom, kLeastRadius_m);
+        const float radius_m = std::max(shell_parts_[shell] * here.half_m / kRoom, kMinRadius_m);
         const float swell = std::sqrt(east * east + south * south) * pose.displacement_m[i] / radius_m;
         const float swollen = shell_parts_[shell] * (1.0F + std::clamp(swell, -0.8F, kRoom - 1.0F));
         float& radius = radius_here[shell * around_ + column];

@@ -18,8 +18,8 @@ namespace yuragi::viewer::meshes {
 /// the foot to the top, up to kReach.
 class FlameVolume {
  public:
-  static constexpr std::size_t kAcross = 24;      ///< texels from east to west, and from north to south
-  static constexpr std::size_t kMostLayers = 96;  ///< rows that are more are left out evenly
+  static constexpr std::size_t kAcross = 24;     ///< texels from east to west, and from north to south
+  static constexpr std::size_t kMaxLayers = 96;  ///< rows that are more are left out evenly
   static constexpr std::size_t kHullSides = 12;
   static constexpr std::size_t kHullRings = 21;
   /// The axis goes on above the top, straight: gas that has left the flame flies there. It ends at this v.

@@ -6,7 +6,7 @@
 namespace yuragi::viewer::meshes {
 namespace {
 
-constexpr float kSmallestArea_m2 = 1e-16F;
+constexpr float kMinArea_m2 = 1e-16F;
 
 struct Axes {
   const float* x;
@@ -26,7 +26,7 @@ void write_normal(const Axes& p, std::size_t left, std::size_t right, std::size_
   const float x = ay * bz - az * by;
   const float y = az * bx - ax * bz;
   const float z = ax * by - ay * bx;
-  const float scale = 1.0F / std::sqrt(x * x + y * y + z * z + kSmallestArea_m2 * kSmallestArea_m2);
+  const float scale = 1.0F / std::sqrt(x * x + y * y + z * z + kMinArea_m2 * kMinArea_m2);
   nx = x * scale;
   ny = y * scale;
   nz = z * scale;

@@ -36,7 +36,7 @@ struct Wander {
   float length_m;
 };
 constexpr std::array<Wander, 3> kWander{{{1.2F, 7.0F}, {0.7F, 2.9F}, {0.3F, 1.3F}}};
-constexpr float kMostWander_m = kWander[0].most_m + kWander[1].most_m + kWander[2].most_m;
+constexpr float kMaxWander_m = kWander[0].most_m + kWander[1].most_m + kWander[2].most_m;
 
 /// Smooth noise from 0 to 1, always the same for the same seed: chances on a grid of spacing 1, with what is between
 /// them.
@@ -52,7 +52,7 @@ float noise_at(const glm::vec2& at, std::uint64_t seed) {
   return glm::mix(north, south, smooth(at.y - low.y));
 }
 
-/// How far a lawn's border is beyond its margin at a place: from 0 to kMostWander_m.
+/// How far a lawn's border is beyond its margin at a place: from 0 to kMaxWander_m.
 float wander_m_at(const glm::vec2& at_m) {
   float sum_m = 0.0F;
   for (std::size_t i = 0; i < kWander.size(); ++i) {
@@ -145,7 +145,7 @@ void GrowthMap::make(std::span<const Standing> things, float most) {
     // On the ground that water takes no blade stands.
     const bool is_water = thing.kind == Standing::Kind::kWater;
     const Bounds box = thing.floor ? united(thing.bounds, bounds_of(*thing.floor)) : thing.bounds;
-    const float reach_m = kMargin_m + kMostWander_m + kSlope_m;
+    const float reach_m = kMargin_m + kMaxWander_m + kSlope_m;
     for (std::size_t row = texel_of(box.low_m.z - reach_m); row <= texel_of(box.high_m.z + reach_m); ++row) {
       for (std::size_t column = texel_of(box.low_m.x - reach_m); column <= texel_of(box.high_m.x + reach_m); ++column) {
         const glm::vec2 at(middle_m(column), middle_m(row));

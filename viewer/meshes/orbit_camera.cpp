@@ -14,11 +14,11 @@ constexpr double kGlide_s = 0.08;     // the time constant with which it follows
 constexpr double kTurning_deg_s = 2.0;
 constexpr double kMaxTarget_m = 500.0;  // from the origin
 constexpr double kAcrossPitch_deg = 6.0;
-constexpr double kFieldHeights = 5.0;        // so many times as wide as high: something to look across
-constexpr double kAcrossHeights = 1.05;      // of the eye, in heights of what it looks across
-constexpr double kFromCorner_deg = 32.0;     // how far a broad side is looked at aslant, where the wind allows it
-constexpr double kMostAlongWind_deg = 30.0;  // from straight across the wind
-constexpr double kFlatHeights = 0.2;         // of what is flat, against its width
+constexpr double kFieldHeights = 5.0;       // so many times as wide as high: something to look across
+constexpr double kAcrossHeights = 1.05;     // of the eye, in heights of what it looks across
+constexpr double kFromCorner_deg = 32.0;    // how far a broad side is looked at aslant, where the wind allows it
+constexpr double kMaxAlongWind_deg = 30.0;  // from straight across the wind
+constexpr double kFlatHeights = 0.2;        // of what is flat, against its width
 constexpr double kFlatPitch_deg = 7.0;
 constexpr double kFlatShown = 0.6;  // of its width
 constexpr double kEyeHeights = 0.45;
@@ -58,7 +58,7 @@ CameraPlace limited(const CameraPlace& place) {
   }
   to.field_of_view_deg = std::clamp(finite_or(place.field_of_view_deg, 40.0), kMinFieldOfView_deg, kMaxFieldOfView_deg);
   // As far up as the eye stays above the ground.
-  const double sine = std::clamp((OrbitCamera::kLowestEye_m - to.target_m.y) / to.distance_m, -1.0, 1.0);
+  const double sine = std::clamp((OrbitCamera::kMinEye_m - to.target_m.y) / to.distance_m, -1.0, 1.0);
   to.pitch_deg =
       std::clamp(finite_or(place.pitch_deg, 10.0), std::max(OrbitCamera::kMinPitch_deg, glm::degrees(std::asin(sine))),
                  OrbitCamera::kMaxPitch_deg);
@@ -157,7 +157,7 @@ double heading_across(double preferred_deg, double broadside_deg, double wind_fr
   for (const double side_deg : {90.0, -90.0}) {
     const double across_deg = wind_from_deg + side_deg;
     const double off_deg = std::remainder(preferred_deg - across_deg, 360.0);
-    const double heading_deg = across_deg + std::clamp(off_deg, -kMostAlongWind_deg, kMostAlongWind_deg);
+    const double heading_deg = across_deg + std::clamp(off_deg, -kMaxAlongWind_deg, kMaxAlongWind_deg);
     const double turn_deg = std::abs(std::remainder(heading_deg - broadside_deg, 360.0));
     if (turn_deg >= least_turn_deg) continue;
     least_turn_deg = turn_deg;

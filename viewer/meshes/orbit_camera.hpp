@@ -40,7 +40,7 @@ class OrbitCamera {
  public:
   static constexpr double kMinPitch_deg = -45.0;
   static constexpr double kMaxPitch_deg = 89.0;
-  static constexpr double kLowestEye_m = 0.08;  ///< above the ground
+  static constexpr double kMinEye_m = 0.08;  ///< above the ground
   static constexpr double kMinDistance_m = 0.2;
   static constexpr double kMaxDistance_m = 200.0;
 

@@ -13,7 +13,7 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr float kArmSpacings = 2.5F;  // how far beside a strand its neighbours are looked for
-constexpr float kShortestArm = 0.5F;  // of twice that: at the coat's edge there may be none
+constexpr float kMinArm = 0.5F;       // of twice that: at the coat's edge there may be none
 
 glm::vec3 tip_of(const pose::JointPositions& joints, std::size_t strand) {
   const pose::JointPosition tip = joints.joint(strand, joints.links_per_strand() - 1);
@@ -88,7 +88,7 @@ Partings::Partings(const pose::StrandSkeleton& coat, const Body& body)
       Sides& sides = sides_[i][is_first ? 0 : 1];
       sides = {cells.nearest(root_m - arm, own), cells.nearest(root_m + arm, own)};
       const glm::vec3 way_m = cells.root_m(sides.to) - cells.root_m(sides.from);
-      if (glm::length(way_m) > kShortestArm * 2.0F * arm_m) sides.way_per_m = way_m / glm::dot(way_m, way_m);
+      if (glm::length(way_m) > kMinArm * 2.0F * arm_m) sides.way_per_m = way_m / glm::dot(way_m, way_m);
     }
   }
 }

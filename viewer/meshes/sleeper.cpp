@@ -24,7 +24,7 @@ constexpr std::size_t kRingsBetween = 5;
 /// of the limb and at least, and how wide, in lengths; and how far they stand up.
 constexpr float kHairsPerSquare = 9000.0F;
 constexpr float kLongHair = 0.34F;
-constexpr float kShortestHair = 0.045F;  // in half widths of the body
+constexpr float kMinHair = 0.045F;  // in half widths of the body
 constexpr float kHairWidth = 0.10F;
 constexpr float kHairRise = 0.42F;
 
@@ -158,7 +158,7 @@ void add_hairs(Limbs& limbs, float unit_m) {
       const glm::vec3 along = glm::normalize(level);
       const glm::vec3 across = glm::cross(along, normal);
       const auto aside = static_cast<float>(turn) - 0.5F;
-      const float length_m = std::max(kLongHair * mixed(&LimbVertex::radius_m), kShortestHair * unit_m) *
+      const float length_m = std::max(kLongHair * mixed(&LimbVertex::radius_m), kMinHair * unit_m) *
                              (0.6F + 0.6F * static_cast<float>(size));
       const glm::vec3 way = glm::normalize(along + 0.7F * aside * across + (kHairRise + 0.3F * aside) * normal);
       const glm::vec3 half_m = 0.5F * kHairWidth * length_m * across;

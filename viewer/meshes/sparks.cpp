@@ -18,7 +18,7 @@ constexpr double kGravity_m_s2 = 9.81;
 constexpr double kSlowing_s = 1.1;
 constexpr double kGoesWithWind = 0.75;
 constexpr double kShareThatGlows = 0.6;
-constexpr float kLeastHeat = 0.1F;
+constexpr float kMinHeat = 0.1F;
 
 /// A chance from 0 to 1 for a property of the n-th spark of a place.
 double chance(std::size_t place, double number, std::uint64_t which) {
@@ -74,7 +74,7 @@ void Sparks::move_to(double time_s, const glm::vec2& wind_m_s, const FlameVolume
     spark.place_m = place_at(age_s, drift_m);
     spark.before_m = place_at(std::max(age_s - kBlur_s, 0.0), drift_m - held * kBlur_s * wind);
     const double left = 1.0 - age_s / life_s;
-    const double lit = of(8) < kShareThatGlows && flame.mean_heat() > kLeastHeat ? 1.0 : 0.0;
+    const double lit = of(8) < kShareThatGlows && flame.mean_heat() > kMinHeat ? 1.0 : 0.0;
     spark.glow = static_cast<float>(lit * left * std::sqrt(left) * std::min(1.0, 12.0 * age_s) *
                                     (0.8 + 0.2 * std::sin(23.0 * age_s + wave_rad)));
     spark.radius_m = 0.0014F + 0.0016F * static_cast<float>(of(9));

@@ -10,7 +10,7 @@ namespace yuragi::viewer::meshes {
 namespace {
 
 constexpr double kSpacing_s = 1.0 / 30.0;
-constexpr double kLongestGap_s = 1.0;
+constexpr double kMaxGap_s = 1.0;
 constexpr double kMeanOver_s = 10.0;
 constexpr float kSlowest_m_s = 1.0F;  // a weaker wind carries nothing that is seen
 
@@ -20,7 +20,7 @@ SwayHistory::SwayHistory() : moments_(static_cast<std::size_t>(std::ceil(kLonges
 
 void SwayHistory::add(double time_s, const glm::vec2& sway_m, const glm::vec2& wind_m_s) {
   const double gap_s = time_s - moments_[newest_].time_s;
-  if (count_ == 0 || gap_s < 0.0 || gap_s > kLongestGap_s) {
+  if (count_ == 0 || gap_s < 0.0 || gap_s > kMaxGap_s) {
     newest_ = 0;
     count_ = 1;
     wind_m_s_ = wind_m_s;

@@ -47,15 +47,15 @@ std::array<glm::vec3, 4> corner_rays(const View& view, float margin) {
 }
 
 Arc bearings_of(const View& view, float margin) {
-  constexpr float kMostSteep = 0.2F;  // of a corner's direction: its part along the middle's bearing
+  constexpr float kMaxSteep = 0.2F;  // of a corner's direction: its part along the middle's bearing
   const glm::vec3 forward(view.forward);
   const float level = std::hypot(forward.x, forward.z);
-  if (level < kMostSteep * glm::length(forward)) return {};
+  if (level < kMaxSteep * glm::length(forward)) return {};
   const float heading_rad = std::atan2(forward.x, -forward.z);
   float left_rad = 0.0F;
   float right_rad = 0.0F;
   for (const glm::vec3& ray : corner_rays(view, margin)) {
-    if (ray.x * forward.x + ray.z * forward.z < kMostSteep * level * glm::length(ray)) return {};
+    if (ray.x * forward.x + ray.z * forward.z < kMaxSteep * level * glm::length(ray)) return {};
     const float turn_rad = std::remainder(std::atan2(ray.x, -ray.z) - heading_rad, glm::two_pi<float>());
     left_rad = std::min(left_rad, turn_rad);
     right_rad = std::max(right_rad, turn_rad);

@@ -12,7 +12,7 @@ constexpr std::size_t kFewPictures = 5;  // are judged only when they are all th
 constexpr double kLongest_s = 2.0;       // a picture that took longer was held up by something else
 constexpr double kTooLong = 1.05;        // of the time that there is
 constexpr double kExpected = 0.7;        // of the work before, with the next step: until it is measured
-constexpr double kMostSaved = 0.3;       // what a measurement is believed
+constexpr double kMaxSaved = 0.3;        // what a measurement is believed
 constexpr double kSavesNothing = 0.95;   // of the work before, or more
 constexpr double kWarming_s = 1.0;       // what drivers prepare at first use makes pictures slow that are not so later
 constexpr double kBladesPerSecond = 0.08;  // of all; of the coarseness, as much
@@ -102,7 +102,7 @@ void PaceKeeper::learn() {
   double pictures = 0.0;
   for (std::size_t i = low + 1; i <= high; ++i) pictures += is_picture_step(i) ? 1.0 : 0.0;
   for (std::size_t i = low + 1; i <= high; ++i) {
-    if (is_picture_step(i)) saves_[i] = std::clamp(std::pow(ratio, 1.0 / pictures), kMostSaved, 1.0);
+    if (is_picture_step(i)) saves_[i] = std::clamp(std::pow(ratio, 1.0 / pictures), kMaxSaved, 1.0);
   }
   if (step_ < change_->from || ratio < kSavesNothing) worthwhile_step_ = step_;
   change_.reset();

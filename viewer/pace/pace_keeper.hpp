@@ -73,7 +73,7 @@ class PaceKeeper {
   std::size_t worthwhile_step_ = 0;  ///< the last step that has saved something, or in which pictures were in time
   std::uint8_t held_ = 0;
   DrawnPart drawn_;
-  std::array<double, PaceLadder::kMostSteps> saves_{};  ///< of the work of the step before, what is left in each
+  std::array<double, PaceLadder::kMaxSteps> saves_{};  ///< of the work of the step before, what is left in each
 
   std::array<double, 128> works_s_{};  ///< since the last judgement
   std::size_t count_ = 0;

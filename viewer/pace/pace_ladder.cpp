@@ -20,7 +20,7 @@ PaceLadder::PaceLadder(look::Quality wanted, double refresh_s)
     : refresh_s_(std::clamp(refresh_s, kQuickestDisplay_s, kSlowestDisplay_s)) {
   PaceStep step{.quality = wanted == look::Quality::kAuto ? look::Quality::kHigh : wanted};
   steps_[count_++] = step;
-  while (2.0 * step.refreshes * refresh_s_ * kFewestPerSecond <= 1.0) {
+  while (2.0 * step.refreshes * refresh_s_ * kMinPerSecond <= 1.0) {
     step.refreshes *= 2;
     steps_[count_++] = step;
   }

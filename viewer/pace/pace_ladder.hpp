@@ -27,15 +27,15 @@ struct PaceStep {
 };
 
 /// All ways to draw, each less work than the one before. First fewer pictures, at the display's rate or a half, a
-/// quarter ... of it, but at least kFewestPerSecond; then less in each: the qualities below `wanted` where that is left
+/// quarter ... of it, but at least kMinPerSecond; then less in each: the qualities below `wanted` where that is left
 /// to the viewer (kAuto), and below quality low fewer pixels and blades. A quality that somebody has chosen stays as it
 /// is, but that low has fewer pixels, too.
 ///
 /// Allocates nothing. Thread-safe: no.
 class PaceLadder {
  public:
-  static constexpr std::size_t kMostSteps = 12;
-  static constexpr double kFewestPerSecond = 24.0;
+  static constexpr std::size_t kMaxSteps = 12;
+  static constexpr double kMinPerSecond = 24.0;
   /// Below quality low. Each is at least 1 / 1.5 of the work of the one before. With fewer pixels than the last a
   /// meadow looks coarse: a machine that is slower still makes fewer pictures.
   static constexpr std::array<DrawnPart, 4> kParts{{{.side = 0.85F, .blades = 0.85F, .coarseness = 1.1F},
@@ -61,7 +61,7 @@ class PaceLadder {
   friend bool operator==(const PaceLadder&, const PaceLadder&) = default;
 
  private:
-  std::array<PaceStep, kMostSteps> steps_{};
+  std::array<PaceStep, kMaxSteps> steps_{};
   std::size_t count_ = 0;
   double refresh_s_;
 };

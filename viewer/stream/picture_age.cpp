@@ -9,7 +9,7 @@ namespace yuragi::viewer::stream {
 namespace {
 
 constexpr double kClockDrift = 0.001;      // two machines' clocks drift apart by less than this, s/s
-constexpr double kLongestWay_s = 10.0;     // a frame that took longer was made by another clock than ours,
+constexpr double kMaxWay_s = 10.0;         // a frame that took longer was made by another clock than ours,
 constexpr double kEarliestWay_s = -0.001;  // and so was one that came before it was made
 constexpr double kNewRun_s = 1.0;          // the sender's time advanced by so much more than ours
 
@@ -21,7 +21,7 @@ void PictureAge::take_frame(const wire::FrameInfo& frame, double arrival_s, doub
   const bool is_new_run =
       !has_begun_ || frame.time_s < last_sender_s_ || frame.time_s > last_sender_s_ + passed_s + kNewRun_s;
   const double way_s = arrival_utc_s - 1e-9 * static_cast<double>(frame.utc_ns);
-  const bool is_known = is_same_machine && way_s >= kEarliestWay_s && way_s <= kLongestWay_s;
+  const bool is_known = is_same_machine && way_s >= kEarliestWay_s && way_s <= kMaxWay_s;
   if (is_new_run || is_known != is_network_known_) count_ = 0;
   const double arrival_zero_s = arrival_s - frame.time_s;
   if (is_known) {
@@ -42,15 +42,15 @@ void PictureAge::take_picture(const PoseMoment& moment, double shown_s, double d
   const double since_tick_s = std::max(0.0, shown_s - (sender_zero_s_ + moment.time_s));
   display_s_ = display_s;
   shown_.at(next_) = {shown_s, moment.wind.reading_age_s + since_tick_s + display_s};
-  next_ = (next_ + 1) % kMostPictures;
-  count_ = std::min(count_ + 1, kMostPictures);
+  next_ = (next_ + 1) % kMaxPictures;
+  count_ = std::min(count_ + 1, kMaxPictures);
 }
 
 std::optional<AgeFigures> PictureAge::figures(double now_s) const {
-  std::array<double, kMostPictures> ages_s{};
+  std::array<double, kMaxPictures> ages_s{};
   std::size_t pictures = 0;
   for (; pictures < count_; ++pictures) {
-    const Shown& shown = shown_.at((next_ + kMostPictures - 1 - pictures) % kMostPictures);
+    const Shown& shown = shown_.at((next_ + kMaxPictures - 1 - pictures) % kMaxPictures);
     if (now_s - shown.at_s > kSpan_s) break;
     ages_s.at(pictures) = shown.age_s;
   }

@@ -33,7 +33,7 @@ struct AgeFigures {
 class PictureAge {
  public:
   static constexpr double kSpan_s = 10.0;
-  static constexpr std::size_t kMostPictures = 2048;  ///< in it; of a display above 200 Hz, those of a shorter time
+  static constexpr std::size_t kMaxPictures = 2048;  ///< in it; of a display above 200 Hz, those of a shorter time
 
   /// A frame arrived, at the moment arrival_s of the steady clock and arrival_utc_s since 1970. `is_same_machine`: was
   /// it sent by this one?
@@ -57,7 +57,7 @@ class PictureAge {
   double last_sender_s_ = 0.0;
   double last_arrival_s_ = 0.0;
   double display_s_ = 0.0;
-  std::array<Shown, kMostPictures> shown_{};  // a ring
+  std::array<Shown, kMaxPictures> shown_{};  // a ring
   std::size_t next_ = 0;
   std::size_t count_ = 0;
 };

@@ -9,7 +9,7 @@
 namespace yuragi::viewer::wall {
 namespace {
 
-constexpr std::size_t kLargestFile_bytes = 1 << 20;  // as the daemon's
+constexpr std::size_t kMaxFile_bytes = 1 << 20;  // as the daemon's
 
 std::string text_of(const std::filesystem::path& file) {
   const auto refuse = [&file](const char* why) {
@@ -18,7 +18,7 @@ std::string text_of(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw refuse("is no file that can be read");
   std::ifstream in(file, std::ios::binary);
-  std::string text(kLargestFile_bytes + 1, '\0');
+  std::string text(kMaxFile_bytes + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!in.eof())
     throw refuse(in.good() ? "is too large; allowed: up to 1 MB" : "cannot be read; check its permissions");

@@ -75,7 +75,7 @@ output::Size picture_size(const output::Output& output, std::span<const output::
   if (output.size) return *output.size;
   output::Size size;
   const auto whole = [](int shown_px, double part) {
-    return std::clamp(static_cast<int>(std::lround(shown_px / part)), 1, output::kLargestSide_px);
+    return std::clamp(static_cast<int>(std::lround(shown_px / part)), 1, output::kMaxSide_px);
   };
   for (std::size_t i = 0; i < std::min(monitors.size(), output.windows.size()); ++i) {
     const output::Window& window = output.windows[i];

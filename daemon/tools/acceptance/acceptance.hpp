@@ -38,11 +38,11 @@ struct SensorVerdict {
 };
 
 // Limits of the verdicts.
-inline constexpr double kLongestMedianDelay_s = 0.2;  ///< more is seen as lagging behind the wind
-inline constexpr double kLargestRefusedShare = 0.05;  ///< of the messages from the device
-inline constexpr double kLeastLiveWeight = 0.5;       ///< of the sensor in the wind that moved the scenes
-inline constexpr double kAgreementFactor = 2.0;       ///< between mean speeds of sensors of one site
-inline constexpr double kAgreementAbove_m_s = 1.0;    ///< differences up to this are none
+inline constexpr double kMaxMedianDelay_s = 0.2;    ///< more is seen as lagging behind the wind
+inline constexpr double kMaxRefusedShare = 0.05;    ///< of the messages from the device
+inline constexpr double kMinLiveWeight = 0.5;       ///< of the sensor in the wind that moved the scenes
+inline constexpr double kAgreementFactor = 2.0;     ///< between mean speeds of sensors of one site
+inline constexpr double kAgreementAbove_m_s = 1.0;  ///< differences up to this are none
 
 /// The verdict of a sensor by itself, and by the mean speeds of the others (empty: it is alone, or was not compared).
 /// Pure.
@@ -74,7 +74,7 @@ struct NorthCheck {
   std::string sensor;
   double direction_deg = 0.0;
 };
-inline constexpr double kLargestNorthError_deg = 15.0;
+inline constexpr double kMaxNorthError_deg = 15.0;
 bool is_passed(const NorthCheck& check);
 
 /// The hand-over of an installation.

@@ -40,7 +40,7 @@ void judge_readings(VerdictBuilder& verdict, const SensorMeasured& sensor) {
   const double refused = std::accumulate(
       status.refused.begin(), status.refused.end(), 0.0,
       [&](double sum, const auto& one) { return one.first == not_mine ? sum : sum + static_cast<double>(one.second); });
-  if (refused > kLargestRefusedShare * (refused + static_cast<double>(status.readings)))
+  if (refused > kMaxRefusedShare * (refused + static_cast<double>(status.readings)))
     verdict.remark("many of its messages were refused: " + sensing::refusal_text(status));
   if (status.reconnects > 0) verdict.remark(fmt::format("it was lost and found again {} times", status.reconnects));
 }
@@ -56,13 +56,13 @@ void judge_way_to_pose(VerdictBuilder& verdict, const SensorMeasured& sensor) {
   if (sensor.frames == 0)
     return verdict.fail("no frame came: the configuration shows no scene, or the machine is too slow");
   if (sensor.moved_frames == 0) verdict.fail("no pose moved");
-  if (sensor.largest_live_weight < kLeastLiveWeight) {
+  if (sensor.largest_live_weight < kMinLiveWeight) {
     verdict.fail(fmt::format("it did not take over the wind of the scenes (its part reached {:.0f} %)",
                              100.0 * sensor.largest_live_weight));
   }
   if (!sensor.median_delay_s) {
     verdict.remark("the delay from a reading to a pose could not be measured: too few readings");
-  } else if (*sensor.median_delay_s > kLongestMedianDelay_s) {
+  } else if (*sensor.median_delay_s > kMaxMedianDelay_s) {
     verdict.remark(fmt::format("from a reading to a pose it takes {:.0f} ms", 1e3 * *sensor.median_delay_s));
   }
 }
@@ -124,7 +124,7 @@ SensorVerdict judge_simulated(const SensorMeasured& sensor, const ExpectedWind& 
 }
 
 bool is_passed(const NorthCheck& check) {
-  return std::abs(std::remainder(check.direction_deg, 360.0)) <= kLargestNorthError_deg;
+  return std::abs(std::remainder(check.direction_deg, 360.0)) <= kMaxNorthError_deg;
 }
 
 bool is_rehearsal(const Acceptance& acceptance) {

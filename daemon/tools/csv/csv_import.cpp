@@ -36,12 +36,12 @@ class Import {
       std::streamoff offset;
       std::size_t number_before;
     };
-    constexpr std::size_t kMostPlaces = 10'000'000;
+    constexpr std::size_t kMaxPlaces = 10'000'000;
     std::vector<Place> places;
     for (;;) {
       const Place place{lines.place(), lines.number()};
       if (!lines.next()) break;
-      if (places.size() == kMostPlaces) {
+      if (places.size() == kMaxPlaces) {
         return Failure{name_ + ": its newest row comes first, and it is too long to be reversed; sort it by time"};
       }
       places.push_back(place);

@@ -39,9 +39,9 @@ struct CsvSinks {
 /// from its end. A decimal comma is understood if the delimiter is another character.
 ///
 /// `name` is the file name in messages. The input may contain any bytes; it is read twice if it can be rewound,
-/// and is otherwise kept as far as CsvInput::kMostKept. Memory does not depend on the file's length, except for 24
+/// and is otherwise kept as far as CsvInput::kMaxKept. Memory does not depend on the file's length, except for 24
 /// bytes a row of a file with its newest row first. Fails if the header, the dates or the units are not understood (the
-/// message names the option that helps), if a line is longer than kLongestLine, or at the first refused row if
+/// message names the option that helps), if a line is longer than kMaxLine, or at the first refused row if
 /// `strict`. Thread-safe: yes, with separate streams.
 Result<CsvImportReport, Failure> import_csv(CsvInput& input, const std::string& name, const CsvImportOptions& options,
                                             const CsvSinks& sinks);

@@ -51,7 +51,7 @@ CsvInput::CsvInput(std::istream& in) : in_(in), begin_(in.tellg()) {
   if (begin_ != std::streampos(-1)) return;
   in_.clear();
   constexpr std::size_t kBlock = std::size_t{1} << 16;
-  while (in_ && kept_.size() < kMostKept) {
+  while (in_ && kept_.size() < kMaxKept) {
     const std::size_t size = kept_.size();
     kept_.resize(size + kBlock);
     in_.read(kept_.data() + size, kBlock);
@@ -87,9 +87,9 @@ Failure too_long_line(const std::string& name, std::size_t number) {
 Result<std::vector<std::string>, Failure> first_lines(CsvInput& input, const std::string& name) {
   std::vector<std::string> texts;
   CsvLines lines(input.first_pass(), 0);
-  constexpr std::size_t kMostLines = 400;
-  constexpr std::size_t kMostBytes = std::size_t{4} << 20;
-  for (std::size_t bytes = 0; texts.size() < kMostLines && bytes < kMostBytes && lines.next();) {
+  constexpr std::size_t kMaxLines = 400;
+  constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
+  for (std::size_t bytes = 0; texts.size() < kMaxLines && bytes < kMaxBytes && lines.next();) {
     texts.resize(lines.number() - 1);  // of the empty lines that were passed over
     const std::span<char> line = lines.line();
     texts.emplace_back(line.begin(), line.end());

@@ -12,10 +12,10 @@
 namespace yuragi::daemon::tools::csv {
 
 /// A stream that is read twice: first to see what is in it, then for its rows. One that cannot go back (a pipe) is kept
-/// as far as kMostKept, and seen as far as that. Thread-safe: no.
+/// as far as kMaxKept, and seen as far as that. Thread-safe: no.
 class CsvInput {
  public:
-  static constexpr std::size_t kMostKept = std::size_t{32} << 20;
+  static constexpr std::size_t kMaxKept = std::size_t{32} << 20;
 
   /// `in` must outlive this.
   explicit CsvInput(std::istream& in);

@@ -136,11 +136,11 @@ class LayoutSearch {
     layout.header = std::move(header);
 
     // The first row has a number or a date; between it and the header stand rows of units.
-    constexpr std::size_t kMostUnitRows = 3;
+    constexpr std::size_t kMaxUnitRows = 3;
     std::vector<std::vector<std::string>> unit_rows;
     std::size_t next = next_line(i + 1, is_comment_header);
     layout.first_row = next_line(i + 1, false) + 1;
-    for (; next < lines_.size() && unit_rows.size() <= kMostUnitRows; next = next_line(next + 1, is_comment_header)) {
+    for (; next < lines_.size() && unit_rows.size() <= kMaxUnitRows; next = next_line(next + 1, is_comment_header)) {
       const bool is_commented = is_comment(lines_[next]);
       std::vector<std::string> fields =
           split(is_commented ? uncommented(lines_[next], options_.comment) : std::string_view(lines_[next]),

@@ -27,7 +27,7 @@ std::string_view plain_field(std::span<char> field) {
 
 }  // namespace
 
-CsvLines::CsvLines(std::istream& in, char comment) : in_(in), comment_(comment), buffer_(kLongestLine + 1) {}
+CsvLines::CsvLines(std::istream& in, char comment) : in_(in), comment_(comment), buffer_(kMaxLine + 1) {}
 
 bool CsvLines::next() {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";

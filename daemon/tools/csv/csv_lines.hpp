@@ -13,12 +13,12 @@ namespace yuragi::daemon::tools::csv {
 /// byte order mark. Thread-safe: no.
 class CsvLines {
  public:
-  static constexpr std::size_t kLongestLine = 1 << 20;
+  static constexpr std::size_t kMaxLine = 1 << 20;
 
   /// `in` must outlive this. `comment`: what comment lines begin with; 0: there are none.
   CsvLines(std::istream& in, char comment);
 
-  /// Goes to the next line; false if there is none, or if it is longer than kLongestLine.
+  /// Goes to the next line; false if there is none, or if it is longer than kMaxLine.
   bool next();
   /// The line that next() read; valid until the next call, and may be modified (split_csv_line).
   std::span<char> line() { return {buffer_.data(), size_}; }

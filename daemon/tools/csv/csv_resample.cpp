@@ -17,7 +17,7 @@ namespace {
 using drivers::windlog::WindlogReader;
 
 /// Vectors that cancel out to less than this part of their lengths have no direction.
-constexpr double kLeastPartOfDirection = 1e-9;
+constexpr double kMinPartOfDirection = 1e-9;
 
 /// A sensor's readings in one block.
 struct Block {
@@ -38,7 +38,7 @@ struct Block {
 
   std::optional<double> direction_deg() const {
     const double length_m_s = wind::speed_of(sum);
-    if (length_m_s <= kLeastPartOfDirection * directed_speed_sum_m_s) return std::nullopt;
+    if (length_m_s <= kMinPartOfDirection * directed_speed_sum_m_s) return std::nullopt;
     return wind::direction_from_deg(sum);
   }
 };
@@ -102,10 +102,10 @@ Result<CsvExportReport, Failure> resample_csv(WindlogReader& reader, const CsvEx
   const Nanoseconds from = std::min(range.from, reader.duration());
   const Nanoseconds span = std::min(range.to, reader.duration()) - from;
   const std::int64_t rows = (span / interval + 2) * static_cast<std::int64_t>(sensors.names.size());
-  if (rows > static_cast<std::int64_t>(kMostResampledRows)) {
+  if (rows > static_cast<std::int64_t>(kMaxResampledRows)) {
     return Failure{fmt::format("{}: this would be a table of {} rows; at most {} are written: choose longer blocks, or "
                                "a part of the recording",
-                               reader.file().string(), rows, kMostResampledRows),
+                               reader.file().string(), rows, kMaxResampledRows),
                    FailureKind::kUsage};
   }
 

@@ -15,7 +15,7 @@ namespace yuragi::daemon::tools::csv {
 inline constexpr std::string_view kResampledHeader = "utc,time_s,sensor,speed_m_s,direction_deg,gust_m_s,count";
 
 /// So many rows a table of means can have: a recording whose clock leapt by decades would fill a disk with empty ones.
-inline constexpr std::size_t kMostResampledRows = 10'000'000;
+inline constexpr std::size_t kMaxResampledRows = 10'000'000;
 
 /// Writes the means of a recording over blocks of `interval` (above 0), for each block and each sensor a row:
 ///
@@ -33,7 +33,7 @@ inline constexpr std::size_t kMostResampledRows = 10'000'000;
 /// device.
 ///
 /// Memory does not depend on the recording's length. Fails as export_csv() does, and (kUsage) if there would be more
-/// than kMostResampledRows.
+/// than kMaxResampledRows.
 Result<CsvExportReport, Failure> resample_csv(drivers::windlog::WindlogReader& reader, const CsvExportRange& range,
                                               Nanoseconds interval, std::FILE* out,
                                               const std::function<void(std::size_t)>& progress = {});

@@ -18,7 +18,7 @@ namespace yuragi::daemon::tools::csv {
 namespace {
 
 constexpr int kElapsedDecimals = 9;
-constexpr std::size_t kMostOddDirections = 5;
+constexpr std::size_t kMaxOddDirections = 5;
 
 /// The start of a field that may be anything.
 std::string shown(std::string_view text) {
@@ -228,7 +228,7 @@ std::optional<double> CsvRowReader::read_direction(std::string_view text) {
   constexpr double kTolerance_deg = 0.01;
   if (!direction_deg || *direction_deg < -180.0 - kTolerance_deg || *direction_deg > 360.0 + kTolerance_deg) {
     const std::string odd = shown(text);
-    if (odd_directions_.contains(odd) || odd_directions_.size() < kMostOddDirections) {
+    if (odd_directions_.contains(odd) || odd_directions_.size() < kMaxOddDirections) {
       ++odd_directions_[odd];
     } else {
       ++odd_directions_["others"];

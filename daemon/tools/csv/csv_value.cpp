@@ -15,11 +15,10 @@ bool is_one_of(double value, std::initializer_list<double> marks) {
 
 /// Returns true if it is a realistic value for such a column, in base units.
 bool can_be(CsvRole role, double base) {
-  constexpr double kGreatestSpeed_m_s = 60.0;
+  constexpr double kMaxSpeed_m_s = 60.0;
   switch (dimension_of(role)) {
     case CsvDimension::kSpeed:
-      return std::abs(base) < kGreatestSpeed_m_s &&
-             (base >= 0.0 || (role != CsvRole::kSpeed && role != CsvRole::kGust));
+      return std::abs(base) < kMaxSpeed_m_s && (base >= 0.0 || (role != CsvRole::kSpeed && role != CsvRole::kGust));
     case CsvDimension::kDirection:
       return base >= -180.0 && base <= 360.0;
     case CsvDimension::kTemperature:
@@ -78,8 +77,8 @@ bool is_missing_number(CsvRole role, double value, double base) {
   if (role == CsvRole::kElapsed || can_be(role, base)) return false;
   if (role == CsvRole::kDirection && value == 990.0) return true;
   // Above zero, two digits may be a wind in a storm: is_possible_mark().
-  constexpr double kLeastMark = 888.0;
-  if (value > 0.0 && value < kLeastMark) return false;
+  constexpr double kMinMark = 888.0;
+  if (value > 0.0 && value < kMinMark) return false;
   return is_one_of(std::abs(value), {99.0, 99.9, 99.99, 888.0, 999.0, 999.9, 999.99, 6999.0, 7999.0, 8888.0, 9999.0,
                                      9999.9, 9999.99, 32767.0, 32768.0, 65535.0, 99999.0, 99999.9, 999999.0});
 }

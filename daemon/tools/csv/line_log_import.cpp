@@ -41,8 +41,8 @@ LogContents contents_of(std::istream& in, const LineLogOptions& options) {
     if (!message || !message->wind || !message->wind->speed_m_s) continue;
     ++contents.messages;
     if (leading_time(message->prefix, options.time_format)) ++contents.leading_times;
-    constexpr std::size_t kMostSources = 100;
-    const bool is_new = contents.sources.size() < kMostSources;
+    constexpr std::size_t kMaxSources = 100;
+    const bool is_new = contents.sources.size() < kMaxSources;
     if (is_new || contents.sources.contains(message->source)) ++contents.sources[message->source];
   }
   return contents;

@@ -34,7 +34,7 @@ constexpr double kSecondsPerDay = 86400.0;
 constexpr auto kVersionTimeout = std::chrono::seconds(5);
 constexpr std::uint64_t kFilesOfTheDaemon = 64;  // sockets, timers, the recording, libraries
 constexpr std::uint64_t kFilesOfASensor = 8;
-constexpr std::size_t kMostGroups = 256;
+constexpr std::size_t kMaxUserGroups = 256;
 
 std::string user_name() {
   const passwd* const entry = getpwuid(geteuid());  // NOLINT(concurrency-mt-unsafe): no other thread runs
@@ -73,7 +73,7 @@ std::vector<std::string> loaded_libraries() {
 GroupFacts probe_groups(std::vector<std::string> needed_groups) {
   GroupFacts facts{
       .user = user_name(), .is_root = geteuid() == 0, .groups = {}, .needed_groups = std::move(needed_groups)};
-  std::array<gid_t, kMostGroups> ids{};
+  std::array<gid_t, kMaxUserGroups> ids{};
   const int count = getgroups(static_cast<int>(ids.size()), ids.data());
   for (int i = 0; i < count; ++i) {
     // NOLINTNEXTLINE(concurrency-mt-unsafe): no other thread runs

@@ -14,7 +14,7 @@ namespace yuragi::daemon::tools::offline {
 namespace {
 
 /// The least rate of the estimator's steps: its filters are designed for the daemon's rate.
-constexpr double kLeastTickRate_hz = 50.0;
+constexpr double kMinTickRate_hz = 50.0;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ Result<void, Failure> make_recorded_frames(const std::filesystem::path& recordin
 
   // Several ticks per frame. A frame is that of the first tick at its time or after it.
   OfflineWindOptions offline;
-  offline.rate_hz = frames.rate_hz * std::ceil(kLeastTickRate_hz / frames.rate_hz);
+  offline.rate_hz = frames.rate_hz * std::ceil(kMinTickRate_hz / frames.rate_hz);
   offline.rules = sensing::jury_rules_of(of_recording.sensors[0]);
   const double tick_s = 1.0 / offline.rate_hz;
   offline.until_s = frames.time_s(frames.count - 1) + tick_s;

@@ -55,11 +55,11 @@ TimeMarks time_marks(double span_s) {
       TimeMarks{kDay_s, kDates},      TimeMarks{2 * kDay_s, kDates},   TimeMarks{4 * kDay_s, kDates},
       TimeMarks{7 * kDay_s, kDates},  TimeMarks{14 * kDay_s, kDates},  TimeMarks{28 * kDay_s, kDates},
       TimeMarks{91 * kDay_s, kDates}, TimeMarks{182 * kDay_s, kDates}, TimeMarks{365 * kDay_s, kDates}};
-  constexpr double kMostMarks = 8.0;
+  constexpr double kMaxMarks = 8.0;
   for (const TimeMarks& marks : kMarks) {
-    if (span_s <= kMostMarks * marks.step_s) return marks;
+    if (span_s <= kMaxMarks * marks.step_s) return marks;
   }
-  return {std::ceil(span_s / kMostMarks / (365.0 * kDay_s)) * 365.0 * kDay_s, kDates};
+  return {std::ceil(span_s / kMaxMarks / (365.0 * kDay_s)) * 365.0 * kDay_s, kDates};
 }
 
 /// The settings before the plot command of a panel. All are set, so that none is left of the panel before.

@@ -8,17 +8,17 @@ namespace {
 
 constexpr double kGust_s = 3.0;
 /// The most readings in 3 s; a sensor that sends more has no gust.
-constexpr std::size_t kMostPast = 1000;
+constexpr std::size_t kMaxPast = 1000;
 /// A block counts when it has so much of its readings, and is not calm.
 constexpr double kWholeBlock = 0.95;
-constexpr double kLeastMean_m_s = 1.0;
+constexpr double kMinMean_m_s = 1.0;
 
 }  // namespace
 
 std::optional<double> ThreeSecondMean::add(Nanoseconds time, double speed_m_s) {
-  if (!(interval_s_ > 0.0) || interval_s_ > kLongestInterval_s) return std::nullopt;
+  if (!(interval_s_ > 0.0) || interval_s_ > kMaxInterval_s) return std::nullopt;
   past_.push_back({time, speed_m_s});
-  while (past_.front().time <= time - from_seconds(kGust_s) || past_.size() > kMostPast) past_.pop_front();
+  while (past_.front().time <= time - from_seconds(kGust_s) || past_.size() > kMaxPast) past_.pop_front();
   const auto count = static_cast<double>(past_.size());
   if ((count + 0.5) * interval_s_ < kGust_s) return std::nullopt;
   double sum = 0.0;
@@ -41,7 +41,7 @@ void TenMinuteBlocks::add(double time_s, double speed_m_s, const std::optional<d
 
 void TenMinuteBlocks::close() {
   const auto count = static_cast<double>(count_);
-  if (count * interval_s_ >= kWholeBlock * kBlock_s && mean_m_s_ >= kLeastMean_m_s) {
+  if (count * interval_s_ >= kWholeBlock * kBlock_s && mean_m_s_ >= kMinMean_m_s) {
     ++blocks_;
     intensity_sum_ += std::sqrt(squares_m2_s2_ / count) / mean_m_s_;
     if (gust_m_s_ > 0.0) {

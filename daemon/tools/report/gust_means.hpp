@@ -13,13 +13,13 @@ namespace yuragi::daemon::tools::report {
 /// chapter 5). Thread-safe: no.
 class ThreeSecondMean {
  public:
-  /// For a sensor of this interval; there are no means if it is above kLongestInterval_s.
+  /// For a sensor of this interval; there are no means if it is above kMaxInterval_s.
   explicit ThreeSecondMean(double interval_s) : interval_s_(interval_s) {}
 
   /// Takes a reading; returns the mean of the 3 s up to it, if there is no gap in them.
   std::optional<double> add(Nanoseconds time, double speed_m_s);
 
-  static constexpr double kLongestInterval_s = 1.5;
+  static constexpr double kMaxInterval_s = 1.5;
 
  private:
   struct Past {

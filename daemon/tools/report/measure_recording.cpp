@@ -12,12 +12,12 @@ namespace {
 constexpr std::uint64_t kReadingsBetweenWords = 50'000;
 
 std::string names_of(const RecordingSurvey& survey) {
-  constexpr std::size_t kMostNamed = 20;
+  constexpr std::size_t kMaxNamed = 20;
   std::string names;
-  for (std::size_t i = 0; i < std::min(survey.sensors.size(), kMostNamed); ++i) {
+  for (std::size_t i = 0; i < std::min(survey.sensors.size(), kMaxNamed); ++i) {
     names += (i == 0 ? "\"" : ", \"") + survey.sensors[i].name + '"';
   }
-  return names + (survey.sensors.size() > kMostNamed ? ", ..." : "");
+  return names + (survey.sensors.size() > kMaxNamed ? ", ..." : "");
 }
 
 /// Which of the survey's sensors are selected.

@@ -115,7 +115,7 @@ class Figures {
 
 /// Invisible elements with a tooltip for each event.
 std::string Figures::event_titles(int height_px) const {
-  constexpr double kLeastWidth_px = 3.0;
+  constexpr double kMinWidth_px = 3.0;
   const double axis_px = kWidth_px - plot::kTimeAxisLeft_px - plot::kTimeAxisRight_px;
   std::string titles;
   const auto [axis_begin_s, axis_end_s] = *time_panel().x_range;
@@ -126,7 +126,7 @@ std::string Figures::event_titles(int height_px) const {
         std::back_inserter(titles),
         "<rect x=\"{:.1f}\" y=\"0\" width=\"{:.1f}\" height=\"{}\" fill=\"transparent\"><title>{} for {}, from "
         "{}</title></rect>\n",
-        from_px, std::max(event.length_s() * px_per_s, kLeastWidth_px), height_px,
+        from_px, std::max(event.length_s() * px_per_s, kMinWidth_px), height_px,
         kRecordedStateNames[static_cast<std::size_t>(event.state)], settings::duration_text(event.length_s()),
         utc_text(recording_.utc_at(event.from_s)));
   }

@@ -12,7 +12,7 @@
 namespace yuragi::daemon::tools::report {
 namespace {
 
-constexpr std::size_t kMostBytes = 200;
+constexpr std::size_t kMaxBytes = 200;
 constexpr std::string_view kReplacement = "\xef\xbf\xbd";
 
 /// How many bytes the UTF-8 sequence at the beginning has; 0 if there is none that is valid.
@@ -58,7 +58,7 @@ std::string calendar_text(const std::tm& parts, const char* format) {
 std::string page_text(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size();) {
-    if (i >= kMostBytes) return result + "…";
+    if (i >= kMaxBytes) return result + "…";
     const std::size_t length = sequence_length(text.substr(i));
     const char c = text[i];
     if (length == 1 && (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)) {

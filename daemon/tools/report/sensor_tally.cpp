@@ -16,12 +16,12 @@ constexpr double kDay_s = 86400.0;
 
 /// A segment is at most a quarter of the longest run, so that several are averaged, and at most about an hour: slower
 /// changes are weather.
-constexpr std::uint64_t kLeastSegment = 64;
-constexpr std::uint64_t kMostSegment = 1 << 15;
-constexpr double kLongestSegment_s = 4100.0;
+constexpr std::uint64_t kMinSegment = 64;
+constexpr std::uint64_t kMaxSegment = 1 << 15;
+constexpr double kMaxSegment_s = 4100.0;
 /// The autocorrelation is that of half an hour, if runs are long enough.
 constexpr double kCorrelationBlock_s = 1800.0;
-constexpr double kMostCorrelationSamples = 1 << 17;
+constexpr double kMaxCorrelationSamples = 1 << 17;
 /// With a smaller part of readings with a direction only the speed is analysed.
 constexpr double kMostlyDirected = 0.9;
 
@@ -74,9 +74,9 @@ void SensorTally::plan_spectrum(const SensorSurvey& survey) {
     return;
   }
   const auto longest = std::min<std::uint64_t>(
-      {survey.longest_run / 4, kMostSegment, static_cast<std::uint64_t>(kLongestSegment_s / survey.step_s)});
+      {survey.longest_run / 4, kMaxSegment, static_cast<std::uint64_t>(kMaxSegment_s / survey.step_s)});
   series_.emplace(survey.step_s);
-  if (longest >= kLeastSegment) {
+  if (longest >= kMinSegment) {
     const bool is_of_speed =
         static_cast<double>(survey.directed) < kMostlyDirected * static_cast<double>(survey.readings);
     spectrum_.emplace(std::bit_floor(longest), survey.step_s, is_of_speed);
@@ -84,11 +84,11 @@ void SensorTally::plan_spectrum(const SensorSurvey& survey) {
     numbers_.why_no_spectrum = fmt::format(
         "A spectrum needs {} readings in a row that are at most a minute apart; the longest run has {}, {:.3g} s "
         "apart.",
-        4 * kLeastSegment, survey.longest_run, survey.step_s);
+        4 * kMinSegment, survey.longest_run, survey.step_s);
   }
   const double block = std::min(
-      {static_cast<double>(survey.longest_run), kCorrelationBlock_s / survey.step_s + 0.5, kMostCorrelationSamples});
-  if (block >= static_cast<double>(kLeastSegment)) {
+      {static_cast<double>(survey.longest_run), kCorrelationBlock_s / survey.step_s + 0.5, kMaxCorrelationSamples});
+  if (block >= static_cast<double>(kMinSegment)) {
     integral_time_.emplace(static_cast<std::size_t>(block), survey.step_s);
   }
 }

@@ -38,7 +38,7 @@ void SiteTally::add(double time_s, double speed_m_s, const std::optional<wind::W
 
   const double mean_m_s = speed_of(mean_);
   const wind::WindVector ahead = mean_m_s > 0.0 ? (1.0 / mean_m_s) * mean_ : wind::WindVector{0.0, 1.0};
-  const double divisor_m_s = std::max(speed_m_s_, wind::blend::kLeastSpeed_m_s);
+  const double divisor_m_s = std::max(speed_m_s_, wind::blend::kMinSpeed_m_s);
   quick_.forget(interval_s_);
   quick_.take(measured, ahead, divisor_m_s, wind.has_value());
   site_fit_.observe({.wind = measured,

@@ -15,12 +15,12 @@ namespace {
 /// averaging by the sensor removes some.
 constexpr double kSlopeEnds_nyquist = 0.4;
 constexpr double kSlopeDecade = 10.0;
-constexpr std::size_t kLeastLines = 4;
+constexpr std::size_t kMinLines = 4;
 
 /// The fit uses the octaves that detrending and window do not affect, up to half of the Nyquist frequency.
 constexpr double kFitBegins_lines = 3.0;
 constexpr double kFitEnds_nyquist = 0.5;
-constexpr std::size_t kLeastOctaves = 3;
+constexpr std::size_t kMinOctaves = 3;
 constexpr int kTimeScaleSteps = 600;
 
 std::optional<PowerLawFit> fit_power_law(const SpectrumNumbers& spectrum) {
@@ -43,7 +43,7 @@ std::optional<PowerLawFit> fit_power_law(const SpectrumNumbers& spectrum) {
     sum_xy += x * y;
   }
   const double spread = count * sum_xx - sum_x * sum_x;
-  if (count < kLeastLines || !(spread > 0.0)) return std::nullopt;
+  if (count < kMinLines || !(spread > 0.0)) return std::nullopt;
   fit.beta = -(count * sum_xy - sum_x * sum_y) / spread;
   fit.log_level = (sum_y + fit.beta * sum_x) / count;
   return fit;
@@ -92,7 +92,7 @@ std::vector<OctaveLines> add_octaves(SpectrumNumbers& spectrum) {
 void fit_von_karman(SpectrumNumbers& spectrum, const std::vector<OctaveLines>& lines, double speed_m_s) {
   const auto count = static_cast<std::size_t>(
       std::ranges::count_if(spectrum.octaves, [](const auto& band) { return band.is_in_fit; }));
-  if (count < kLeastOctaves || !(speed_m_s > 0.0)) return;
+  if (count < kMinOctaves || !(speed_m_s > 0.0)) return;
 
   // For each time scale the best level, in closed form; then the best time scale. From scales whose bend
   // lies above all octaves to those whose bend lies below.

@@ -13,7 +13,7 @@
 namespace yuragi::daemon::tools::take {
 
 /// No more joints fit the 16 bits by which glTF numbers those of a vertex.
-inline constexpr std::size_t kMostJoints = 65535;
+inline constexpr std::size_t kMaxJoints = 65535;
 
 /// The places of joints in all pictures that a take has room for: 12 bytes each, kept in memory until it is written.
 inline constexpr double kMaxPlaces = 80e6;
@@ -27,7 +27,7 @@ Result<void, Failure> checked_size(std::size_t joints, double pictures);
 /// does not move has no curve. Neither normals nor colours: a person who opens it gives it a material.
 class TakeRecorder {
  public:
-  /// `skeleton` must outlive this, and have at most kMostJoints with that `every` (every_within()).
+  /// `skeleton` must outlive this, and have at most kMaxJoints with that `every` (every_within()).
   TakeRecorder(const pose::Skeleton& skeleton, std::string name, std::size_t every, double fps);
 
   /// The next picture. False if the pose does not fit the skeleton.

@@ -7,7 +7,7 @@ namespace yuragi::drivers::decode::hid {
 namespace {
 
 constexpr std::array<std::uint16_t, 7> kFineOffsetMarks = {0x55AA, 0xFFFF, 0x5555, 0xC400, 0x44BF, 0x0001, 0x001E};
-constexpr std::size_t kShortestRecord = 16;
+constexpr std::size_t kMinRecord = 16;
 constexpr std::uint32_t kMemoryEnd = 0x10000;
 constexpr unsigned kNoSpeed = 0xFFF;
 constexpr unsigned kNoDirection = 0x80;
@@ -32,7 +32,7 @@ std::optional<double> signed_tenths(unsigned word) {
 
 /// Why no record can be in these bytes.
 std::optional<Refusal> record_refusal(ByteSpan record) {
-  if (record.size() < kShortestRecord) return Refusal::kTooShort;
+  if (record.size() < kMinRecord) return Refusal::kTooShort;
   if (record.size() > kFineOffsetBlock) return Refusal::kMalformed;
   const bool is_blank = std::ranges::all_of(record, [](std::uint8_t byte) { return byte == 0; });
   if (is_blank) return Refusal::kMalformed;

@@ -17,7 +17,7 @@ constexpr std::uint8_t kSeveralChannels = 0x2F;
 /// Of a frame, besides what its length counts.
 constexpr std::size_t kFrameOverhead = 12;
 /// The command, its version and the status.
-constexpr std::size_t kShortestReply = 3;
+constexpr std::size_t kMinReply = 3;
 
 double signed_8(std::uint8_t byte) {
   return static_cast<std::int8_t>(byte);
@@ -74,7 +74,7 @@ std::optional<Refusal> read_channels(ByteSpan bytes, UmbReply& reply) {
   if (bytes.empty()) return Refusal::kMalformed;
   const std::size_t count = bytes[0];
   bytes = bytes.subspan(1);
-  if (count > kMostUmbChannels) return Refusal::kMalformed;
+  if (count > kMaxUmbChannels) return Refusal::kMalformed;
   for (; reply.count < count; ++reply.count) {
     if (bytes.empty() || bytes[0] == 0 || bytes.size() <= bytes[0]) return Refusal::kMalformed;
     const auto channel = channel_of(bytes[1], bytes.subspan(2, bytes[0] - 1U));
@@ -88,7 +88,7 @@ std::optional<Refusal> read_channels(ByteSpan bytes, UmbReply& reply) {
 
 std::optional<Refusal> frame_refusal(ByteSpan frame) {
   if (!begins_umb_frame(frame)) return Refusal::kMalformed;
-  if (frame.size() < kFrameOverhead + kShortestReply - 1) return Refusal::kTooShort;
+  if (frame.size() < kFrameOverhead + kMinReply - 1) return Refusal::kTooShort;
   const std::size_t size = umb_frame_size(frame);
   if (frame.size() < size) return Refusal::kTooShort;
   if (frame.size() > size || frame[size - 4] != kEndOfText || frame[size - 1] != kEndOfTransmission)
@@ -123,7 +123,7 @@ bool begins_umb_frame(ByteSpan beginning) noexcept {
   const auto has = [&](std::size_t at, auto holds) { return beginning.size() <= at || holds(beginning[at]); };
   return has(0, [](std::uint8_t byte) { return byte == kStartOfHeader; }) &&
          has(1, [](std::uint8_t byte) { return byte == kVersion; }) &&
-         has(6, [](std::uint8_t byte) { return byte >= 2 && byte + kFrameOverhead <= kLongestUmbFrame; }) &&
+         has(6, [](std::uint8_t byte) { return byte >= 2 && byte + kFrameOverhead <= kMaxUmbFrame; }) &&
          has(7, [](std::uint8_t byte) { return byte == kStartOfText; });
 }
 
@@ -139,7 +139,7 @@ std::vector<std::uint8_t> umb_request(std::uint16_t address, std::span<const std
   };
   put_16(address);
   put_16(kUmbController);
-  frame.push_back(static_cast<std::uint8_t>(kShortestReply + 2 * channels.size()));
+  frame.push_back(static_cast<std::uint8_t>(kMinReply + 2 * channels.size()));
   frame.insert(frame.end(), {kStartOfText, kSeveralChannels, kVersion, static_cast<std::uint8_t>(channels.size())});
   for (const std::uint16_t channel : channels) put_16(channel);
   frame.push_back(kEndOfText);
@@ -163,11 +163,11 @@ Result<UmbReply, Refusal> decode_umb_reply(std::optional<std::uint16_t> address,
   const bool is_reply = is_umb_controller(little_endian_16(frame, 2)) && !is_umb_controller(reply.address) &&
                         (command == kOneChannel || command == kSeveralChannels);
   if (!is_reply || (address && reply.address != *address)) return Refusal::kNotMine;
-  if (frame[6] < kShortestReply) return Refusal::kMalformed;
+  if (frame[6] < kMinReply) return Refusal::kMalformed;
   const std::uint8_t status = frame[10];
   if (status != 0) return Refusal::kException;
 
-  const ByteSpan said = frame.subspan(11, frame[6] - kShortestReply);
+  const ByteSpan said = frame.subspan(11, frame[6] - kMinReply);
   if (command == kSeveralChannels) {
     if (const auto refusal = read_channels(said, reply)) return *refusal;
     return reply;
@@ -181,7 +181,7 @@ Result<UmbReply, Refusal> decode_umb_reply(std::optional<std::uint16_t> address,
 Result<DecodedWind, Refusal> wind_of(const UmbReply& reply) noexcept {
   DecodedWind wind;
   wind.speed_m_s = first_value_in(reply, umb_channel::kFastSpeed, umb_channel::kSpeed);
-  wind.gust_m_s = value_in(reply, umb_channel::kGreatestSpeed);
+  wind.gust_m_s = value_in(reply, umb_channel::kMaxSpeed);
   if (wind.gust_m_s && wind.speed_m_s && *wind.gust_m_s < *wind.speed_m_s) wind.gust_m_s.reset();
   if (const auto direction_deg = first_value_in(reply, umb_channel::kFastDirection, umb_channel::kDirection)) {
     wind.direction_deg = wrapped_direction_deg(*direction_deg);

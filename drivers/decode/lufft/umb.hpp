@@ -45,9 +45,9 @@ constexpr bool is_umb_controller(std::uint16_t address) noexcept {
   return (address >> 12U) == 15;
 }
 /// That a request may ask for; a frame has room for their values.
-inline constexpr std::size_t kMostUmbChannels = 20;
+inline constexpr std::size_t kMaxUmbChannels = 20;
 /// With the 210 bytes that a command may have.
-inline constexpr std::size_t kLongestUmbFrame = 224;
+inline constexpr std::size_t kMaxUmbFrame = 224;
 
 namespace umb_channel {
 inline constexpr std::uint16_t kAirTemperature = 100;    ///< degrees Celsius
@@ -55,7 +55,7 @@ inline constexpr std::uint16_t kRelativeHumidity = 200;  ///< %
 inline constexpr std::uint16_t kPressure = 300;          ///< hPa, at the station
 inline constexpr std::uint16_t kSpeed = 400;             ///< m/s; of a weather station the mean of 10 s
 inline constexpr std::uint16_t kFastSpeed = 401;         ///< m/s, each second; a VENTUS needs none
-inline constexpr std::uint16_t kGreatestSpeed = 440;     ///< m/s, of the device's own recent past
+inline constexpr std::uint16_t kMaxSpeed = 440;          ///< m/s, of the device's own recent past
 inline constexpr std::uint16_t kDirection = 500;         ///< degrees, as kSpeed
 inline constexpr std::uint16_t kFastDirection = 501;     ///< degrees, as kFastSpeed
 inline constexpr std::uint16_t kRainTotal = 620;         ///< mm, since it was set back
@@ -63,11 +63,10 @@ inline constexpr std::uint16_t kRainRate = 820;          ///< mm/h
 }  // namespace umb_channel
 
 /// All of them: what one exchange asks for.
-inline constexpr std::array kUmbChannels = {umb_channel::kFastSpeed,     umb_channel::kSpeed,
-                                            umb_channel::kFastDirection, umb_channel::kDirection,
-                                            umb_channel::kGreatestSpeed, umb_channel::kAirTemperature,
-                                            umb_channel::kPressure,      umb_channel::kRelativeHumidity,
-                                            umb_channel::kRainTotal,     umb_channel::kRainRate};
+inline constexpr std::array kUmbChannels = {
+    umb_channel::kFastSpeed, umb_channel::kSpeed,          umb_channel::kFastDirection, umb_channel::kDirection,
+    umb_channel::kMaxSpeed,  umb_channel::kAirTemperature, umb_channel::kPressure,      umb_channel::kRelativeHumidity,
+    umb_channel::kRainTotal, umb_channel::kRainRate};
 /// What each device has.
 inline constexpr std::array kUmbWindChannels = {umb_channel::kSpeed, umb_channel::kDirection};
 
@@ -85,7 +84,7 @@ bool begins_umb_frame(ByteSpan beginning) noexcept;
 /// How long it is, by its beginning of at least 7 bytes. Thread-safe and realtime-safe: yes.
 std::size_t umb_frame_size(ByteSpan beginning) noexcept;
 
-/// The frame that asks the device at `address` for `channels`, kMostUmbChannels at most.
+/// The frame that asks the device at `address` for `channels`, kMaxUmbChannels at most.
 std::vector<std::uint8_t> umb_request(std::uint16_t address, std::span<const std::uint16_t> channels);
 
 /// One channel of a reply.
@@ -98,7 +97,7 @@ struct UmbChannel {
 /// What a device replied.
 struct UmbReply {
   std::uint16_t address = 0;
-  std::array<UmbChannel, kMostUmbChannels> channels{};
+  std::array<UmbChannel, kMaxUmbChannels> channels{};
   std::size_t count = 0;
 
   /// That channel; nullptr where the reply does not have it.

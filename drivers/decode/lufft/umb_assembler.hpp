@@ -32,7 +32,7 @@ class UmbAssembler {
  private:
   void drop_front(std::size_t count) noexcept;
 
-  std::array<std::uint8_t, kLongestUmbFrame> bytes_{};
+  std::array<std::uint8_t, kMaxUmbFrame> bytes_{};
   std::size_t size_ = 0;
   std::size_t taken_ = 0;    // of bytes_: the frame of the last call
   bool is_outside_ = false;  // the bytes before belonged to no frame, and it has been told

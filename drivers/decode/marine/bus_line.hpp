@@ -20,7 +20,7 @@ enum class BusLineFormat : std::uint8_t {
 };
 
 /// canboat's longest records have some thousand bytes.
-inline constexpr std::size_t kLongestBusLine = 8192;
+inline constexpr std::size_t kMaxBusLine = 8192;
 
 struct BusLineOptions {
   BusLineFormat format = BusLineFormat::kAuto;

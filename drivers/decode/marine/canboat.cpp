@@ -14,7 +14,7 @@ namespace {
 
 using CanboatJson = nlohmann::json;
 
-constexpr double kLargestAngle_rad = 6.5535;  // 0xFFFF in the frame
+constexpr double kMaxAngle_rad = 6.5535;  // 0xFFFF in the frame
 constexpr std::array<std::string_view, 5> kReferenceTexts = {
     "True (ground referenced to North)", "Magnetic (ground referenced to Magnetic North)", "Apparent",
     "True (boat referenced)", "True (water referenced)"};
@@ -118,7 +118,7 @@ Result<BusWind, Refusal> decode_canboat(const CanboatOptions& options, std::stri
   said.wind.reference = wind_reference_of(*reference);
   said.wind.speed_m_s = *speed_m_s;
   if (*angle) {
-    const bool is_beyond_radians = **angle > kLargestAngle_rad;
+    const bool is_beyond_radians = **angle > kMaxAngle_rad;
     const bool is_known = options.angle_unit || is_beyond_radians;
     const AngleUnit unit = options.angle_unit.value_or(AngleUnit::kDegrees);
     if (is_known) {

@@ -13,7 +13,7 @@ namespace {
 
 using SignalKJson = nlohmann::json;
 
-constexpr std::size_t kLongestText = 64;
+constexpr std::size_t kMaxText = 64;
 constexpr std::string_view kWindPath = "environment.wind.";
 constexpr std::array<std::string_view, kSignalKQuantities> kQuantityNames = {
     "speedApparent",  "speedTrue",       "speedOverGround", "angleApparent",
@@ -27,7 +27,7 @@ bool is_speed(std::size_t quantity) {
 std::string shown_text(const SignalKJson& object, const char* name) {
   const auto found = object.find(name);
   if (found == object.end() || !found->is_string()) return {};
-  std::string text = found->get_ref<const std::string&>().substr(0, kLongestText);
+  std::string text = found->get_ref<const std::string&>().substr(0, kMaxText);
   std::ranges::replace_if(
       text, [](char c) { return c < ' ' || c > '~'; }, '.');
   return text;
@@ -48,7 +48,7 @@ std::string source_of(const SignalKJson& update) {
     const std::string text = shown_text(*source, part);
     if (text.empty()) continue;
     named.append(".").append(text);
-    return named.substr(0, kLongestText);
+    return named.substr(0, kMaxText);
   }
   return named;
 }

@@ -24,7 +24,7 @@ namespace yuragi::drivers::decode::marine {
 // each value of a message in a delta of its own, with the message's source and time. Sources: drivers/SOURCES.md S11.
 
 /// Deltas of one message have some hundred bytes, those of many values some thousand.
-inline constexpr std::size_t kLongestDelta = 16384;
+inline constexpr std::size_t kMaxDelta = 16384;
 
 /// The values below environment.wind that are read.
 enum class SignalKQuantity : std::uint8_t {

@@ -5,8 +5,8 @@
 namespace yuragi::drivers::decode::marine {
 namespace {
 
-constexpr std::size_t kShortestData = 6;
-constexpr std::size_t kLongestData = 8;
+constexpr std::size_t kMinData = 6;
+constexpr std::size_t kMaxData = 8;
 constexpr std::uint16_t kFirstWithoutValue = 0xFFFD;
 constexpr double kSpeedUnit_m_s = 0.01;
 constexpr double kAngleUnit_rad = 0.0001;
@@ -45,8 +45,8 @@ std::optional<double> direction_of_angle_deg(double angle_rad) noexcept {
 }
 
 Result<BusWind, Refusal> decode_wind_data(std::uint8_t address, ByteSpan data) noexcept {
-  if (data.size() < kShortestData) return Refusal::kTooShort;
-  if (data.size() > kLongestData) return Refusal::kMalformed;
+  if (data.size() < kMinData) return Refusal::kTooShort;
+  if (data.size() > kMaxData) return Refusal::kMalformed;
   const unsigned reference = data[5] & kReferenceBits;
   if (reference > static_cast<unsigned>(WindDataReference::kWater) && reference != kUnknownReference)
     return Refusal::kMalformed;

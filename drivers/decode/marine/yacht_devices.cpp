@@ -11,7 +11,7 @@ constexpr std::size_t kWay = 1;
 constexpr std::size_t kIdentifier = 2;
 constexpr std::size_t kData = 3;
 constexpr std::string_view kTimeShape = "00:00:00.000";
-constexpr std::uint32_t kLargestIdentifier = 0x1FFFFFFF;
+constexpr std::uint32_t kMaxIdentifier = 0x1FFFFFFF;
 
 bool is_time(std::string_view text) {
   if (text.size() != kTimeShape.size()) return false;
@@ -33,7 +33,7 @@ Result<BusWind, Refusal> decode_yacht_devices(std::string_view line) noexcept {
   const TextFields fields = split_fields(trimmed(line), ' ');
   if (fields.count <= kData) return Refusal::kTooShort;
   const auto identifier = hex_number(fields[kIdentifier], 8);
-  if (!looks_like_yacht_devices(line) || !identifier || *identifier > kLargestIdentifier) return Refusal::kMalformed;
+  if (!looks_like_yacht_devices(line) || !identifier || *identifier > kMaxIdentifier) return Refusal::kMalformed;
 
   BusFrame frame = {.identifier = *identifier};
   if (fields.count > kData + frame.data.size()) return Refusal::kMalformed;

@@ -8,7 +8,7 @@
 namespace yuragi::drivers::decode::microphone {
 namespace {
 
-constexpr double kShortestSegment_s = 0.125;
+constexpr double kMinSegment_s = 0.125;
 constexpr double kBlock_s = 0.25;
 /// Samples of at least this magnitude are full scale for every converter of 8 bits and more.
 constexpr float kClipLevel = 0.99F;
@@ -20,7 +20,7 @@ constexpr double kUsablePart = 0.45;  // of the rate: what lies above, the conve
 
 std::size_t segment_size(double rate_hz) {
   std::size_t size = 8;
-  while (static_cast<double>(size) < kShortestSegment_s * rate_hz) size *= 2;
+  while (static_cast<double>(size) < kMinSegment_s * rate_hz) size *= 2;
   return size;
 }
 

@@ -13,11 +13,11 @@
 namespace yuragi::drivers::decode::microphone {
 namespace {
 
-constexpr std::size_t kFewestPairs = 8;
-constexpr double kLeastSpan_m_s = 1.0;
-constexpr double kLeastSpan_db = 3.0;
-constexpr double kLowestExponent = 0.3;
-constexpr double kHighestExponent = 6.0;
+constexpr std::size_t kMinPairs = 8;
+constexpr double kMinSpan_m_s = 1.0;
+constexpr double kMinSpan_db = 3.0;
+constexpr double kMinExponent = 0.3;
+constexpr double kMaxExponent = 6.0;
 constexpr int kExponentSteps = 400;
 constexpr int kCurvePoints = 17;
 constexpr double kSilence_db = -200.0;
@@ -42,8 +42,8 @@ double curve_speed(const MicCurve& curve, double level_db) {
 }
 
 std::optional<Failure> too_little(Pairs pairs) {
-  if (pairs.size() < kFewestPairs) {
-    return Failure{"too few pairs of level and speed: at least " + std::to_string(kFewestPairs) + " are needed"};
+  if (pairs.size() < kMinPairs) {
+    return Failure{"too few pairs of level and speed: at least " + std::to_string(kMinPairs) + " are needed"};
   }
   const auto finite = [](const MicLevelAndSpeed& pair) {
     return std::isfinite(pair.level_db) && std::isfinite(pair.speed_m_s);
@@ -51,7 +51,7 @@ std::optional<Failure> too_little(Pairs pairs) {
   if (!std::ranges::all_of(pairs, finite)) return Failure{"a level or a speed is not a number"};
   const auto [softest, loudest] = std::ranges::minmax(pairs, {}, &MicLevelAndSpeed::level_db);
   const auto [slowest, fastest] = std::ranges::minmax(pairs, {}, &MicLevelAndSpeed::speed_m_s);
-  if (fastest.speed_m_s - slowest.speed_m_s < kLeastSpan_m_s || loudest.level_db - softest.level_db < kLeastSpan_db) {
+  if (fastest.speed_m_s - slowest.speed_m_s < kMinSpan_m_s || loudest.level_db - softest.level_db < kMinSpan_db) {
     return Failure{"the wind varied too little for a calibration: both calm and wind are needed"};
   }
   return std::nullopt;
@@ -190,7 +190,7 @@ Result<MicPowerLaw, Failure> fit_mic_power_law(Pairs pairs, double noise_power) 
   double least_squares = 0.0;
   for (int step = 0; step <= kExponentSteps; ++step) {
     const double exponent =
-        kLowestExponent * std::pow(kHighestExponent / kLowestExponent, static_cast<double>(step) / kExponentSteps);
+        kMinExponent * std::pow(kMaxExponent / kMinExponent, static_cast<double>(step) / kExponentSteps);
     double products = 0.0;
     double squares = 0.0;
     double speeds = 0.0;
@@ -238,8 +238,8 @@ Result<MicPowerLaw, Failure> mic_power_law_through(const MicLevelAndSpeed& soft,
                                                    double noise_power) {
   const double soft_power = power_of_db(soft.level_db) - noise_power;
   const double loud_power = power_of_db(loud.level_db) - noise_power;
-  const bool is_wide = soft.speed_m_s > 0.0 && loud.speed_m_s - soft.speed_m_s >= kLeastSpan_m_s &&
-                       loud.level_db - soft.level_db >= kLeastSpan_db && soft_power > 0.0;
+  const bool is_wide = soft.speed_m_s > 0.0 && loud.speed_m_s - soft.speed_m_s >= kMinSpan_m_s &&
+                       loud.level_db - soft.level_db >= kMinSpan_db && soft_power > 0.0;
   if (!is_wide) {
     return Failure{
         "the two winds are too similar: they must differ by 1 m/s and 3 dB, and the slower one must be louder than a "
@@ -247,7 +247,7 @@ Result<MicPowerLaw, Failure> mic_power_law_through(const MicLevelAndSpeed& soft,
   }
   // U1 / U2 = (P1 / P2)^(1 / 2n), and the gain from the faster.
   const double exponent = 0.5 * std::log(loud_power / soft_power) / std::log(loud.speed_m_s / soft.speed_m_s);
-  if (!(exponent >= kLowestExponent && exponent <= kHighestExponent)) {
+  if (!(exponent >= kMinExponent && exponent <= kMaxExponent)) {
     return Failure{
         "the sound does not grow with the wind as expected: check that both winds were steady, and that there was no "
         "other "

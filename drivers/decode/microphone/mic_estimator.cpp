@@ -9,15 +9,15 @@ namespace yuragi::drivers::decode::microphone {
 namespace {
 
 constexpr double kBlockLength_s = 0.25;
-constexpr double kLongestStep_s = 2.0;
+constexpr double kMaxStep_s = 2.0;
 constexpr double kNothing_db = -200.0;
 constexpr double kClipsFrom = 1e-3;      // part of the samples
-constexpr double kMostClipping = 0.5;    // beyond it the standard deviation is anybody's guess
+constexpr double kMaxClipping = 0.5;     // beyond it the standard deviation is anybody's guess
 constexpr double kFullScaleNoise = 0.1;  // mean square from which on white noise is no microphone's own
 constexpr double kWhiteFrom = 0.25;      // density of the upper band over that of the wind's band
 // The part of a band's power in which two channels differ. Copies differ by rounding, some 1e-7; two microphones by
 // their own noise, and by what they are apart: by 5 cm 1e-4 from 160 to 200 Hz, however loud the sound is.
-constexpr double kMostTwinDifference = 1e-6;
+constexpr double kMaxTwinDifference = 1e-6;
 constexpr double kGustWindow_s = 3.0;
 constexpr double kGustMemory_s = 600.0;
 
@@ -124,7 +124,7 @@ bool MicEstimator::are_twins(std::size_t a, std::size_t b) const {
     if ((power_a > 0.0) != (power_b > 0.0)) return false;
     if (!(power_a > 0.0) || independent_averages(segments, hello_.bins[band]) <= 1.0) continue;
     have_power = true;
-    if (std::norm(cross) < (1.0 - kMostTwinDifference) * power_a * power_b) return false;
+    if (std::norm(cross) < (1.0 - kMaxTwinDifference) * power_a * power_b) return false;
   }
   return have_power;
 }
@@ -185,7 +185,7 @@ MicEstimator::Levels MicEstimator::levels_of_window() const {
     }
     if (clipped >= kClipsFrom && total > 0.0) {
       levels.is_clipping = true;
-      const double deviation = clipped_deviation(std::min(clipped, kMostClipping));
+      const double deviation = clipped_deviation(std::min(clipped, kMaxClipping));
       levels.power[channel] *= std::max(1.0, deviation * deviation / total);
     }
     levels.power_with_sound += all / static_cast<double>(living.size());
@@ -196,7 +196,7 @@ MicEstimator::Levels MicEstimator::levels_of_window() const {
 
 Result<std::optional<MicEstimate>, Refusal> MicEstimator::add(const MicBlock& block) {
   const double samples = block.end_sample > last_sample_ ? static_cast<double>(block.end_sample - last_sample_) : 0.0;
-  const double duration_s = std::clamp(samples / hello_.rate_hz, 0.0, kLongestStep_s);
+  const double duration_s = std::clamp(samples / hello_.rate_hz, 0.0, kMaxStep_s);
   last_sample_ = block.end_sample;
   time_s_ += duration_s;
   if (const auto refusal = refuse(block)) {

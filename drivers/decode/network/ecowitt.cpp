@@ -148,7 +148,7 @@ Result<std::size_t, Refusal> ecowitt_reply_size(ByteSpan beginning) noexcept {
   if (beginning.size() > kMark && beginning[kMark] != kLiveData) return Refusal::kNotMine;
   if (beginning.size() < kHead) return Refusal::kTooShort;
   const std::size_t size = kMark + big_endian_16(beginning, 3);
-  if (size < kHead + kChecksum || size > kLongestEcowittReply) return Refusal::kMalformed;
+  if (size < kHead + kChecksum || size > kMaxEcowittReply) return Refusal::kMalformed;
   return size;
 }
 

@@ -32,7 +32,7 @@ namespace yuragi::drivers::decode::network {
 inline constexpr std::array<std::uint8_t, 5> kEcowittRequest = {0xFF, 0xFF, 0x27, 0x03, 0x2A};
 
 /// Longer than any reply: all items together have less than 400 bytes.
-inline constexpr std::size_t kLongestEcowittReply = 1024;
+inline constexpr std::size_t kMaxEcowittReply = 1024;
 
 /// What a reply says.
 struct EcowittValues {

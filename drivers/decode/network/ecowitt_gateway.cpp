@@ -12,7 +12,7 @@ constexpr std::uint8_t kSearchCommand = 0x12;
 constexpr std::size_t kMacAt = 5;
 constexpr std::size_t kPortAt = 15;
 constexpr std::size_t kNameAt = 18;
-constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kMaxName = 64;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ Result<EcowittGateway, Refusal> decode_ecowitt_gateway(ByteSpan answer) {
   const ByteSpan name = answer.subspan(kNameAt, answer.size() - kNameAt - 1);
   gateway.name.assign(name.begin(), name.end());
   make_printable(gateway.name);
-  gateway.name = shortened(gateway.name, kLongestName);
+  gateway.name = shortened(gateway.name, kMaxName);
   return gateway;
 }
 

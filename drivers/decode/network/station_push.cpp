@@ -17,7 +17,7 @@ namespace {
 constexpr double kNoPushValue = -9999.0;
 constexpr double kHectopascalsPerInchOfMercury = 33.86389;
 constexpr double kMillimetresPerInch = 25.4;
-constexpr std::size_t kLongestPushText = 40;
+constexpr std::size_t kMaxPushText = 40;
 
 /// The values that are read, by their places in kPushNames.
 enum PushName : std::uint8_t {
@@ -179,7 +179,7 @@ PushTarget split_push_target(std::string_view target) noexcept {
 }
 
 Result<StationPush, Refusal> decode_station_push(std::string_view form) noexcept {
-  if (form.size() > kLongestStationPush) return Refusal::kMalformed;
+  if (form.size() > kMaxStationPush) return Refusal::kMalformed;
   form = trimmed(form);
   if (form.empty()) return Refusal::kTooShort;
   if (!std::ranges::all_of(form, [](char c) { return c > ' ' && c <= '~'; })) return Refusal::kMalformed;
@@ -215,7 +215,7 @@ std::string without_push_secrets(std::string_view form) {
 }
 
 std::string push_text(std::string_view value) {
-  std::string text = percent_decoded(value.substr(0, 3 * kLongestPushText)).substr(0, kLongestPushText);
+  std::string text = percent_decoded(value.substr(0, 3 * kMaxPushText)).substr(0, kMaxPushText);
   std::ranges::replace_if(
       text, [](char c) { return c < ' ' || c > '~'; }, '?');
   return text;

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kLongestSerialNumber = 32;
+constexpr std::size_t kMaxSerialNumber = 32;
 constexpr double kLatestTime_s = 1e12;
 constexpr double kMinutesInHour = 60.0;
 /// No value stands there.
@@ -37,7 +37,7 @@ constexpr ObservationLayout kSkyLayout = {"obs_sky", 14, 5, 6, 7, kNowhere, kNow
 
 bool is_serial_number(const std::string& text) {
   const bool is_printable = std::ranges::all_of(text, [](char c) { return c > ' ' && c <= '~'; });
-  return !text.empty() && text.size() <= kLongestSerialNumber && is_printable;
+  return !text.empty() && text.size() <= kMaxSerialNumber && is_printable;
 }
 
 /// The text of that name in an object; empty where there is none.
@@ -117,7 +117,7 @@ std::optional<Refusal> take_observation(const Json& observations, const Observat
 
 Result<TempestMessage, Refusal> decode_tempest(std::string_view datagram) {
   if (datagram.empty()) return Refusal::kTooShort;
-  if (datagram.size() > kLongestTempestMessage) return Refusal::kMalformed;
+  if (datagram.size() > kMaxTempestMessage) return Refusal::kMalformed;
   const Json message = Json::parse(datagram, nullptr, false);
   if (!message.is_object()) return Refusal::kMalformed;
 

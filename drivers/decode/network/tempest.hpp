@@ -27,7 +27,7 @@ namespace yuragi::drivers::decode::network {
 // degrees Celsius, rain mm, report intervals minutes. Any value can be null. In a calm speed and direction are 0.
 
 /// The hub's messages are shorter than 1 KiB.
-inline constexpr std::size_t kLongestTempestMessage = 4096;
+inline constexpr std::size_t kMaxTempestMessage = 4096;
 
 /// What a message is about.
 enum class TempestKind : std::uint8_t {
@@ -50,7 +50,7 @@ struct TempestMessage {
 
 /// A datagram of a hub, or what is wrong with it: kTooShort (empty, or too few values), kMalformed (not JSON, or not
 /// such a message). JSON has no checksum: a digit that was changed on the way is another number, which only its range
-/// can give away. Allocates at most some ten times kLongestTempestMessage; throws std::bad_alloc where there is no such
+/// can give away. Allocates at most some ten times kMaxTempestMessage; throws std::bad_alloc where there is no such
 /// memory, and nothing else for any bytes. Thread-safe: yes.
 Result<TempestMessage, Refusal> decode_tempest(std::string_view datagram);
 

@@ -36,10 +36,10 @@ Result<Mcc1208Calibration, Refusal> decode_mcc1208_calibration(ByteSpan reply) n
   const Mcc1208Calibration calibration = {
       .slope = static_cast<double>(std::bit_cast<float>(little_endian_32(reply, 0))),
       .intercept_steps = static_cast<double>(std::bit_cast<float>(little_endian_32(reply, 4)))};
-  constexpr double kMostSlope = 0.2;
-  constexpr double kMostIntercept_steps = 256.0;
+  constexpr double kMaxSlope = 0.2;
+  constexpr double kMaxIntercept_steps = 256.0;
   const bool is_believable =
-      std::abs(calibration.slope - 1.0) <= kMostSlope && std::abs(calibration.intercept_steps) <= kMostIntercept_steps;
+      std::abs(calibration.slope - 1.0) <= kMaxSlope && std::abs(calibration.intercept_steps) <= kMaxIntercept_steps;
   if (!is_believable) return Refusal::kInvalid;
   return calibration;
 }

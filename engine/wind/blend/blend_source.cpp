@@ -200,7 +200,7 @@ void BlendSource::set_full_trust() noexcept {
 /// Adds a reading, a mean over so long or the wind at its end, to the turbulence, and to the site's spectrum if the
 /// source may update it.
 void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
-  const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
+  const double speed_m_s = std::max(speed_m_s_, kMinSpeed_m_s);
   const bool has_across = has_vane() && !is_coarse();
   measured_.take(wind_, ahead, speed_m_s, has_across);
   if (!site_ || !settings_.fits_site || record_.last()->quality == ReadingQuality::kSimulated) return;
@@ -212,7 +212,7 @@ void BlendSource::measure(WindVector ahead, double mean_of_s) noexcept {
 /// Fits the turbulence to the readings, and computes the variance of each octave of the noise from the fit.
 void BlendSource::fit(double interval_s, double advection_m_s) noexcept {
   fitted_s_ = 0.0;
-  const double speed_m_s = std::max(speed_m_s_, kLeastSpeed_m_s);
+  const double speed_m_s = std::max(speed_m_s_, kMinSpeed_m_s);
   measured_.fit(interval_s, speed_m_s);
   turbulence_ = measured_.along().turbulence();
   const bool is_other = set_taken();

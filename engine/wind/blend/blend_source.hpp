@@ -18,7 +18,7 @@
 namespace yuragi::wind::blend {
 
 /// Turbulence is measured as a part of the mean speed; of a weaker mean than this it is none.
-inline constexpr double kLeastSpeed_m_s = 0.5;
+inline constexpr double kMinSpeed_m_s = 0.5;
 
 /// A number for the mean (0) and each octave band (1 + band) of a source.
 using BandWeights = std::array<double, turbulence::OctaveFollower::kBands + 1>;

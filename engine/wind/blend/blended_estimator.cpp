@@ -11,7 +11,7 @@ namespace yuragi::wind::blend {
 namespace {
 
 /// Gusts go on changing in calm air as if it moved at this.
-constexpr double kLeastAdvection_m_s = 0.3;
+constexpr double kMinAdvection_m_s = 0.3;
 /// Below this the wind's direction is no direction: what it was is held, the more the calmer it is.
 constexpr double kCalm_m_s = 0.5;
 constexpr double kTurnRate_hz = 0.1;
@@ -21,9 +21,9 @@ constexpr double kIntervalsOfAGust = 3.0;
 /// A low pass has done 98 % of its way after 4 time constants.
 constexpr double kPlaneRateTimesHandover = 4.0;
 /// Sources at a place of their own have at least so much weight there.
-constexpr double kLeastWeight = 1e-6;
+constexpr double kMinWeight = 1e-6;
 /// Less than this is nothing.
-constexpr double kLeastShare = 1e-9;
+constexpr double kMinShare = 1e-9;
 /// How fast the strength of the gusts follows what it should be.
 constexpr double kStrengthMemory_s = 1.0;
 /// And how fast they lose what is known of them follows the turbulence that is fitted.
@@ -32,12 +32,12 @@ constexpr double kCoherenceMemory_s = 10.0;
 /// wind have less in common than GustCoherence leaves them of what was measured; frozen, they have more.
 constexpr double kTurnoverRate = 0.5;
 /// Waves shorter than so many of its samples are faded out of the tape, over the octave above them.
-constexpr double kLeastSamplesAWave = 4.0;
+constexpr double kMinSamplesAWave = 4.0;
 /// How far the windward edge moves with a wider scene, over how far the wind goes.
 constexpr double kReachRate = 0.2;
 /// A step of time of more than so many ticks, or steps like the one before, is a leap of the clock or a halt of the
 /// machine: the wind goes on from where it was, and only the readings' ages are what they are.
-constexpr double kLongestStep_ticks = 2.0;
+constexpr double kMaxStep_ticks = 2.0;
 
 /// How many octaves above 1 a ratio is, but 0 to 1.
 double part_of_octave(double ratio) noexcept {
@@ -91,7 +91,7 @@ bool BlendedEstimator::accept(std::size_t index, const WindReading& reading) noe
   if (index >= sources_.size()) return false;
   return sources_[index].accept(reading, {.ahead = ground_.gusts.ahead,
                                           .is_direction_live = is_direction_live(index),
-                                          .advection_m_s = std::max(advection_m_s_, kLeastAdvection_m_s)});
+                                          .advection_m_s = std::max(advection_m_s_, kMinAdvection_m_s)});
 }
 
 TakenValue BlendedEstimator::taken(std::size_t source) const noexcept {
@@ -100,7 +100,7 @@ TakenValue BlendedEstimator::taken(std::size_t source) const noexcept {
 
 bool BlendedEstimator::is_direction_live(std::size_t besides) const noexcept {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
-    if (i == besides || !choice_.is_chosen(i) || choice_.weight(i) < 0.5 * kLeastShare) continue;
+    if (i == besides || !choice_.is_chosen(i) || choice_.weight(i) < 0.5 * kMinShare) continue;
     if (sources_[i].has_vane() && sources_[i].record().is_live(state_.time, settings_.stale_intervals)) return true;
   }
   return false;
@@ -127,7 +127,7 @@ double BlendedEstimator::share_level(std::size_t level, std::span<const double> 
     trusted += weights[i] * trust;
     squares += weights[i] * trust * trust;
   }
-  const double scale = trusted > kLeastShare ? std::min(all, 1.0) * squares / (trusted * trusted) : 1.0;
+  const double scale = trusted > kMinShare ? std::min(all, 1.0) * squares / (trusted * trusted) : 1.0;
   double known = 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     shares[i] = scale * weights[i] * sources_[i].trust()[level];
@@ -172,9 +172,9 @@ void BlendedEstimator::share_at(std::size_t index) noexcept {
     if (places_.pen_of(i) == index) pen.weight += choice_.weight(i);
   }
   // Where none of them is selected at present, they are written all the same: nothing jumps when one is selected.
-  const double own = pens_.size() == 1 ? 0.0 : kLeastWeight;
+  const double own = pens_.size() == 1 ? 0.0 : kMinWeight;
   const double sum = pen.weight + own * static_cast<double>(places_.sources_at(index));
-  const double times = sum > kLeastShare ? all / sum : 0.0;
+  const double times = sum > kMinShare ? all / sum : 0.0;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     weights_[i] = places_.pen_of(i) == index ? times * (choice_.weight(i) + own) : 0.0;
     pen.shares[i][0] = shares_[i].middle;
@@ -294,9 +294,9 @@ void BlendedEstimator::carry_gusts(const MeasuredMean& measured, double dt_s) no
     const double part = -std::expm1(-2.0 * std::numbers::pi * kTurnRate_hz * calm * calm * dt_s);
     ahead = turned_toward(ahead, (1.0 / speed_m_s) * measured.mean, part);
   }
-  advection_m_s_ = std::max(speed_m_s, kLeastAdvection_m_s);
+  advection_m_s_ = std::max(speed_m_s, kMinAdvection_m_s);
   const turbulence::Turbulence now = turbulence();
-  const double length_m = now.time_scale_s * std::max(measured.speed_m_s, kLeastSpeed_m_s);
+  const double length_m = now.time_scale_s * std::max(measured.speed_m_s, kMinSpeed_m_s);
   ground_.advection = advection_m_s_ * ahead;
   noise_->carry(ground_.gusts.carried, ground_.advection.u_m_s, -ground_.advection.v_m_s, dt_s,
                 kTurnoverRate * turbulence::eddy_turnover_m23_s(now.intensity * measured.speed_m_s, length_m));
@@ -334,7 +334,7 @@ double BlendedEstimator::gust_length_m(const MeasuredMean& measured) const noexc
 /// Where each pen stands: at the windward edge of the scenes, or where its sensor does, how far its sensors count, and
 /// its part of the wind that is shown.
 void BlendedEstimator::place_pens() noexcept {
-  double largest = kLeastShare;
+  double largest = kMinShare;
   double all = 0.0;
   for (const Pen& pen : pens_) {
     largest = std::max(largest, pen.weight);
@@ -347,7 +347,7 @@ void BlendedEstimator::place_pens() noexcept {
     ground::WindPen& pen = stroke_.pens[i];
     pen.east_m = place.east_m - upwind_m * ahead.u_m_s;
     pen.south_m = place.south_m + upwind_m * ahead.v_m_s;
-    pen.part = all > kLeastShare ? pens_[i].weight / all : 1.0 / static_cast<double>(pens_.size());
+    pen.part = all > kMinShare ? pens_[i].weight / all : 1.0 / static_cast<double>(pens_.size());
     pen.presence = std::clamp(2.0 * pens_[i].weight / largest, 0.0, 1.0);
     pen.now.east_m = pen.east_m - stroke_.carried_east_m;
     pen.now.south_m = pen.south_m - stroke_.carried_south_m;
@@ -359,7 +359,7 @@ void BlendedEstimator::write_gusts() noexcept {
   is_fading_ = false;
   for (std::size_t band = 0; band < kBands; ++band) {
     const double wave_m = advection_m_s_ / turbulence::OctaveFollower::centre_hz(band);
-    fade_[1 + band] = part_of_octave(wave_m / (kLeastSamplesAWave * ground::WindTape::kStep_m));
+    fade_[1 + band] = part_of_octave(wave_m / (kMinSamplesAWave * ground::WindTape::kStep_m));
   }
   for (std::size_t p = 0; p < pens_.size(); ++p) {
     ground::WindPen& pen = stroke_.pens[p];
@@ -374,7 +374,7 @@ void BlendedEstimator::write_gusts() noexcept {
         if (level > 0 && share > 0.0) gust = gust + share * level_of(i, level);
       }
       if (level == 0) continue;
-      if (pen.weights[level] > kLeastShare && fade_[level] < 1.0) is_fading_ = true;
+      if (pen.weights[level] > kMinShare && fade_[level] < 1.0) is_fading_ = true;
       pen.now.east_m_s[level - 1] = static_cast<float>(gust.u_m_s);
       pen.now.north_m_s[level - 1] = static_cast<float>(gust.v_m_s);
     }
@@ -387,10 +387,10 @@ void BlendedEstimator::learn_reach(double dt_s) noexcept {
   for (std::size_t p = 0; p < pens_.size(); ++p) {
     const PenPlaces::Place& place = places_.place(p);
     double delay_s = 0.0;
-    double all = kLeastShare;
+    double all = kMinShare;
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       if (places_.pen_of(i) != p) continue;
-      const double weight = choice_.weight(i) + kLeastWeight;
+      const double weight = choice_.weight(i) + kMinWeight;
       delay_s += weight * sources_[i].reading_delay_s();
       all += weight;
     }
@@ -420,11 +420,11 @@ BlendedEstimator::OpenPart BlendedEstimator::open_part(double frequency_hz,
 double BlendedEstimator::variance_share(std::size_t index, const OpenPart& open,
                                         const MeasuredMean& measured) const noexcept {
   const double own = shares_[index].middle;
-  if (open.gusts < kLeastShare) return own;
+  if (open.gusts < kMinShare) return own;
   const double kept = own * (1.0 - std::min(open.gusts, 1.0) * open.given);
   if (!settings_.sources[index].is_relative) return kept;
   const double strength =
-      sources_[index].scale.gust_gain() * sources_[index].speed_m_s() / std::max(measured.speed_m_s, kLeastSpeed_m_s);
+      sources_[index].scale.gust_gain() * sources_[index].speed_m_s() / std::max(measured.speed_m_s, kMinSpeed_m_s);
   return kept + measured.weight * choice_.gusts(index) * open.given * std::min(strength * strength, 4.0);
 }
 
@@ -535,7 +535,7 @@ WindState BlendedEstimator::advance(MonoTime now) noexcept {
   }
   if (now < state_.time) return state_;
   const double passed_s = seconds(now - state_.time);
-  const double dt_s = std::min(passed_s, kLongestStep_ticks * std::max(1.0 / settings_.rate_hz, last_step_s_));
+  const double dt_s = std::min(passed_s, kMaxStep_ticks * std::max(1.0 / settings_.rate_hz, last_step_s_));
   last_step_s_ = passed_s;
   state_.time = now;
 
@@ -594,7 +594,7 @@ turbulence::Turbulence BlendedEstimator::turbulence() const noexcept {
     sum.time_scale_s += weight * sources_[i].turbulence().time_scale_s;
   }
   sum.intensity += left * settings_.climate.turbulence_intensity;
-  sum.time_scale_s += left * settings_.length_m / std::max(settings_.climate.mean_speed_m_s, kLeastSpeed_m_s);
+  sum.time_scale_s += left * settings_.length_m / std::max(settings_.climate.mean_speed_m_s, kMinSpeed_m_s);
   return sum;
 }
 

@@ -19,7 +19,7 @@ constexpr std::size_t kTurnsToDecideIfFine = 12;
 /// 22.5 degrees may come as 22 or 23.
 constexpr double kRounding_deg = 0.6;
 /// The longest smoothing: a coarse vane that has turned is followed within about 100 s, however low the turbulence.
-constexpr double kLongestMemory_s = 100.0;
+constexpr double kMaxMemory_s = 100.0;
 
 bool is_multiple(double turn_deg, double step_deg) noexcept {
   return std::abs(turn_deg) > 0.5 * step_deg && std::abs(std::remainder(turn_deg, step_deg)) <= kRounding_deg;
@@ -73,7 +73,7 @@ void DirectionKeeper::expect(double swing_rad, double time_scale_s, double inter
   const double stairs = step_rad * step_rad / 12.0 * 2.0 * correlated_s;
   const double swing = turbulence::von_karman_inertial_factor() * swing_rad * swing_rad * time_scale_s;
   const double corner_hz = std::pow(swing / stairs, 0.6) / time_scale_s;
-  memory_s_ = std::min(1.0 / (2.0 * std::numbers::pi * corner_hz), kLongestMemory_s);
+  memory_s_ = std::min(1.0 / (2.0 * std::numbers::pi * corner_hz), kMaxMemory_s);
 }
 
 /// A reading equal to the one before carries no information on the step.

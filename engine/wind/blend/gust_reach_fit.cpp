@@ -17,22 +17,22 @@ using turbulence::OctaveFollower;
 constexpr double kQuickest_hz = 2.0;
 constexpr double kSamplesOfAWave = 16.0;
 /// A place has a band if its sensors resolve so much of it.
-constexpr double kLeastResolved = 0.8;
+constexpr double kMinResolved = 0.8;
 constexpr double kPowerMemory_s = 600.0;
 /// Powers are used after so much time, or so many waves if they take longer.
-constexpr double kLeastKnown_s = 300.0;
-constexpr double kLeastKnown_waves = 10.0;
+constexpr double kMinKnown_s = 300.0;
+constexpr double kMinKnown_waves = 10.0;
 /// Where the wind has turned on the way by more than this part of it, or a metre, nothing is learnt.
-constexpr double kMostTurn = 0.2;
-constexpr double kLeastTurn_m = 1.0;
+constexpr double kMaxTurn = 0.2;
+constexpr double kMinTurn_m = 1.0;
 /// What was learnt counts for so long.
 constexpr double kMemory_s = 4.0 * 3600.0;
-constexpr double kLongestStep_s = 10.0;
+constexpr double kMaxStep_s = 10.0;
 /// The variance of a product of two samples of unit power is (1 + g^2) / 2 with two components; it counts so many
 /// times, as neighbouring samples, bands and pairs are not independent.
 constexpr double kSamplesOfOne = 24.0;
 /// A product counts as no farther from what is expected than so many deviations: gusts are not normally distributed.
-constexpr double kMostDeviations = 3.0;
+constexpr double kMaxDeviations = 3.0;
 
 /// Frequencies over the band's centre at which its power is summed up, half an octave apart.
 constexpr int kPointsBelow = 10;
@@ -62,7 +62,7 @@ const std::array<BandPoint, kPoints>& band_points() noexcept {
 }
 
 double most_ln() noexcept {
-  return std::log(GustReach::kMostFactor);
+  return std::log(GustReach::kMaxFactor);
 }
 
 std::optional<double> factor_if_known(double ln, double variance) noexcept {
@@ -115,10 +115,10 @@ void GustReachFit::advance(double dt_s, const ground::WindStroke& stroke, std::s
     sample(band, pace.since_s, stroke, places);
     pace.since_s = 0.0;
     // Weaker wind has no direction to speak of.
-    if (stroke.coherence.speed_m_s >= kLeastSpeed_m_s) compare(band, stroke, places);
+    if (stroke.coherence.speed_m_s >= kMinSpeed_m_s) compare(band, stroke, places);
   }
   if (!has_observed_) return;
-  const double grown = 1.0 + std::min(since_observed_s_, kLongestStep_s) / kMemory_s;
+  const double grown = 1.0 + std::min(since_observed_s_, kMaxStep_s) / kMemory_s;
   since_observed_s_ = 0.0;
   reach_.across_variance = std::min(reach_.across_variance * grown, GustReach::kPriorVariance);
   reach_.along_variance = std::min(reach_.along_variance * grown, GustReach::kPriorVariance);
@@ -138,7 +138,7 @@ void GustReachFit::sample(std::size_t band, double passed_s, const ground::WindS
            .carried_south_m = stroke.carried_south_m,
            .gust = {},
            .is_known = false};
-    if (pen == nullptr || pen->weights[1 + band] < kLeastResolved) continue;
+    if (pen == nullptr || pen->weights[1 + band] < kMinResolved) continue;
     now.is_known = true;
     const double per_speed = 1.0 / stroke.coherence.speed_m_s;
     now.gust = per_speed *
@@ -150,7 +150,7 @@ void GustReachFit::sample(std::size_t band, double passed_s, const ground::WindS
 }
 
 void GustReachFit::compare(std::size_t band, const ground::WindStroke& stroke, std::span<const Place> places) noexcept {
-  const double least_s = std::max(kLeastKnown_s, kLeastKnown_waves / OctaveFollower::centre_hz(band));
+  const double least_s = std::max(kMinKnown_s, kMinKnown_waves / OctaveFollower::centre_hz(band));
   const std::size_t newest = paces_[band].newest;
   for (std::size_t i = 0; i < place_count_; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -188,7 +188,7 @@ bool GustReachFit::read(const Trace& trace, std::size_t newest, double way_m, co
     const double past_m = stroke.way_m - way_m;
     const double turned_m = math::length(stroke.carried_east_m - before.carried_east_m - past_m * stroke.ahead.u_m_s,
                                          stroke.carried_south_m - before.carried_south_m + past_m * stroke.ahead.v_m_s);
-    return turned_m <= std::max(kMostTurn * past_m, kLeastTurn_m) + step_m;
+    return turned_m <= std::max(kMaxTurn * past_m, kMinTurn_m) + step_m;
   }
   return false;
 }
@@ -215,7 +215,7 @@ void GustReachFit::observe(std::size_t band, double product, double along_m, dou
   per_along /= power;
 
   const double deviation = std::sqrt(0.5 * (1.0 + expected * expected));
-  const double surprise = std::clamp(product - expected, -kMostDeviations * deviation, kMostDeviations * deviation);
+  const double surprise = std::clamp(product - expected, -kMaxDeviations * deviation, kMaxDeviations * deviation);
   const double noise = kSamplesOfOne * deviation * deviation;
   const double to_across = reach_.across_variance * per_across + covariance_ * per_along;
   const double to_along = covariance_ * per_across + reach_.along_variance * per_along;

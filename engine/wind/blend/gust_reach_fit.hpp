@@ -17,7 +17,7 @@ struct GustReach {
   /// Of a site of which nothing is known: the law's constants differ from site to site by about so much.
   static constexpr double kPriorVariance = 0.25;
   /// Largest factor, and the inverse of the smallest.
-  static constexpr double kMostFactor = 3.0;
+  static constexpr double kMaxFactor = 3.0;
 
   double across_ln = 0.0, along_ln = 0.0;
   double across_variance = kPriorVariance, along_variance = kPriorVariance;

@@ -11,7 +11,7 @@ namespace {
 /// The ridge, over the square of the sensors' extent: two sensors at its ends, whose own spread is 0.25, lose 1 % of
 /// the slope.
 constexpr double kRidge = 0.0025;
-constexpr double kLeastShareSum = 1e-9;
+constexpr double kMinShareSum = 1e-9;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ void MeanWindPlane::weigh(std::span<const double> shares, double part, std::span
     centre.east_m += shares[i] * places_[i].east_m;
     centre.south_m += shares[i] * places_[i].south_m;
   }
-  if (is_point() || sum < kLeastShareSum) return;
+  if (is_point() || sum < kMinShareSum) return;
   centre = {centre.east_m / sum, centre.south_m / sum};
 
   // How far they are spread about their centre, in both directions; with the ridge the matrix has an inverse.

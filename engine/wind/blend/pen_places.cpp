@@ -25,7 +25,7 @@ std::size_t PenPlaces::pen_for(const BlendSourceSettings& source) {
   };
   const auto same = std::ranges::find_if(places_, is_same);
   if (same != places_.end()) return static_cast<std::size_t>(same - places_.begin());
-  if (places_.size() == ground::WindStroke::kMostPens) {
+  if (places_.size() == ground::WindStroke::kMaxPens) {
     return static_cast<std::size_t>(std::ranges::min_element(places_, {}, distance_m) - places_.begin());
   }
   places_.push_back(

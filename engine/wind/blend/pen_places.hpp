@@ -11,7 +11,7 @@ namespace yuragi::wind::blend {
 
 /// The places where measured wind is written: one for all sensors without a configured position (the windward edge of
 /// the scenes), and one for each configured position. Sensors closer together than half a metre share one; of
-/// more than WindStroke::kMostPens places the last ones share the nearest. Relative sources stand where the first
+/// more than WindStroke::kMaxPens places the last ones share the nearest. Relative sources stand where the first
 /// absolute one does. Allocates at construction only. Thread-safe: reading, yes.
 class PenPlaces {
  public:

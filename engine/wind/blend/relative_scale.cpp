@@ -6,17 +6,17 @@
 namespace yuragi::wind::blend {
 namespace {
 
-constexpr double kLeastScale = 0.05;
-constexpr double kMostScale = 20.0;
+constexpr double kMinScale = 0.05;
+constexpr double kMaxScale = 20.0;
 /// The gain of the mean has full weight after far more time than this.
 constexpr double kTimeToBelieve_s = 15.0;
 /// And that of the gusts after far more independent gusts than these.
 constexpr double kGustsToBelieve = 4.0;
 /// Added to both sides of a ratio: with hardly any wind it is 1.
-constexpr double kLeastSum = 1e-3;
+constexpr double kMinSum = 1e-3;
 
 double log_ratio(double above, double below) noexcept {
-  return std::clamp(std::log((above + kLeastSum) / (below + kLeastSum)), std::log(kLeastScale), std::log(kMostScale));
+  return std::clamp(std::log((above + kMinSum) / (below + kMinSum)), std::log(kMinScale), std::log(kMaxScale));
 }
 
 }  // namespace

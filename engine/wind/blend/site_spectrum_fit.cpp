@@ -8,7 +8,7 @@ namespace {
 
 /// The interval of the simulated slow sensor: it resolves no waves above 0.37 over this, 0.026 Hz.
 constexpr double kPlayedInterval_s = 14.0;
-constexpr double kLeastFitted_m_s = 1.0;
+constexpr double kMinFitted_m_s = 1.0;
 /// The fit must have seen so many differences of neighbouring means.
 constexpr double kEnough = 15.0;
 /// Haar's differences of means over tau respond most to waves of 0.37 / tau.
@@ -42,7 +42,7 @@ void SiteSpectrumFit::observe(const Observation& observation, const turbulence::
   slow_.fit(kPlayedInterval_s, observation.speed_m_s);
   sum_ = {};
   count_ = 0;
-  if (observation.speed_m_s >= kLeastFitted_m_s && slow_.along().observations(0) >= kEnough)
+  if (observation.speed_m_s >= kMinFitted_m_s && slow_.along().observations(0) >= kEnough)
     update(observation, quick, site);
 }
 

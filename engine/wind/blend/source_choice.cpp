@@ -10,7 +10,7 @@ namespace {
 
 /// A critically damped step has covered 91 % after 4 time constants (engine/METHOD.md M18).
 constexpr double kRateTimesHandover = 4.0;
-constexpr int kMostFailures = 7;
+constexpr int kMaxFailures = 7;
 constexpr double kForgivenAfter_s = 600.0;
 
 }  // namespace
@@ -29,7 +29,7 @@ SourceChoice::SourceChoice(std::span<const BlendSourceSettings> sources, double 
 
 void SourceChoice::note_failures(Entry& entry, double dt_s) const noexcept {
   if (!entry.is_live) {
-    if (entry.was_live) entry.failures = std::min(entry.failures + 1, kMostFailures);
+    if (entry.was_live) entry.failures = std::min(entry.failures + 1, kMaxFailures);
     entry.live_for_s = 0.0;
     entry.is_ready = false;
   } else {

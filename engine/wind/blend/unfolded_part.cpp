@@ -9,7 +9,7 @@
 namespace yuragi::wind::blend {
 namespace {
 
-constexpr double kLeastPart = 1e-3;
+constexpr double kMinPart = 1e-3;
 
 }  // namespace
 
@@ -17,8 +17,8 @@ void UnfoldedPart::set(double interval_s, double time_scale_s) noexcept {
   interval_s_ = interval_s;
   for (std::size_t i = 0; i < kPoints; ++i) {
     const double octave = kFirstOctave + static_cast<double>(i) / static_cast<double>(kAnOctave);
-    parts_[i] = std::max(kLeastPart, turbulence::von_karman_unfolded_part(math::power_of_two(octave) / interval_s,
-                                                                          interval_s, time_scale_s));
+    parts_[i] = std::max(kMinPart, turbulence::von_karman_unfolded_part(math::power_of_two(octave) / interval_s,
+                                                                        interval_s, time_scale_s));
   }
 }
 

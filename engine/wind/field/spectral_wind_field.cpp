@@ -81,7 +81,7 @@ WindFieldSettings checked(const WindFieldSettings& settings) {
   require(std::isfinite(settings.direction_deg), "a direction in degrees");
   require(settings.turbulence_intensity >= 0.0 && std::isfinite(settings.turbulence_intensity),
           "a turbulence intensity of 0 or above");
-  require(std::abs(settings.stress) <= kLargestStress, "a stress from -0.6 to 0.6");
+  require(std::abs(settings.stress) <= kMaxStress, "a stress from -0.6 to 0.6");
   require(settings.stress == 0.0 || settings.dims == 3, "a stress in 3 dimensions only");
   require(settings.length_m > 0.0 && std::isfinite(settings.length_m), "a length scale above 0 m");
   require(settings.spacing_m > 0.0 && std::isfinite(settings.spacing_m), "a spacing above 0 m");

@@ -13,7 +13,7 @@
 namespace yuragi::wind::field {
 
 /// u and w have most of their power in different waves: if each were the same in both, the stress would be 0.63.
-inline constexpr double kLargestStress = 0.6;
+inline constexpr double kMaxStress = 0.6;
 
 /// What wind a field has. The components along the wind, across it and upward have standard deviations of
 /// (1, 0.8, 0.5) sigma and integral length scales of (1, 1/3, 1/12.3) L (IEC 61400-1:2005, annex B.2).
@@ -26,7 +26,7 @@ struct WindFieldSettings {
   std::size_t samples = 256;          ///< an edge of the tile: a power of two, 8 to 4096 (2-D) or 256 (3-D)
   double spacing_m = 1.0;             ///< between its samples, above 0
   /// cov(u, w) / (sigma_u sigma_w): near the ground about -0.3, since gusts come down and lulls rise (Panofsky and
-  /// Dutton 1984, Atmospheric turbulence, chapter 6). -kLargestStress to kLargestStress, and 0 in two dimensions.
+  /// Dutton 1984, Atmospheric turbulence, chapter 6). -kMaxStress to kMaxStress, and 0 in two dimensions.
   double stress = 0.0;
   bool evolves = true;  ///< eddies turn over while they are carried; false: Taylor's frozen turbulence
   std::uint64_t seed = 1;

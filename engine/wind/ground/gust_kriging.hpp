@@ -23,7 +23,7 @@ namespace yuragi::wind::ground {
 template <std::size_t lanes>
 class GustKriging {
  public:
-  static constexpr std::size_t kMost = WindStroke::kMostPens;
+  static constexpr std::size_t kMost = WindStroke::kMaxPens;
   using Lanes = std::array<float, lanes>;
 
   /// What changes with the wind alone, not from place to place: for these sensors. `coherent(i, distance_m)`: what is

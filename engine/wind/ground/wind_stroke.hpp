@@ -45,7 +45,7 @@ struct WindPen {
 
 /// What one tick of the estimator adds to the tapes. A value of some kilobytes that is passed from thread to thread.
 struct WindStroke {
-  static constexpr std::size_t kMostPens = 4;
+  static constexpr std::size_t kMaxPens = 4;
 
   std::size_t pen_count = 0;                           ///< 0: nothing can be measured, there is no tape
   double way_m = 0.0;                                  ///< that the mean wind has come, all in all; never less
@@ -53,7 +53,7 @@ struct WindStroke {
   WindVector ahead{0.0, 1.0};                          ///< unit vector downwind
   GustCoherence coherence;
   OctaveLanes octave_hz{};  ///< at which frequency each octave of the tiles passes
-  std::array<WindPen, kMostPens> pens;
+  std::array<WindPen, kMaxPens> pens;
 };
 
 }  // namespace yuragi::wind::ground

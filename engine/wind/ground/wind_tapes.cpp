@@ -164,7 +164,7 @@ void WindTapes::renew_rows(bool all) noexcept {
 /// The part that is left at some distances, of each band and of each octave of the noise, which is in several bands.
 void WindTapes::keep(std::size_t first_row, std::size_t count) noexcept {
   const OctaveResponses responses(stroke_.octave_hz, stroke_.coherence);
-  std::array<OctaveResponses::Passed, WindStroke::kMostPens> all;
+  std::array<OctaveResponses::Passed, WindStroke::kMaxPens> all;
   for (std::size_t tape = 0; tape < pen_count_; ++tape) all[tape] = responses.passed(stroke_.pens[tape].weights);
   for (std::size_t row = first_row; row < first_row + count; ++row) {
     const double distance_m = distance_of(row);
@@ -378,7 +378,7 @@ OctaveLanes WindTapes::octaves_kept(std::size_t tape, double distance_m) const n
 /// The weights of the sensors follow from their places and this one (GustKriging). What is lost besides (a gust that
 /// has not come yet, a wind that has turned, the end of a tape) is lost of each sensor's own part.
 WindTapes::Reading WindTapes::at_several(double east_m, double south_m) const noexcept {
-  constexpr std::size_t kMost = WindStroke::kMostPens;
+  constexpr std::size_t kMost = WindStroke::kMaxPens;
   std::array<WindSample, kMost> samples;
   std::array<BandLanes, kMost> bands, bands_left, band_weights;
   std::array<OctaveLanes, kMost> octaves, octaves_left, octave_weights;

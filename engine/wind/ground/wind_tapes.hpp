@@ -38,7 +38,7 @@ namespace yuragi::wind::ground {
 class WindTapes {
  public:
   /// Tapes for so many pens; further ones are ignored.
-  explicit WindTapes(std::size_t most_pens = WindStroke::kMostPens, SimdRow row = best_simd_row());
+  explicit WindTapes(std::size_t most_pens = WindStroke::kMaxPens, SimdRow row = best_simd_row());
 
   /// Adds a tick's stroke. Where the way goes back, the tapes begin anew.
   void write(const WindStroke& stroke) noexcept;
@@ -113,8 +113,8 @@ class WindTapes {
   WindStroke stroke_;
   BandLanes band_loss_per_m_{};
   OctaveLanes octave_loss_per_m_{};
-  std::array<std::array<Kept, kRows>, WindStroke::kMostPens> kept_{};  ///< of each tape
-  std::size_t next_row_ = 0;                                           ///< to be renewed
+  std::array<std::array<Kept, kRows>, WindStroke::kMaxPens> kept_{};  ///< of each tape
+  std::size_t next_row_ = 0;                                          ///< to be renewed
   GustKriging<kBandLanes> band_kriging_;
   GustKriging<kOctaveLanes> octave_kriging_;
 };

@@ -58,7 +58,7 @@ double zero_point_m_s(const Calibration& calibration) noexcept {
 
 Result<std::vector<CalibrationPoint>, Failure> parse_calibration_curve(std::string_view text) {
   const Failure failure{"\"" + std::string(text) +
-                        "\" is no curve; allowed: two or more points measured:true in m/s, both rising, such as "
+                        "\" is not a curve; allowed: two or more points measured:true in m/s, both rising, such as "
                         "\"0:0 5:5.2 12:12.9\""};
   std::vector<CalibrationPoint> curve;
   for (;;) {

@@ -15,24 +15,24 @@
 namespace yuragi::wind::judging {
 namespace {
 
-constexpr std::size_t kFewestStillReadings = 10;
-constexpr double kMostStillNoise_m_s = 0.15;
-constexpr double kMostStillDrift_m_s = 0.15;
-constexpr double kMostZeroError_m_s = 2.0;
+constexpr std::size_t kMinStillReadings = 10;
+constexpr double kMaxStillNoise_m_s = 0.15;
+constexpr double kMaxStillDrift_m_s = 0.15;
+constexpr double kMaxZeroError_m_s = 2.0;
 
-constexpr std::size_t kFewestHeldReadings = 5;
-constexpr double kMostHeldSpread_deg = 5.0;
-constexpr std::size_t kFewestTurns = 20;
-constexpr double kMostTurnSpread_deg = 30.0;
+constexpr std::size_t kMinHeldReadings = 5;
+constexpr double kMaxHeldSpread_deg = 5.0;
+constexpr std::size_t kMinTurns = 20;
+constexpr double kMaxTurnSpread_deg = 30.0;
 
-constexpr double kLeastSpan_m_s = 2.0;
-constexpr double kLeastGain = 0.2;
-constexpr double kMostGain = 5.0;
-constexpr double kLeastRSquared = 0.8;
+constexpr double kMinSpan_m_s = 2.0;
+constexpr double kMinGain = 0.2;
+constexpr double kMaxGain = 5.0;
+constexpr double kMinRSquared = 0.8;
 constexpr double kBin_m_s = 1.0;
 constexpr double kReach_m_s = 10.0;  // how far beyond the last bin the last point stands
-constexpr std::size_t kFewestInBin = 3;
-constexpr std::size_t kFewestBins = 3;
+constexpr std::size_t kMinInBin = 3;
+constexpr std::size_t kMinBins = 3;
 
 /// A number as text for a sentence.
 std::string figure(double value) {
@@ -60,14 +60,15 @@ std::vector<CalibrationPoint> windy(std::span<const CalibrationPoint> pairs) {
 
 Result<void, Failure> check_span(std::span<const CalibrationPoint> pairs) {
   if (pairs.size() < 2) {
-    return Failure{"there are " + std::to_string(pairs.size()) +
-                   " pairs with wind, and two are the least: measure longer, or look why one of the sensors is silent"};
+    return Failure{
+        "there are " + std::to_string(pairs.size()) +
+        " pairs with wind, and at least two are needed: measure longer, or find out why one of the sensors is silent"};
   }
   const auto [slow, fast] = std::ranges::minmax(pairs, {}, &CalibrationPoint::true_m_s);
   const auto [low, high] = std::ranges::minmax(pairs, {}, &CalibrationPoint::measured_m_s);
-  if (fast.true_m_s - slow.true_m_s < kLeastSpan_m_s) {
+  if (fast.true_m_s - slow.true_m_s < kMinSpan_m_s) {
     return Failure{"the wind was between " + figure(slow.true_m_s) + " and " + figure(fast.true_m_s) +
-                   " m/s only: a line needs " + figure(kLeastSpan_m_s) +
+                   " m/s only: a line needs " + figure(kMinSpan_m_s) +
                    " m/s between the slowest and the fastest; measure longer, or in more changeable wind"};
   }
   if (!(high.measured_m_s - low.measured_m_s > 0.0)) {
@@ -78,18 +79,18 @@ Result<void, Failure> check_span(std::span<const CalibrationPoint> pairs) {
 }
 
 Result<void, Failure> check_gain(double gain) {
-  if (gain >= kLeastGain && gain <= kMostGain) return {};
+  if (gain >= kMinGain && gain <= kMaxGain) return {};
   if (gain <= 0.0)
     return Failure{"the sensor reads less when the reference reads more: check that both stand in the same wind"};
-  return Failure{"the gain would be " + figure(gain) + ", and no sensor is that wrong (" + figure(kLeastGain) + " to " +
-                 figure(kMostGain) +
+  return Failure{"the gain would be " + figure(gain) + ", which no sensor needs (" + figure(kMinGain) + " to " +
+                 figure(kMaxGain) +
                  "): is it in this wind, and is its unit right (`unit` in [sensor.calibration], or the driver's own)?"};
 }
 
 Result<void, Failure> check_r_squared(double r_squared) {
-  if (r_squared >= kLeastRSquared) return {};
-  return Failure{"the two agree too little to learn from (R^2 = " + figure(r_squared) + ", at least " +
-                 figure(kLeastRSquared) +
+  if (r_squared >= kMinRSquared) return {};
+  return Failure{"the two sensors agree too little for a calibration (R^2 = " + figure(r_squared) + ", at least " +
+                 figure(kMinRSquared) +
                  "): they are in different winds, or one lags; bring them closer together, or measure longer"};
 }
 
@@ -181,8 +182,8 @@ void extend(std::vector<CalibrationPoint>& curve, std::vector<CalibrationPoint>&
 
 Result<StillAir, Failure> measure_still_air(std::span<const double> indicated_m_s) {
   StillAir air{.count = indicated_m_s.size(), .mean_m_s = mean_of(indicated_m_s)};
-  if (air.count < kFewestStillReadings) {
-    return Failure{"only " + std::to_string(air.count) + " readings came, and " + std::to_string(kFewestStillReadings) +
+  if (air.count < kMinStillReadings) {
+    return Failure{"only " + std::to_string(air.count) + " readings came, and " + std::to_string(kMinStillReadings) +
                    " are the least: measure longer with --for"};
   }
   double squares = 0.0;
@@ -192,15 +193,15 @@ Result<StillAir, Failure> measure_still_air(std::span<const double> indicated_m_
   // Moving air shows in the scatter, air that comes to rest in the difference of the two halves.
   const double drift_m_s =
       mean_of(indicated_m_s.subspan(air.count / 2)) - mean_of(indicated_m_s.subspan(0, air.count - air.count / 2));
-  const bool is_calm = air.noise_m_s <= kMostStillNoise_m_s && std::abs(drift_m_s) <= kMostStillDrift_m_s;
+  const bool is_calm = air.noise_m_s <= kMaxStillNoise_m_s && std::abs(drift_m_s) <= kMaxStillDrift_m_s;
   if (!is_calm) {
-    return Failure{"this is no calm: the readings scatter by " + figure(air.noise_m_s) + " m/s and drift by " +
-                   figure(drift_m_s) + " m/s (at most " + figure(kMostStillNoise_m_s) +
+    return Failure{"the air is not still: the readings scatter by " + figure(air.noise_m_s) + " m/s and drift by " +
+                   figure(drift_m_s) + " m/s (at most " + figure(kMaxStillNoise_m_s) +
                    " each); put a box or a bag over the sensor and close the windows"};
   }
-  if (air.mean_m_s > kMostZeroError_m_s) {
+  if (air.mean_m_s > kMaxZeroError_m_s) {
     return Failure{"a steady " + figure(air.mean_m_s) +
-                   " m/s is no zero error but a wind, or a fault: a zero error is below " + figure(kMostZeroError_m_s) +
+                   " m/s is a wind or a fault, not a zero error: a zero error is below " + figure(kMaxZeroError_m_s) +
                    " m/s; cover the sensor, and check its unit and its wiring"};
   }
   return air;
@@ -230,28 +231,27 @@ DirectionMean direction_mean(std::span<const double> directions_deg) noexcept {
 
 Result<DirectionMean, Failure> measure_held_vane(std::span<const double> indicated_deg) {
   const DirectionMean mean = direction_mean(indicated_deg);
-  if (mean.count < kFewestHeldReadings) {
-    return Failure{"only " + std::to_string(mean.count) + " directions came, and " +
-                   std::to_string(kFewestHeldReadings) +
+  if (mean.count < kMinHeldReadings) {
+    return Failure{"only " + std::to_string(mean.count) + " directions came, and " + std::to_string(kMinHeldReadings) +
                    " are the least: does this sensor have a vane? If so measure longer with --for"};
   }
-  if (mean.spread_deg > kMostHeldSpread_deg) {
+  if (mean.spread_deg > kMaxHeldSpread_deg) {
     return Failure{"the vane moved: its directions scatter by " + figure(mean.spread_deg) + " degrees (at most " +
-                   figure(kMostHeldSpread_deg) + "); hold it, or tie it, and measure again"};
+                   figure(kMaxHeldSpread_deg) + "); hold it, or tie it, and measure again"};
   }
   return mean;
 }
 
 Result<DirectionMean, Failure> measure_turn(std::span<const double> turns_deg) {
   const DirectionMean mean = direction_mean(turns_deg);
-  if (mean.count < kFewestTurns) {
+  if (mean.count < kMinTurns) {
     return Failure{"only " + std::to_string(mean.count) + " pairs of directions with wind came, and " +
-                   std::to_string(kFewestTurns) +
+                   std::to_string(kMinTurns) +
                    " are the least: measure longer with --for, when there is more than 1 m/s of wind"};
   }
-  if (mean.spread_deg > kMostTurnSpread_deg) {
+  if (mean.spread_deg > kMaxTurnSpread_deg) {
     return Failure{"the two vanes do not turn together: the angle between them scatters by " + figure(mean.spread_deg) +
-                   " degrees (at most " + figure(kMostTurnSpread_deg) +
+                   " degrees (at most " + figure(kMaxTurnSpread_deg) +
                    "); are they in the same wind, and is neither stuck or sheltered?"};
   }
   return mean;
@@ -294,12 +294,12 @@ Result<LineFit, Failure> fit_line(std::span<const CalibrationPoint> pairs) {
 }
 
 Result<LineFit, Failure> fit_line_from_zero(double zero_m_s, const CalibrationPoint& pair) {
-  if (pair.true_m_s < kLeastSpan_m_s) {
+  if (pair.true_m_s < kMinSpan_m_s) {
     return Failure{"a known wind of " + figure(pair.true_m_s) + " m/s is too slow to find a gain with; use at least " +
-                   figure(kLeastSpan_m_s) + " m/s"};
+                   figure(kMinSpan_m_s) + " m/s"};
   }
   if (!(pair.measured_m_s > std::max(0.0, zero_m_s))) {
-    return Failure{"the sensor felt no wind (it said " + figure(pair.measured_m_s) + " m/s, its zero is at " +
+    return Failure{"the sensor measured no wind (it read " + figure(pair.measured_m_s) + " m/s, its zero is at " +
                    figure(zero_m_s) + "): is it in this wind, and does it turn freely?"};
   }
   const double gain = pair.true_m_s / (pair.measured_m_s - zero_m_s);
@@ -320,16 +320,16 @@ Result<CurveFit, Failure> fit_curve(std::span<const CalibrationPoint> pairs) {
   // Pool adjacent violators: a bin that does not rise above the one before is joined to it, and that to the one before.
   std::vector<Bin> bins;
   for (const auto& [speed, bin] : by_speed) {
-    if (bin.count < kFewestInBin) continue;
+    if (bin.count < kMinInBin) continue;
     bins.push_back(bin);
     while (bins.size() > 1 && !rises(bins[bins.size() - 2], bins.back())) {
       bins[bins.size() - 2].join(bins.back());
       bins.pop_back();
     }
   }
-  if (bins.size() < kFewestBins) {
-    return Failure{"a curve needs wind in " + std::to_string(kFewestBins) + " bins of 1 m/s, with " +
-                   std::to_string(kFewestInBin) + " means in each, and there are " + std::to_string(bins.size()) +
+  if (bins.size() < kMinBins) {
+    return Failure{"a curve needs wind in " + std::to_string(kMinBins) + " bins of 1 m/s, with " +
+                   std::to_string(kMinInBin) + " means in each, and there are " + std::to_string(bins.size()) +
                    ": measure longer, or take a line (leave out --curve)"};
   }
   CurveFit fit;

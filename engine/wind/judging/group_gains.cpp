@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kLearnEvery_s = 1.0;
 /// A halt of the machine counts as so long at most.
-constexpr double kLongestStep_s = 10.0;
+constexpr double kMaxStep_s = 10.0;
 /// A deviation may be off by so much from having been written and read.
 constexpr double kRounding = 1e-9;
 
@@ -23,7 +23,7 @@ void GroupGains::advance(MonoTime now, std::span<const Member> members) noexcept
   const double passed_s = seconds(now - *learnt_at_);
   if (passed_s < kLearnEvery_s) return;
   learnt_at_ = now;
-  learn(members, std::min(passed_s, kLongestStep_s));
+  learn(members, std::min(passed_s, kMaxStep_s));
 }
 
 void GroupGains::learn(std::span<const Member> members, double step_s) noexcept {

@@ -5,7 +5,7 @@
 namespace yuragi::wind::judging {
 
 void QuantityWatch::take(MonoTime time, double speed_m_s, bool has_it) noexcept {
-  const double step_s = last_reading_ ? std::clamp(seconds(time - *last_reading_), 0.0, kLongestStep_s) : 0.0;
+  const double step_s = last_reading_ ? std::clamp(seconds(time - *last_reading_), 0.0, kMaxStep_s) : 0.0;
   last_reading_ = time;
   if (!has_it) {
     if (speed_m_s < kCalm_m_s) return;

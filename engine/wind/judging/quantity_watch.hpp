@@ -46,13 +46,13 @@ class QuantityWatch {
  private:
   static constexpr double kCalm_m_s = 1.0;
   static constexpr double kLeast_s = 60.0;
-  static constexpr double kLongestStep_s = 60.0;  ///< of the time between two readings
-  static constexpr double kLeastReadings = 5.0;
+  static constexpr double kMaxStep_s = 60.0;  ///< of the time between two readings
+  static constexpr double kMinReadings = 5.0;
   static constexpr double kRuns = 14.0;
   static constexpr double kMaxRuns = 20.0;
   static constexpr double kMemory = 0.05;
 
-  double patience() const noexcept { return kRuns * usual_run_ > kLeastReadings ? kRuns * usual_run_ : kLeastReadings; }
+  double patience() const noexcept { return kRuns * usual_run_ > kMinReadings ? kRuns * usual_run_ : kMinReadings; }
 
   bool is_expected_;
   std::optional<MonoTime> last_;

@@ -11,7 +11,7 @@ constexpr double kRobustDeviations = 5.0;
 constexpr double kDeviationPerMad = 1.4826;
 /// A sensor whose values are random has a large deviation, too: beyond so many times the least spike every reading is
 /// suspect.
-constexpr double kMostPerLeast = 2.0;
+constexpr double kMaxPerMin = 2.0;
 /// A step that has been repeated so often is accepted, however quick: recordings can be played a hundred times too
 /// fast.
 constexpr std::size_t kEnoughRepeats = 20;
@@ -33,7 +33,7 @@ constexpr double kRepeatingPatience = 10.0;
 constexpr double kNeverMovedPatience = 20.0;
 constexpr double kRunsRemembered = 16.0;
 /// A gap between two readings counts as a calm for so long at most.
-constexpr double kLongestStep_s = 600.0;
+constexpr double kMaxStep_s = 600.0;
 constexpr double kDay_s = 86400.0;
 
 template <std::size_t N>
@@ -150,7 +150,7 @@ bool ReadingJudge::is_suspect(WindVector wind) const noexcept {
   for (std::size_t i = 0; i < kWindow; ++i) distances[i] = speed_of(window_[i] - usual);
   const double least_m_s = settings_.least_spike_m_s + 0.5 * speed_of(usual);
   const double allowed_m_s =
-      std::clamp(kRobustDeviations * kDeviationPerMad * median(distances), least_m_s, kMostPerLeast * least_m_s);
+      std::clamp(kRobustDeviations * kDeviationPerMad * median(distances), least_m_s, kMaxPerMin * least_m_s);
   return speed_of(wind - usual) > allowed_m_s;
 }
 
@@ -212,7 +212,7 @@ bool ReadingJudge::check_seized(double speed_m_s, double time_s, std::optional<d
     return false;
   }
   const bool others_are_windy = others_m_s && *others_m_s > settings_.windy_m_s;
-  const double step_s = std::exchange(is_still_, true) ? std::min(passed_s, kLongestStep_s) : 0.0;
+  const double step_s = std::exchange(is_still_, true) ? std::min(passed_s, kMaxStep_s) : 0.0;
   still_s_ += step_s;
   if (others_are_windy) windy_still_s_ += step_s;
   // Until it moves: a calm of the other sensors does not clear it.

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kCountEvery_s = 1.0;
 /// A halt of the machine counts as so long at most.
-constexpr double kLongestCount_s = 10.0;
+constexpr double kMaxCount_s = 10.0;
 
 /// A judgement with a memory: it needs the whole patience to change either way.
 void weigh(double& sum_s, bool& verdict, double step_s, double patience_s) noexcept {
@@ -45,7 +45,7 @@ void SensorVote::advance(MonoTime now) noexcept {
   const double passed_s = seconds(now - *counted_);
   if (passed_s < kCountEvery_s) return;
   counted_ = now;
-  const double step_s = std::min(passed_s, kLongestCount_s);
+  const double step_s = std::min(passed_s, kMaxCount_s);
 
   const std::optional<double> majority = majority_m_s();
   for (Voter& voter : voters_) {

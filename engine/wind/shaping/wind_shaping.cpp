@@ -27,7 +27,7 @@ constexpr double kKnownShare = 0.25;
 constexpr double kMedian = 0.50;
 constexpr double kStrong = 0.95;
 /// Below what a sensor can tell from calm.
-constexpr double kLeastMedian_m_s = 0.05;
+constexpr double kMinMedian_m_s = 0.05;
 
 /// Advances the filter, and ends exactly at the target, not ever nearer to it.
 void follow_to_the_end(math::CriticallyDamped& value, double target, double over_s, double dt_s) noexcept {
@@ -188,7 +188,7 @@ double WindShaping::site_gain_of(double mean_m_s) const noexcept {
   const auto limited = [&site](double gain) { return std::clamp(gain, 1.0 / site.most_gain, site.most_gain); };
 
   // The gains of the two percentiles; between them the mean is interpolated.
-  const double median_m_s = std::max(median_m_s_, kLeastMedian_m_s);
+  const double median_m_s = std::max(median_m_s_, kMinMedian_m_s);
   const double median_gain = limited(site.median_m_s / median_m_s);
   if (site.strong_m_s <= 0.0) return 1.0 + trust * (median_gain - 1.0);
   const double strong_m_s = std::max(strong_m_s_, 1.1 * median_m_s);
@@ -208,12 +208,12 @@ void WindShaping::follow(double live_weight, bool is_open, double dt_s) noexcept
   // A front counts before the slow mean has followed it.
   const double mean_m_s = std::max({mean_.value, quick_mean_.value / kFrontTimesMean, 0.0});
   const double floor_m_s = now_.floor_m_s;
-  const double least_m_s = floor_m_s / kMostFloorGain;
+  const double least_m_s = floor_m_s / kMaxFloorGain;
   const double site_mean_m_s = site_.value * mean_m_s;
   const double wanted_gain =
-      floor_m_s > 0.0 ? std::clamp(floor_m_s / std::max(site_mean_m_s, least_m_s), 1.0, kMostFloorGain) : 1.0;
+      floor_m_s > 0.0 ? std::clamp(floor_m_s / std::max(site_mean_m_s, least_m_s), 1.0, kMaxFloorGain) : 1.0;
   follow_to_the_end(floor_, wanted_gain, kFloorGainOver_s, dt_s);
-  follow_to_the_end(breeze_, std::max(0.0, floor_m_s - kMostFloorGain * site_mean_m_s), kFloorGainOver_s, dt_s);
+  follow_to_the_end(breeze_, std::max(0.0, floor_m_s - kMaxFloorGain * site_mean_m_s), kFloorGainOver_s, dt_s);
 
   follow_to_the_end(opening_, is_open ? 1.0 : settings_.closed_level, settings_.fade_s, dt_s);
   follow_to_the_end(openness_, is_open ? 1.0 : 0.0, settings_.fade_s, dt_s);

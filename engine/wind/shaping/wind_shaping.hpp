@@ -54,7 +54,7 @@ struct WindShapingReport {
 ///  1. Site gain: the wind is made stronger or weaker by a factor that takes the site's median to `site.median_m_s`
 ///     and its 95th percentile to `site.strong_m_s`; between the two the mean goes on a straight line, and beyond them
 ///     the factor stays. It grows from 1 during the first hours of live wind, and is 1 for the default wind.
-///  2. Floor: a mean below it is raised to it by a factor of up to kMostFloorGain; what then still lacks is a breeze
+///  2. Floor: a mean below it is raised to it by a factor of up to kMaxFloorGain; what then still lacks is a breeze
 ///     that blows where the wind last came from, with the turbulence of the climate at that level. It carries the
 ///     gusts on: those that no sensor measured are others from then on than in the real wind.
 ///  3. Opening: outside of opening hours only a part is left.
@@ -66,7 +66,7 @@ struct WindShapingReport {
 /// finite wind. Thread-safe: no. Realtime-safe: all but construction.
 class WindShaping {
  public:
-  static constexpr double kMostFloorGain = 3.0;
+  static constexpr double kMaxFloorGain = 3.0;
   static constexpr double kChangeOver_s = 5.0;  ///< how long change() takes
 
   /// `noise`: the one that the estimator and the scenes have.

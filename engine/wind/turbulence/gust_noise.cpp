@@ -68,10 +68,10 @@ WindVector turned(WindVector unit, double along, double across) noexcept {
 noise::NoiseSpec tile_octave(std::size_t octave, std::size_t samples, std::uint64_t seed) {
   const std::size_t tile = GustNoise::torus_of(octave);
   const double cycles = std::ldexp(kFirstCycles[tile], static_cast<int>(octave - kFirstOctave[tile]));
-  constexpr std::size_t kFewestSamples = 64;
+  constexpr std::size_t kMinSamples = 64;
   const std::size_t a_wave = samples / 64;
   const auto fewest = a_wave * static_cast<std::size_t>(cycles);
-  return {.size = std::max(kFewestSamples, std::min(2 * fewest, std::max(samples / 2, fewest))),
+  return {.size = std::max(kMinSamples, std::min(2 * fewest, std::max(samples / 2, fewest))),
           .beta = kBeta,
           .seed = seed,
           .from_cycles = cycles,

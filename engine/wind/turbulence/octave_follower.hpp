@@ -45,7 +45,7 @@ class OctaveFollower {
   WindVector band(std::size_t band) const noexcept { return passed_[band + 1] - passed_[band]; }
 
   /// kLowest_hz over each edge.
-  static constexpr std::array<double, kBands + 1> kLowestPerEdge = [] {
+  static constexpr std::array<double, kBands + 1> kMinPerEdge = [] {
     std::array<double, kBands + 1> ratios{};
     for (std::size_t i = 0; i <= kBands; ++i) ratios[i] = 1.0 / static_cast<double>(1U << i);
     return ratios;
@@ -59,7 +59,7 @@ class OctaveFollower {
       std::array<double, kBands + 1> low_pass_real;
       std::array<double, kBands + 1> low_pass_imaginary;
       for (std::size_t i = 0; i <= kBands; ++i) {
-        const double ratio = lowest_ratio * kLowestPerEdge[i];
+        const double ratio = lowest_ratio * kMinPerEdge[i];
         low_pass_real[i] = 1.0 / (1.0 + ratio * ratio);
         low_pass_imaginary[i] = -ratio * low_pass_real[i];
       }

@@ -15,7 +15,7 @@ constexpr double kExpectedFor_s = 6.0 * 3600.0;
 /// ... and without one, 0 dB counts like so much: the first minutes are taken over gradually.
 constexpr double kNothingFor_s = 600.0;
 /// A single half hour of a gusty day may differ by as much.
-constexpr double kMostLearnt_db = 20.0;
+constexpr double kMaxLearnt_db = 20.0;
 /// The fastest waves that readings resolve (TurbulenceFit): frequency times interval.
 constexpr double kResolvedUpTo = 0.37;
 
@@ -38,7 +38,7 @@ void SiteSpectrum::learn(std::size_t octave, double excess_db, double dt_s) noex
   const double kept = std::exp(-dt_s / kMemory_s);
   const double new_s = kMemory_s * (1.0 - kept);
   known_s_[octave] = known_s_[octave] * kept + new_s;
-  const double limited_db = std::clamp(excess_db, -kMostLearnt_db, kMostLearnt_db);
+  const double limited_db = std::clamp(excess_db, -kMaxLearnt_db, kMaxLearnt_db);
   learnt_db_[octave] += new_s / known_s_[octave] * (limited_db - learnt_db_[octave]);
 }
 
@@ -60,7 +60,7 @@ SiteSpectrum::Decibels SiteSpectrum::octaves_db() const noexcept {
 bool SiteSpectrum::restore(std::span<const double> known_s, std::span<const double> learnt_db) noexcept {
   if (known_s.size() != kOctaves || learnt_db.size() != kOctaves) return false;
   const auto is_time = [](double time_s) { return time_s >= 0.0 && time_s <= 1.001 * kMemory_s; };
-  const auto is_level = [](double level_db) { return std::abs(level_db) <= kMostLearnt_db; };
+  const auto is_level = [](double level_db) { return std::abs(level_db) <= kMaxLearnt_db; };
   if (!std::ranges::all_of(known_s, is_time) || !std::ranges::all_of(learnt_db, is_level)) return false;
   std::ranges::copy(known_s, known_s_.begin());
   std::ranges::copy(learnt_db, learnt_db_.begin());

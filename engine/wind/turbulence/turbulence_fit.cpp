@@ -11,14 +11,14 @@ namespace yuragi::wind::turbulence {
 namespace {
 
 /// Scales are used up to this, or up to 32 readings if that is longer.
-constexpr double kLongestScale_s = 40.0;
+constexpr double kMaxScale_s = 40.0;
 constexpr double kReadingsOfLongestScale = 32.0;
 /// Time scales that are tried, in equal steps of the logarithm.
-constexpr double kShortestTimeScale_s = 0.5;
-constexpr double kLongestTimeScale_s = 300.0;
+constexpr double kMinTimeScale_s = 0.5;
+constexpr double kMaxTimeScale_s = 300.0;
 constexpr int kTimeScaleSteps = 48;
 /// A scale counts as at most so many observations, so that the finest, which have the most, do not alone decide.
-constexpr double kMostObservations = 50.0;
+constexpr double kMaxObservations = 50.0;
 /// A correction has full weight after far more independent observations than these.
 constexpr double kObservationsToBelieve = 4.0;
 /// Haar's response to a frequency f is strongest at 0.37 / tau.
@@ -29,7 +29,7 @@ double square(double x) noexcept {
 }
 
 /// A wind without any turbulence has no logarithm.
-constexpr double kLeastIntensity = 1e-4;
+constexpr double kMinIntensity = 1e-4;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ TurbulenceFit::TurbulenceFit(const TurbulencePrior& prior, double memory_s, Read
     : prior_(prior), value_(value), component_(component), squares_(memory_s) {
   make_haar_table();  // now, not on the way
   if (value_ == ReadingValue::kInstant || value_ == ReadingValue::kUnknown) make_sampled_haar_table();
-  prior_.intensity = std::max(prior.intensity, kLeastIntensity);
+  prior_.intensity = std::max(prior.intensity, kMinIntensity);
   turbulence_ = {prior_.intensity, 8.0};
 }
 
@@ -48,7 +48,7 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
   std::array<double, kScales> log_variance{};
   std::array<double, kScales> weight{};
   std::array<double, kScales> independent{};
-  const double longest_s = std::max(kLongestScale_s, kReadingsOfLongestScale * interval_s);
+  const double longest_s = std::max(kMaxScale_s, kReadingsOfLongestScale * interval_s);
   std::size_t used = 0;
   for (std::size_t scale = 0; scale < kScales; ++scale) {
     const double readings = std::ldexp(1.0, static_cast<int>(scale));
@@ -60,7 +60,7 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
       continue;
     }
     log_variance[scale] = std::log(squares_.mean(scale));
-    weight[scale] = independent[scale] / (1.0 + independent[scale] / kMostObservations);
+    weight[scale] = independent[scale] / (1.0 + independent[scale] / kMaxObservations);
   }
 
   // The level that suits each time scale best, in closed form; then the best time scale.
@@ -68,8 +68,8 @@ void TurbulenceFit::fit(double interval_s, double speed_m_s) noexcept {
   const double prior_time_s = prior_.length_m / speed_m_s;
   double best_cost = std::numeric_limits<double>::infinity();
   for (int step = 0; step <= kTimeScaleSteps; ++step) {
-    const double time_scale_s = kShortestTimeScale_s * std::pow(kLongestTimeScale_s / kShortestTimeScale_s,
-                                                                static_cast<double>(step) / kTimeScaleSteps);
+    const double time_scale_s =
+        kMinTimeScale_s * std::pow(kMaxTimeScale_s / kMinTimeScale_s, static_cast<double>(step) / kTimeScaleSteps);
     std::array<double, kScales> log_shape{};
     double level = prior_.intensity_weight * log_prior;
     double total = prior_.intensity_weight;

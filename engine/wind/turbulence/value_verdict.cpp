@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kMemory_s = 7200.0;
 /// It judges after so much time.
-constexpr double kLeastKnown_s = 1800.0;
+constexpr double kMinKnown_s = 1800.0;
 constexpr double kJudgeEvery_s = 60.0;
 constexpr double kLikelihoodRatio = 20.0;
 /// Readings are closer than this part of a gust's length.
-constexpr double kMostIntervalOfLength = 1.0 / 3.0;
+constexpr double kMaxIntervalOfLength = 1.0 / 3.0;
 constexpr double kOtherInterval = 1.2;
 /// The prior of the length: deviation of its logarithm; the lengths that are tried are so many to a factor of 2.
 constexpr double kLengthDeviation = 0.8;
@@ -62,9 +62,9 @@ void ValueVerdict::begin(double interval_s) noexcept {
 void ValueVerdict::judge(double interval_s, double speed_m_s) noexcept {
   if (!(interval_s > 0.0) || !(speed_m_s > 0.0)) return;
   if (interval_s > kOtherInterval * interval_s_ || interval_s < interval_s_ / kOtherInterval) begin(interval_s);
-  if (known_s_ < kLeastKnown_s || known_s_ - judged_s_ < kJudgeEvery_s) return;
+  if (known_s_ < kMinKnown_s || known_s_ - judged_s_ < kJudgeEvery_s) return;
   judged_s_ = known_s_;
-  if (interval_s > kMostIntervalOfLength * length_m_ / speed_m_s) return;
+  if (interval_s > kMaxIntervalOfLength * length_m_ / speed_m_s) return;
   const double log_ratio = log_likelihood_ratio(interval_s, speed_m_s);
   if (log_ratio > std::log(kLikelihoodRatio)) verdict_ = ReadingValue::kInstant;
   if (log_ratio < -std::log(kLikelihoodRatio)) verdict_ = ReadingValue::kMean;

@@ -156,7 +156,7 @@ std::string_view explain(SpectrumError error) noexcept {
     case SpectrumError::kSpeedOutOfRange:
       return "the mean speed must be above 0 m/s";
     case SpectrumError::kHeightOutOfRange:
-      return "the height must be above 0 m, and above the roughness of 0.03 m where u* is left to follow from it";
+      return "the height must be above 0 m, and above the roughness of 0.03 m if u* is computed from it";
     case SpectrumError::kSigmaOutOfRange:
       return "sigma must be 0 m/s or more, and cannot be given together with u*";
     case SpectrumError::kFrictionVelocityOutOfRange:

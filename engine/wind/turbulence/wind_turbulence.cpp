@@ -6,14 +6,14 @@
 namespace yuragi::wind::turbulence {
 namespace {
 
-constexpr double kLargestDifference = 1.0;
+constexpr double kMaxDifference = 1.0;
 /// A smaller one is rounding of the sums: a constant wind has no turbulence at all.
-constexpr double kSmallestDifference = 1e-9;
+constexpr double kMinDifference = 1e-9;
 
 /// Of the longest means, with as many readings before.
-constexpr std::size_t kLongestHistory = std::size_t{2} << (TurbulenceFit::kScales - 1);
+constexpr std::size_t kMaxHistory = std::size_t{2} << (TurbulenceFit::kScales - 1);
 /// Of the ring of sums: with room for the sum before the longest history.
-constexpr std::size_t kRingSize = 2 * kLongestHistory;
+constexpr std::size_t kRingSize = 2 * kMaxHistory;
 
 TurbulencePrior across_the_wind(TurbulencePrior prior) {
   prior.intensity *= kAcrossPerAlong;
@@ -46,11 +46,11 @@ void WindTurbulence::take(WindVector wind, WindVector ahead, double speed_m_s, b
   const WindVector before = sums_[last_];
   last_ = (last_ + 1) % kRingSize;
   sums_[last_] = before + wind;
-  history_size_ = std::min(history_size_ + 1, kLongestHistory);
+  history_size_ = std::min(history_size_ + 1, kMaxHistory);
 
   const auto sum_until = [&](std::size_t back) { return sums_[(last_ + kRingSize - back) % kRingSize]; };
   const auto limited = [](double part) {
-    return std::abs(part) < kSmallestDifference ? 0.0 : std::clamp(part, -kLargestDifference, kLargestDifference);
+    return std::abs(part) < kMinDifference ? 0.0 : std::clamp(part, -kMaxDifference, kMaxDifference);
   };
   for (std::size_t scale = 0; scale < TurbulenceFit::kScales; ++scale) {
     const std::size_t count = std::size_t{1} << scale;

@@ -121,7 +121,7 @@ TEST(DeliveryQueue, HoldsOnlySoMany) {
   DeliveryQueue queue(calls, {});
   queue.push(news_of("first"));
   is_busy.get_future().wait();
-  for (std::size_t i = 0; i < DeliveryQueue::kMostWaiting + 3; ++i) queue.push(news_of(std::to_string(i)));
+  for (std::size_t i = 0; i < DeliveryQueue::kMaxWaiting + 3; ++i) queue.push(news_of(std::to_string(i)));
   EXPECT_THAT(log.wait_for(3), ElementsAre("settled: 0", "settled: 1", "settled: 2")) << "the oldest gave way";
   EXPECT_FALSE(queue.is_idle());
   may_go_on.set_value();

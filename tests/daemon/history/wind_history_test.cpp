@@ -50,10 +50,10 @@ TEST(WindHistory, StepsHaveLeastMeanAndLargest_AndGapsAreGaps) {
 TEST(WindHistory, OnlyTheLastHours_InFewSteps) {
   const test::TemporaryFolder folder;
   test::write_session(folder / "a.windlog", {test::reading_at(0, 9.0), test::reading_at(120 * kMinute_ms, 3.0)});
-  for (unsigned hours = 1; hours <= kLongestHistory_h; ++hours) {
+  for (unsigned hours = 1; hours <= kMaxHistory_h; ++hours) {
     const auto history = read_wind_history(folder / "a.windlog", after_minutes(122), hours);
     ASSERT_TRUE(history);
-    EXPECT_LE(history->step_count, static_cast<std::size_t>(kMostSteps) + 1) << hours;
+    EXPECT_LE(history->step_count, static_cast<std::size_t>(kMaxSteps) + 1) << hours;
     std::uint64_t readings = 0;
     for (const HistoryStep& step : history->sensors.at(0).steps) readings += step.readings;
     EXPECT_EQ(readings, hours <= 2 ? 1U : 2U) << hours;

@@ -161,7 +161,7 @@ TEST(Pictures, LargeOnesAreScaledDownToTheMeanLight) {
   EXPECT_THAT(small.rgb, testing::Each(188));
 
   const look::Image strip = scaled_down({.width_px = 16000, .height_px = 2, .rgb = std::vector<std::uint8_t>(96000)});
-  EXPECT_LE(strip.width_px, look::Image::kLongestSide_px);
+  EXPECT_LE(strip.width_px, look::Image::kMaxSide_px);
   EXPECT_EQ(strip.height_px, 1U);
 }
 

@@ -108,7 +108,7 @@ TEST(DaemonLog, ItsLastLinesAreKept_AlsoThoseThatNobodyReads) {
   EXPECT_GT(lines[1].time_s, 1.7e9);
   EXPECT_EQ(lines[2].level, "warning");
   EXPECT_EQ(lines[2].text.size(), BoundedLogSink::kMaxTextBytes);
-  EXPECT_EQ(tail(10'000).size(), DaemonLog::kMostKept);
+  EXPECT_EQ(tail(10'000).size(), DaemonLog::kMaxKept);
 }
 
 TEST(DaemonLog, IsDelayedByNobodyAndEndsAlthoughNobodyReads) {

@@ -153,12 +153,12 @@ TEST_F(ParameterTest, AMistakeChangesNothingAndIsToldAsOfTheFile) {
   EXPECT_THAT(of_file("[look]\nsun = \"west\"\n"), HasSubstr(refusal_of("", "sun", "west")));
   EXPECT_THAT(of_file("[look]\ntime = \"25:00\"\n"), HasSubstr(refusal_of("", "time", "25:00")));
   EXPECT_THAT(of_file("[look]\nmist = \"1\"\n"), HasSubstr(refusal_of("", "mist", "1")));
-  EXPECT_THAT(refusal_of("", "mist", std::nullopt), HasSubstr("look.mist: is not a parameter here"));
+  EXPECT_THAT(refusal_of("", "mist", std::nullopt), HasSubstr("look.mist: is not a known key here"));
   EXPECT_THAT(of_file("[[scene]]\nkind = \"flag\"\ngain = -1.0\n"), HasSubstr(refusal_of("banner", "gain", "-1")));
   EXPECT_THAT(refusal_of("grass", "blades_across", "8.5"), HasSubstr("scene.blades_across: is a text (\"8.5\")"));
   EXPECT_THAT(refusal_of("grass", "shown", "perhaps"), HasSubstr("scene.shown: "));
   EXPECT_THAT(refusal_of("pond", "gain", "1"), HasSubstr("there is no scene \"pond\"; there are: banner, grass"));
-  EXPECT_THAT(refusal_of("grass", "name", "lawn"), HasSubstr("scene.name: is not a parameter here"));
+  EXPECT_THAT(refusal_of("grass", "name", "lawn"), HasSubstr("scene.name: is not a known key here"));
 
   send("", {{"clouds", "1"}, {"haze", "nan"}});
   EXPECT_FALSE(replies_.back().done);
@@ -246,7 +246,7 @@ TEST_F(ParameterTest, AFileThatIsReadAfterAValueWasSetUndoesItAndOneBeforeDoesNo
 
 TEST_F(ParameterTest, AsManyClientsAsLikeCannotMakeItKeepThemAll) {
   is_settling_ = true;
-  for (std::size_t i = 0; i < Reload::kMostWaiting + 3; ++i) send("banner", {{"gain", "2"}});
+  for (std::size_t i = 0; i < Reload::kMaxWaiting + 3; ++i) send("banner", {{"gain", "2"}});
   ASSERT_EQ(replies_.size(), 3U);
   EXPECT_THAT(replies_[0].message, HasSubstr("too many requests at once"));
 }

@@ -170,13 +170,13 @@ TEST_F(ReloadTest, AsManyClientsAsLikeCannotMakeItKeepThemAll) {
   std::promise<void> go_on;
   before_read_ = [&, gate = go_on.get_future().share()] { gate.wait(); };
   Reload reload(settings::default_config(), parts());
-  for (std::size_t i = 0; i < Reload::kMostWaiting + 10; ++i) reload.request({}, reply());
+  for (std::size_t i = 0; i < Reload::kMaxWaiting + 10; ++i) reload.request({}, reply());
   EXPECT_EQ(reports_.size(), 9U);
   EXPECT_EQ(reports_.front().outcome, wire::ReloadOutcome::kFailed);
   go_on.set_value();
   queue_.do_one();
   queue_.do_one();
-  EXPECT_EQ(reports_.size(), Reload::kMostWaiting + 10);
+  EXPECT_EQ(reports_.size(), Reload::kMaxWaiting + 10);
 }
 
 TEST_F(ReloadTest, WithoutAFileOrWithAnotherOneItSaysSo) {

@@ -205,7 +205,7 @@ TEST(Config, TellsEachMistakeOfACameraWithItsPlace) {
             "wall.toml:3:9: camera.scene: is \"tree\"; allowed: the name of a scene: \"pole\"");
   EXPECT_THAT(mistakes_of("[[camera]]\nname = \"a\"\nfov = 180\n"), StartsWith("wall.toml:3:7: camera.fov: "));
   std::string many;
-  for (std::size_t i = 0; i <= look::kMostCameras; ++i) many += "[[camera]]\nname = \"" + std::to_string(i) + "\"\n";
+  for (std::size_t i = 0; i <= look::kMaxCameras; ++i) many += "[[camera]]\nname = \"" + std::to_string(i) + "\"\n";
   EXPECT_EQ(mistakes_of(many), "wall.toml:65:1: camera: is one of 33; allowed: at most 32");
 }
 
@@ -256,7 +256,7 @@ TEST(Config, TellsEachMistakeOfAnAlertWithItsPlace) {
   EXPECT_THAT(mistakes_of("[[alert]]\nname = \"a\"\ncommand = \"x\"\nwhen = \"late\"\n"),
               StartsWith("wall.toml:4:8: alert.when: "));
   std::string many;
-  for (std::size_t i = 0; i <= kMostAlerts; ++i)
+  for (std::size_t i = 0; i <= kMaxAlerts; ++i)
     many += "[[alert]]\ncommand = \"x\"\nname = \"" + std::to_string(i) + "\"\n";
   EXPECT_EQ(mistakes_of(many), "wall.toml:193:1: alert: is one of 65; allowed: at most 64");
 }
@@ -306,7 +306,7 @@ TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
   EXPECT_THAT(mistakes_of("seed = \"seven\"\n"),
               StartsWith("wall.toml:1:8: seed: is a text (\"seven\"); allowed: whole number"));
   EXPECT_THAT(mistakes_of("[wind]\ngusts = 3\n"),
-              StartsWith("wall.toml:2:9: wind.gusts: is not a parameter here; known: default_speed"));
+              StartsWith("wall.toml:2:9: wind.gusts: is not a known key here; known: default_speed"));
   EXPECT_THAT(mistakes_of("[win]\nx = 1\n"),
               StartsWith("wall.toml:1:2: win: is not known here; allowed: seed, [stream]"));
   EXPECT_THAT(mistakes_of("wind = 3\n"), StartsWith("wall.toml:1:1: wind: is a value; write it as a table"));
@@ -359,7 +359,7 @@ name = "other"
   EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ngain = 0\n"),
               StartsWith("wall.toml:4:8: sensor.calibration.gain: is 0; allowed: number from 0.01 to 100"));
   EXPECT_THAT(mistakes_of(sensor + "[sensor.calibration]\ncurve = \"5\"\n"),
-              StartsWith("wall.toml:4:9: sensor.calibration.curve: \"5\" is no curve; allowed:"));
+              StartsWith("wall.toml:4:9: sensor.calibration.curve: \"5\" is not a curve; allowed:"));
   EXPECT_THAT(mistakes_of(sensor + "calibration = 3\n"),
               StartsWith("wall.toml:3:15: sensor.calibration: is a value; write it as a table"));
   EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\n[scene.calibration]\ngain = 2\n"),

@@ -226,8 +226,8 @@ TEST(ConfigText, IsReadFromARegularFileOfSensibleSizeOnly) {
 
   std::ofstream(file) << "seed = 3\n";
   EXPECT_EQ(read_config_text(file), "seed = 3\n");
-  std::filesystem::resize_file(file, kLargestConfig_bytes);
-  EXPECT_EQ(read_config_text(file).size(), kLargestConfig_bytes);
+  std::filesystem::resize_file(file, kMaxConfig_bytes);
+  EXPECT_EQ(read_config_text(file).size(), kMaxConfig_bytes);
   std::filesystem::resize_file(file, 1'000'000'000);  // a sparse one
   EXPECT_THAT(mistake_of(file), HasSubstr("is too large; allowed: up to 1 MB"));
 }

@@ -34,7 +34,7 @@ constexpr auto kHang = 60s;  // so long waits only who waits for something that 
 /// What comes, until it is as long as expected.
 std::string read_text(BytePort& port, std::size_t size) {
   std::string text;
-  std::vector<std::uint8_t> buffer(kLargestDatagram);
+  std::vector<std::uint8_t> buffer(kMaxDatagram);
   while (text.size() < size) {
     const ByteArrival arrival = port.read(buffer, kHang);
     if (arrival.status == ByteStatus::kBytes)
@@ -46,7 +46,7 @@ std::string read_text(BytePort& port, std::size_t size) {
 
 /// The status of a read once it is what is waited for; the last one if it hangs.
 ByteStatus status_until(BytePort& port, ByteStatus wanted) {
-  std::vector<std::uint8_t> buffer(kLargestDatagram);
+  std::vector<std::uint8_t> buffer(kMaxDatagram);
   ByteStatus status = ByteStatus::kSilence;
   const auto deadline = std::chrono::steady_clock::now() + kHang;
   while (status != wanted && std::chrono::steady_clock::now() < deadline) status = port.read(buffer, 100ms).status;
@@ -322,7 +322,7 @@ TEST_F(UdpBytePort, KeepsDatagramsApartAndLongOnesWhole) {
   const std::string longest(60000, 'x');
   for (const std::string& text : {std::string("one"), std::string("two"), longest}) sender.send(text, port_);
 
-  std::vector<std::uint8_t> buffer(kLargestDatagram);
+  std::vector<std::uint8_t> buffer(kMaxDatagram);
   for (const std::size_t size : {std::size_t{3}, std::size_t{3}, longest.size()}) {
     const ByteArrival arrival = port->read(buffer, kHang);
     EXPECT_EQ(arrival.status, ByteStatus::kBytes);
@@ -338,7 +338,7 @@ TEST_F(UdpBytePort, TakesOnlyTheSendersThatItIsTold) {
   ASSERT_TRUE(port->open().has_value());
   const Sender wanted("127.0.0.2");
   const Sender other("127.0.0.1");
-  std::vector<std::uint8_t> buffer(kLargestDatagram);
+  std::vector<std::uint8_t> buffer(kMaxDatagram);
   other.send("other", port_);
   const ByteArrival refused = port->read(buffer, kHang);
   EXPECT_EQ(refused.status, ByteStatus::kForeign);
@@ -359,7 +359,7 @@ TEST_F(UdpBytePort, CountsWhatTheKernelDropsWhileNobodyReads) {
   constexpr std::uint32_t kFlood = 2000;  // 16 MB: more than a socket keeps
   for (std::uint32_t i = 0; i < kFlood; ++i) sender.send(large, port_);
 
-  std::vector<std::uint8_t> buffer(kLargestDatagram);
+  std::vector<std::uint8_t> buffer(kMaxDatagram);
   std::uint32_t read = 0;
   std::uint32_t dropped = 0;
   const auto read_all = [&] {

@@ -65,14 +65,14 @@ class EchoServer {
 };
 
 std::string next_message(BytePort& port) {
-  std::vector<std::uint8_t> buffer(kLargestDatagram);
+  std::vector<std::uint8_t> buffer(kMaxDatagram);
   const ByteArrival arrival = port.read(buffer, kForever);
   EXPECT_TRUE(arrival.is_whole_datagram);
   return {buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(arrival.size)};
 }
 
 ByteStatus next_status(BytePort& port, Nanoseconds timeout = kForever) {
-  std::vector<std::uint8_t> buffer(kLargestDatagram);
+  std::vector<std::uint8_t> buffer(kMaxDatagram);
   return port.read(buffer, timeout).status;
 }
 

@@ -143,7 +143,7 @@ TEST(StationPush, RefusesWhatIsNoSuchForm) {
        {std::string("ID=a&windspeedmph=1&windspeedmph=2"), std::string("ID=a&ID=b&windspeedmph=1"),
         std::string("ID=a&windspeedmph=1e1"), std::string("ID=a&windspeedmph=10&winddir=NE"),
         std::string("ID=a&windspeedmph=10&windgustmph=--"), std::string("{\"ID\": \"a\"}"),
-        std::string("ID=a&windspeedmph=1\nwinddir=2"), "ID=" + std::string(kLongestStationPush, 'a')}) {
+        std::string("ID=a&windspeedmph=1\nwinddir=2"), "ID=" + std::string(kMaxStationPush, 'a')}) {
     EXPECT_TRUE(is_refused_as(wind_in(form), Refusal::kMalformed)) << form.substr(0, 100);
   }
 }

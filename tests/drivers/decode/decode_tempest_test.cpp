@@ -149,8 +149,8 @@ TEST(Tempest, RefusesWhatIsNoSuchMessage) {
         std::string(R"({"serial_number":"ST-1","type":"rapid_wind","hub_sn":"HB-1"})"),
         std::string(R"({"serial_number":"ST-1","type":"obs_st","hub_sn":"HB-1","obs":[]})"),
         R"({"serial_number":")" + std::string(33, 'S') + R"(","type":"hub_status"})",
-        std::string(kLongestTempestMessage, '['),
-        std::string(kLongestTempestMessage + 1, ' ')}) {
+        std::string(kMaxTempestMessage, '['),
+        std::string(kMaxTempestMessage + 1, ' ')}) {
     EXPECT_TRUE(is_refused_as(wind_in(text), Refusal::kMalformed)) << text.substr(0, 100);
   }
 }

@@ -118,7 +118,7 @@ TEST(UmbRequest, IsTheOneThatTheMakersProgramSends) {
   EXPECT_THAT(umb_request(umb_address(7, 9), kChannels), ElementsAreArray(kRecordedRequest));
   EXPECT_THAT(umb_request(umb_address(7, 9), std::span(kChannels).first(1)),
               ElementsAreArray(bytes_of("01 10 09 70 01 F0 05 02 2F 10 01 C8 00 03 E9 EB 04")));
-  EXPECT_LE(umb_request(kStation, kUmbChannels).size(), kLongestUmbFrame);
+  EXPECT_LE(umb_request(kStation, kUmbChannels).size(), kMaxUmbFrame);
 }
 
 TEST(UmbReply, IsReadFromPrintedAndRecordedFrames) {

@@ -617,7 +617,7 @@ TEST(MqttDriver, RefusesAPasswordThatIsNotThereOrGivenTwice) {
   EXPECT_EQ(refusal_of_file(), "it was opened");
   std::ofstream(file) << std::string(4097, 'x');
   EXPECT_THAT(refusal_of_file(), HasSubstr("is too large; allowed: up to 4096 bytes"));
-  EXPECT_THAT(refusal_of({{"password_file", folder.path().string()}}), HasSubstr("is no regular file"));
+  EXPECT_THAT(refusal_of({{"password_file", folder.path().string()}}), HasSubstr("is not a regular file"));
 
   EXPECT_THAT(refusal_of({{"password_env", std::string("YURAGI_TEST_NONE")}}),
               HasSubstr("password_env: the environment variable \"YURAGI_TEST_NONE\" is not set"));

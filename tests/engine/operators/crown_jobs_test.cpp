@@ -448,10 +448,10 @@ TEST(TiltJobTest, SaysWhatIsWrongAndThenDoesNothing) {
   for (const double angle_rad : {-0.1, 3.2, kNotANumber}) {
     job = branches.job(1.0);
     job.max_tilt_rad = angle_rad;
-    EXPECT_EQ(job.run(), Problem::kLargestAngles);
+    EXPECT_EQ(job.run(), Problem::kMaxAngles);
     job = branches.job(1.0);
     job.max_swing_rad = angle_rad;
-    EXPECT_EQ(job.run(), Problem::kLargestAngles);
+    EXPECT_EQ(job.run(), Problem::kMaxAngles);
   }
   for (int which = 0; which < 7; ++which) {
     job = branches.job(1.0);

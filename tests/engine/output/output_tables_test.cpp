@@ -136,8 +136,7 @@ TEST(Outputs, RefuseAScreenThatNobodyCanLookThrough) {
 
 TEST(Outputs, RefuseTooMany) {
   std::string many = "[[output]]\n";
-  for (std::size_t i = 0; i <= kMostWindows; ++i)
-    many += "[[output.window]]\nmonitor = \"" + std::to_string(i) + "\"\n";
+  for (std::size_t i = 0; i <= kMaxWindows; ++i) many += "[[output.window]]\nmonitor = \"" + std::to_string(i) + "\"\n";
   EXPECT_THAT(mistake_in(many), HasSubstr("at most 16"));
 }
 

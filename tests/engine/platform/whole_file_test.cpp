@@ -81,7 +81,7 @@ TEST(ReadWhole, TakesRegularFilesUpToALimitAndWaitsForNoPipe) {
   std::ofstream(file) << "wind";
   EXPECT_EQ(*read_whole(file, 4), "wind");
   EXPECT_EQ(read_whole(file, 3).error().message, "is too large; allowed: up to 3 bytes");
-  const std::string neither = "is no regular file, but a folder, a pipe or a device";
+  const std::string neither = "is not a regular file, but a folder, a pipe or a device";
   EXPECT_EQ(read_whole(folder.path(), 4).error().message, neither);
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   EXPECT_EQ(read_whole(folder / "pipe", 4).error().message, neither);

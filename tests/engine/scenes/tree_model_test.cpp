@@ -181,7 +181,7 @@ TEST(TreeModelTest, LimbsCurve) {
 double clumpiness_of(const pose::TreeSkeleton& tree) {
   constexpr int kCells = 4;
   constexpr double kCell_m = 0.5;
-  constexpr double kLeastLeaves = 2.0 * kCells * kCells * kCells;
+  constexpr double kMinLeaves = 2.0 * kCells * kCells * kCells;
   const pose::StrandSkeleton& leaves = tree.levels[kLeaves].strands;
   std::map<std::array<int, 3>, std::map<std::array<int, 3>, double>> blocks;
   for (std::size_t i = 0; i < leaves.strand_count; ++i) {
@@ -201,7 +201,7 @@ double clumpiness_of(const pose::TreeSkeleton& tree) {
       all += in_cell;
       squares += in_cell * in_cell;
     }
-    if (all < kLeastLeaves) continue;
+    if (all < kMinLeaves) continue;
     const double mean = all / (kCells * kCells * kCells);
     sum += all * (squares / (kCells * kCells * kCells) - mean * mean - mean) / (mean * mean);
     count += all;

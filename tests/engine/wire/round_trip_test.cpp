@@ -503,11 +503,11 @@ TEST(RoundTrip, BringsHostileCamerasWithinTheirLimits) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   Sensors sensors;
   sensors.cameras.assign(
-      look::kMostCameras + 8,
+      look::kMaxCameras + 8,
       {.target_x_m = kNan, .pitch_deg = 1e300, .distance_m = kNan, .fov_deg = -1.0, .period_s = 0.0, .from_h = kNan});
   sensors.camera = 1'000'000;
   const Sensors read = decoded<Sensors>(encode(sensors));
-  ASSERT_EQ(read.cameras.size(), look::kMostCameras);
+  ASSERT_EQ(read.cameras.size(), look::kMaxCameras);
   EXPECT_EQ(read.cameras[0], (look::Camera{.pitch_deg = 89.0, .fov_deg = 5.0, .period_s = 10.0}));
   EXPECT_EQ(read.camera, 0U) << "there is no such camera";
 }

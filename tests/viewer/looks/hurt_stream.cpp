@@ -53,11 +53,11 @@ std::vector<wire::Bytes> messages_in(const std::string& file) {
 /// another count for a count, and now and then anything.
 std::uint32_t hurt(std::uint32_t word, std::mt19937& random) {
   constexpr std::array<float, 10> kNumbers{0.0F, -0.0F, 1.0F, -1.0F, 1e-30F, 1e-3F, -1e-3F, 100.0F, 1e6F, -1e6F};
-  constexpr std::uint32_t kLargestCount = 5000;
+  constexpr std::uint32_t kMaxCount = 5000;
   if (random() % 50 == 0) return static_cast<std::uint32_t>(random());
   const float number = std::abs(std::bit_cast<float>(word));
   if (number > 1e-6F && number < 1e6F) return std::bit_cast<std::uint32_t>(kNumbers.at(random() % kNumbers.size()));
-  return word <= kLargestCount ? static_cast<std::uint32_t>(random() % kLargestCount) >> random() % 12 : word;
+  return word <= kMaxCount ? static_cast<std::uint32_t>(random() % kMaxCount) >> random() % 12 : word;
 }
 
 wire::Bytes hurt(wire::Bytes bytes, std::mt19937& random) {

@@ -100,7 +100,7 @@ TEST(ClothSurface, HasARimAsThickAsItIs) {
 
 TEST(ClothSurface, HasNoMorePointsThanAllowed) {
   const ClothSurface surface({1000, 1000, 1008, false}, 2);
-  EXPECT_LE(surface.layout().size(), ClothSurface::kMostPoints);
+  EXPECT_LE(surface.layout().size(), ClothSurface::kMaxPoints);
   EXPECT_GT(surface.layout().size(), 1U);
   ClothSurface none({}, 0);
   none.move_to({});

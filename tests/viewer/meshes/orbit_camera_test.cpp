@@ -198,7 +198,7 @@ TEST(OrbitCamera, LooksUpFromAboveTheGround) {
   EXPECT_EQ(camera.place().pitch_deg, -20.0);
   EXPECT_NEAR(camera.eye_m().y, 5.0 - 10.0 * std::sin(20.0 * M_PI / 180.0), 1e-9);
   const OrbitCamera low = camera_at({{0.0, 1.0, 0.0}, 0.0, -40.0, 10.0});
-  EXPECT_NEAR(low.eye_m().y, OrbitCamera::kLowestEye_m, 1e-9);
+  EXPECT_NEAR(low.eye_m().y, OrbitCamera::kMinEye_m, 1e-9);
 }
 
 TEST(PlaceAcross, HasTheWholeOfThingsOfAnySizeInFrontOfItFromALowPlace) {

@@ -213,12 +213,12 @@ double difference(const Pixels& a, const Pixels& b) {
 /// What the monitors show once it has stood still for some seconds: the light has come up, and the rate is measured.
 Pixels settled(const VirtualMonitors& monitors, RunningViewer& viewer) {
   constexpr int kStill = 12;
-  constexpr double kLeastChange = 0.3;
+  constexpr double kMinChange = 0.3;
   Pixels before;
   int still = 0;
   for (int i = 0; i < 240; ++i) {
     Pixels now = monitors.pixels();
-    still = has_picture(now) && difference(now, before) < kLeastChange ? still + 1 : 0;
+    still = has_picture(now) && difference(now, before) < kMinChange ? still + 1 : 0;
     if (still == kStill) return now;
     before = std::move(now);
     std::this_thread::sleep_for(std::chrono::milliseconds(250));

@@ -26,7 +26,7 @@ Branches::Branches(const pose::TreeSkeleton& tree, std::size_t level)
     lengths_m_.push_back(strands.link_length_m[i] * static_cast<float>(strands.links_per_strand));
   }
   for (std::size_t tube = 0; tube < kSides.size(); ++tube) {
-    std::size_t rings = std::min(kFewestRings, strands.links_per_strand);
+    std::size_t rings = std::min(kMinRings, strands.links_per_strand);
     for (; rings < strands.links_per_strand; rings *= 2) groups_.push_back({.rings = rings, .tube = tube});
     groups_.push_back({.rings = strands.links_per_strand, .tube = tube});
   }

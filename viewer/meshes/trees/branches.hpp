@@ -26,7 +26,7 @@ struct BranchGroup {
 /// longer and more sides the thicker they are in it. Allocates when it is made, never afterwards.
 class Branches {
  public:
-  static constexpr std::size_t kFewestRings = 4;  ///< where there are as many links
+  static constexpr std::size_t kMinRings = 4;  ///< where there are as many links
   static constexpr std::array<std::size_t, 3> kSides = {3, 6, 14};
 
   /// `tree` must outlive this.

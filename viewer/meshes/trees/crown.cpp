@@ -18,7 +18,7 @@ constexpr float kTwigAlong = 0.3F;
 /// A spray of which this share is seen through the others has all of its leaves; one that is hidden, fewer, at most so
 /// many times as large.
 constexpr float kHardlySeen = 0.35F;
-constexpr float kLargestHidden = 1.4F;
+constexpr float kMaxHidden = 1.4F;
 
 /// There are meshes with these numbers of leaves; a spray is drawn with the smallest that suffices.
 constexpr std::array<std::size_t, 9> kLeafCounts = {1, 2, 3, 4, 6, 9, 13, 18, 26};
@@ -52,7 +52,7 @@ class LeafCells {
  public:
   static constexpr int kSide = 28;
   /// More than there are through any tree; a hostile one may be so large, or so far off, that a step gets nowhere.
-  static constexpr int kMostSteps = 1000;
+  static constexpr int kMaxSteps = 1000;
   static constexpr std::size_t kCells = std::size_t{kSide} * kSide * kSide;
 
   explicit LeafCells(const Bounds& box)
@@ -68,7 +68,7 @@ class LeafCells {
     const float step_m = 0.7F * std::min({cell_m_.x, cell_m_.y, cell_m_.z});
     float leaves = 0.0F;  // across the light, area over area
     place_m += 0.5F * step_m * direction;
-    for (int step = 0; step < kMostSteps; ++step, place_m += step_m * direction) {
+    for (int step = 0; step < kMaxSteps; ++step, place_m += step_m * direction) {
       const int cell = cell_of(place_m);
       if (cell < 0) break;
       leaves += 0.5F * step_m * density_[static_cast<std::size_t>(cell)];
@@ -246,7 +246,7 @@ void Crown::choose(const View& view, const SprayDetail& detail, const TreePlace&
       const float seen = open.w + glm::dot(place.turned(glm::vec3(open)), to_eye);
       const float share = glm::mix(detail.hidden_share, 1.0F, glm::smoothstep(0.0F, kHardlySeen, seen));
       choice.level.leaves *= share;
-      choice.level.size *= std::min(1.0F / std::sqrt(share), kLargestHidden);
+      choice.level.size *= std::min(1.0F / std::sqrt(share), kMaxHidden);
     }
     const auto suffices = [&](const SprayGroup& group) {
       return group.kind == choice.level.kind && static_cast<float>(group.leaves) >= choice.level.leaves;

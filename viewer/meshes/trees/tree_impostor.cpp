@@ -28,7 +28,7 @@ ImpostorBox impostor_box(const Bounds& tree) {
 View impostor_view(const ImpostorBox& box, std::size_t side, std::size_t row, int side_px) {
   const float around_rad =
       static_cast<float>(2.0 * kPi) * static_cast<float>(side) / static_cast<float>(kImpostorSides);
-  const float height_rad = kLowestImpostor_rad + kImpostorStep_rad * static_cast<float>(row);
+  const float height_rad = kMinImpostor_rad + kImpostorStep_rad * static_cast<float>(row);
   const glm::vec3 to_eye(std::cos(height_rad) * std::sin(around_rad), std::sin(height_rad),
                          std::cos(height_rad) * std::cos(around_rad));
   const glm::mat4 to_eye_space =

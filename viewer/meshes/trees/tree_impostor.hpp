@@ -16,8 +16,8 @@ namespace yuragi::viewer::meshes::trees {
 
 inline constexpr std::size_t kImpostorSides = 8;  ///< the first from the south, the next from the south-east
 inline constexpr std::size_t kImpostorRows = 3;
-inline constexpr float kLowestImpostor_rad = 0.07F;  ///< how high above the horizon the lowest row is seen from
-inline constexpr float kImpostorStep_rad = 0.63F;    ///< and how much higher each next one
+inline constexpr float kMinImpostor_rad = 0.07F;   ///< how high above the horizon the lowest row is seen from
+inline constexpr float kImpostorStep_rad = 0.63F;  ///< and how much higher each next one
 
 /// What of a tree its pictures show.
 struct ImpostorBox {

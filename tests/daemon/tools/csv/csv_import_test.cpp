@@ -452,7 +452,7 @@ TEST(CsvImport, APipeIsReadAsAFileIsAndKeptOnlyInPart) {
   const std::string row = "," + std::string(1000, 'x') + "\n";
   std::string text = "time,speed,note\n";
   std::size_t rows = 0;
-  while (text.size() < CsvInput::kMostKept + 100'000) text += std::to_string(rows++) + ",1" + row;
+  while (text.size() < CsvInput::kMaxKept + 100'000) text += std::to_string(rows++) + ",1" + row;
   OneWayBuffer buffer(text);
   std::istream in(&buffer);
   std::size_t taken = 0;

@@ -146,8 +146,8 @@ TEST(TakeRecorder, AStillSceneHasNoAnimation_AndATakeOfNothingIsNone) {
 }
 
 TEST(TakeRecorder, IsRefusedBeforeItsWorkIfItsFileWouldBeTooLarge) {
-  EXPECT_TRUE(checked_size(kMostJoints, 1220.0));
-  const auto large = checked_size(kMostJoints, 1221.0);
+  EXPECT_TRUE(checked_size(kMaxJoints, 1220.0));
+  const auto large = checked_size(kMaxJoints, 1221.0);
   ASSERT_FALSE(large);
   EXPECT_EQ(large.error().message,
             "the take is too large: with 65535 joints it has room for 1220 pictures; take a shorter --duration, fewer "

@@ -406,7 +406,7 @@ TEST(BlendedEstimator, AloneATurnFrom350To10DegreesPassesThroughNorth) {
 
 // A critically damped step of e moves at most 0.37 e w a second: here 11 m/s, w = 4 / 3 s.
 TEST(BlendedEstimator, LossAndReturnHandOverWithoutAJump) {
-  constexpr double kLargestStep_m_s = 0.37 * (4.0 / 3.0) * 11.0 * kBlendTick_s * 1.1;
+  constexpr double kMaxStep_m_s = 0.37 * (4.0 / 3.0) * 11.0 * kBlendTick_s * 1.1;
   BlendSettings settings = Blend::usual(1, 0.0);
   settings.mean_memory_s = 60.0;
   Blend blend(1, settings);
@@ -415,12 +415,12 @@ TEST(BlendedEstimator, LossAndReturnHandOverWithoutAJump) {
   blend.run_for(600.0);
   EXPECT_EQ(blend.state().source, WindSource::kDefault);
   EXPECT_NEAR(blend.state().wind.v_m_s, 4.0, 0.05);
-  EXPECT_LT(blend.take_largest_step_m_s(), kLargestStep_m_s);
+  EXPECT_LT(blend.take_largest_step_m_s(), kMaxStep_m_s);
 
   blend.read_for(100.0, 0.5, 8.0, 90.0);
   EXPECT_EQ(blend.state().source, WindSource::kLive);
   EXPECT_NEAR(blend.state().wind.u_m_s, -8.0, 0.1);
-  EXPECT_LT(blend.take_largest_step_m_s(), kLargestStep_m_s);
+  EXPECT_LT(blend.take_largest_step_m_s(), kMaxStep_m_s);
 }
 
 TEST(BlendedEstimator, FallsBackToTheNextLiveSourceAndReturnsToTheFirst) {

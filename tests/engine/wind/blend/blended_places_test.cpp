@@ -260,7 +260,7 @@ double largest_step_m_s(const std::vector<BlendSourceSettings>& sources,
 
 // Slow waves, of which the law loses nothing, are 4 m/s apart when one falls silent, and when it is back. Of its word a
 // hand-over of 3 s takes 0.25 a second, which is 1.2 a second of its presence.
-constexpr double kLargestChange_m_s = 4.0 * 1.2 * kBlendTick_s;
+constexpr double kMaxChange_m_s = 4.0 * 1.2 * kBlendTick_s;
 bool is_there(int second) {
   return second < 200 || second > 270;
 }
@@ -269,11 +269,11 @@ TEST(BlendedPlaces, OneOfTwoThatComesOrGoesMovesNoPlaceByALeap) {
   const std::vector<BlendSourceSettings> sources = {placed_source(-15.0), placed_source(15.0)};
   const double normal_m_s = largest_step_m_s(sources, [](int) { return true; });
   EXPECT_LT(normal_m_s, 0.02);
-  EXPECT_LT(largest_step_m_s(sources, is_there), kLargestChange_m_s + normal_m_s);
+  EXPECT_LT(largest_step_m_s(sources, is_there), kMaxChange_m_s + normal_m_s);
 }
 
 TEST(BlendedPlaces, OneThatTakesOverAtAnotherPlaceMovesNoPlaceByALeap) {
-  EXPECT_LT(largest_step_m_s({placed_source(-15.0), placed_source(15.0, 0.0, 2)}, is_there), 2.0 * kLargestChange_m_s);
+  EXPECT_LT(largest_step_m_s({placed_source(-15.0), placed_source(15.0, 0.0, 2)}, is_there), 2.0 * kMaxChange_m_s);
 }
 
 TEST(BlendedPlaces, AGustComesLaterTheFartherDownwindAPlaceIs) {

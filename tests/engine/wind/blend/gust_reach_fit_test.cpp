@@ -168,12 +168,12 @@ TEST(GustReachFit, IsBounded) {
   {
     GustReachFit fit(2);
     Pair alike({.across_m = 30.0}, 1e6, 1.0);
-    EXPECT_NEAR(std::exp(alike.run(7200.0, fit).across_ln), GustReach::kMostFactor, 0.1);
+    EXPECT_NEAR(std::exp(alike.run(7200.0, fit).across_ln), GustReach::kMaxFactor, 0.1);
   }
   GustReachFit fit(2);
   Pair strangers({.across_m = 1.0}, 1e-6, 1.0);
   const GustReach reach = strangers.run(7200.0, fit);
-  EXPECT_NEAR(std::exp(reach.across_ln), 1.0 / GustReach::kMostFactor, 0.02);
+  EXPECT_NEAR(std::exp(reach.across_ln), 1.0 / GustReach::kMaxFactor, 0.02);
   EXPECT_TRUE(is_valid(reach));
 }
 

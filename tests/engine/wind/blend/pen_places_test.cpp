@@ -51,7 +51,7 @@ TEST(PenPlaces, SensorsOnOneMastShareAPlace) {
 TEST(PenPlaces, OfMoreThanItHoldsTheLastShareTheNearest) {
   const PenPlaces places = places_of(
       {source_at(-30.0), source_at(-10.0), source_at(10.0), source_at(30.0), source_at(12.0), source_at(-99.0)});
-  ASSERT_EQ(places.count(), ground::WindStroke::kMostPens);
+  ASSERT_EQ(places.count(), ground::WindStroke::kMaxPens);
   EXPECT_EQ(places.pen_of(4), 2U);
   EXPECT_EQ(places.pen_of(5), 0U);
 }

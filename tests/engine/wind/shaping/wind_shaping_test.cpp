@@ -331,7 +331,7 @@ TEST(WindShaping, WhateverComesTheWindIsFiniteBoundedAndItsGainsNeverJump) {
         ASSERT_LE(std::abs(now.opening - before.opening), largest_step(1.0, settings.fade_s));
       }
       ASSERT_TRUE(now.site_gain > 0.3 && now.site_gain < 3.0 + 1e-6);
-      ASSERT_TRUE(now.floor_gain > 1.0 - 1e-6 && now.floor_gain < WindShaping::kMostFloorGain + 1e-6);
+      ASSERT_TRUE(now.floor_gain > 1.0 - 1e-6 && now.floor_gain < WindShaping::kMaxFloorGain + 1e-6);
       before = now;
     }
   }
@@ -396,7 +396,7 @@ TEST(WindShaping, TheBlendedWindMovesNoQuickerForBeingShapedWhateverTheDayBrings
   EXPECT_GT(weakest_mean_m_s, 1.9) << "a calm is raised";
   // The floor's gain, and gusts that pass at up to its speed; in a storm no gain is above 1, and others of the same
   // gusts pass.
-  EXPECT_LT(calm.shaped_m_s, WindShaping::kMostFloorGain * calm.real_m_s + 0.05);
+  EXPECT_LT(calm.shaped_m_s, WindShaping::kMaxFloorGain * calm.real_m_s + 0.05);
   EXPECT_LT(storm.shaped_m_s, 1.1 * storm.real_m_s);
 }
 

@@ -211,7 +211,7 @@ TEST_F(CrownTest, BranchesHaveMoreRingsTheNearerTheyAreAndNoMoreThanLinks) {
       EXPECT_LE(most, before);
       before = most;
     }
-    EXPECT_LE(before, std::min(2 * Branches::kFewestRings, links));
+    EXPECT_LE(before, std::min(2 * Branches::kMinRings, links));
     branches.choose(view_at(middle_m() + glm::dvec3(0.0, 0.0, -60.0), 10.0), 5.0F);
     EXPECT_TRUE(branches.parts().empty()) << "behind the camera";
   }
