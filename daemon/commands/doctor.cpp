@@ -1,4 +1,4 @@
-// `yuragi doctor`: what is wrong with an installation, and the commands that mend it.
+// `yuragi doctor`: what is wrong with an installation, and the commands that fix it.
 #include <memory>
 #include <optional>
 #include <string_view>

@@ -35,7 +35,7 @@ Result<SimulatorProcess, Failure> SimulatorProcess::start(const std::vector<std:
     output.append(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(arrival.size));
     if (const auto port = tools::acceptance::simulator_port(output)) return SimulatorProcess(std::move(process), *port);
   }
-  return Failure{"yuragi-sim cannot simulate it: its message is above, on standard error", FailureKind::kUnavailable};
+  return Failure{"yuragi-sim cannot simulate it: its message is on standard error", FailureKind::kUnavailable};
 }
 
 }  // namespace yuragi::daemon::commands

@@ -47,7 +47,7 @@ std::string text_of(const ClockDoubt& doubt) {
   const std::string why = doubt.is_at_start
                               ? "a start was " + by + (is_ahead ? " after" : " before") + " the newest reading"
                               : "it jumped " + std::string(is_ahead ? "ahead" : "back") + " by " + by;
-  return "the clock may be wrong, since " + drivers::windlog::iso_time_text(doubt.since) + ": " + why +
+  return "the clock may be wrong since " + drivers::windlog::iso_time_text(doubt.since) + ": " + why +
          "; recordings are not deleted by age until it has run for another " +
          settings::duration_text(seconds(ClockJudge::kDoubt - doubt.running)) + " or is synchronized";
 }

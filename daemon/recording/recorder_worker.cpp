@@ -465,7 +465,7 @@ Result<void, Failure> RecorderWorker::complete_file(UtcTime now) {
     begin += std::chrono::seconds(1);
   }
   const std::filesystem::path part = drivers::windlog::part_name(file_, begin);
-  // Where another program reads it, its newest readings may still lie beside it.
+  // If another program reads it, its newest readings may still lie beside it.
   const std::error_code error = drivers::windlog::rename_recording(file_, part);
   if (error) return Failure{file_.string() + ": cannot be renamed to " + part.string() + ": " + error.message()};
   may_delete_by_age_ = kMaxDeletedByAge;

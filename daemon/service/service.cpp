@@ -55,7 +55,7 @@ namespace {
 namespace asio = boost::asio;
 
 constexpr auto kStatusInterval = std::chrono::milliseconds(500);
-/// What could not be opened at the start is tried again so often.
+/// The interval at which what could not be opened at the start is tried again.
 constexpr auto kTryAgainAfter = std::chrono::seconds(2);
 
 static_assert(settings::kMaxSensors + 1 <= wire::kMaxSensors && settings::kMaxScenes <= wire::kMaxScenes);
@@ -243,7 +243,7 @@ class Service::Io {
     return settings;
   }
 
-  /// A replay beside the daemon keeps its hands off the daemon's file.
+  /// A replay beside the daemon does not write the daemon's file.
   std::filesystem::path pairings_file() const {
     if (!takes_token_ || options_.recorded_from) return {};
     return settings::state_file(options_.config_file, "pairings.json");

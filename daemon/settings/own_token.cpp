@@ -22,7 +22,7 @@ bool is_of_this_machine(const std::string& address) {
   return parsed && (parsed->host == "localhost" || parsed->host == "::1" || parsed->host.starts_with("127."));
 }
 
-/// [http] token_file of a configuration; empty if it has none or cannot be read: then the command goes on without.
+/// [http] token_file of a configuration; empty if it has none or cannot be read: then the command continues without it.
 std::string token_file_of(const std::filesystem::path& config) {
   if (access(config.c_str(), R_OK) != 0) return {};
   try {

@@ -75,7 +75,7 @@ class Comparison {
       if (values.all() == running.all()) continue;
       running = std::move(values);
       // Each half of a table that is valid as a whole is valid with the other half of the running one: keys that
-      // contradict each other are all applied, or all take a restart.
+      // contradict each other are all applied, or all need a restart.
       table.fill(next, running);
     }
   }

@@ -147,7 +147,7 @@ class Accept(unittest.TestCase):
         shutil.copy(source, profile)
         done = self.accept(self.config(f'name = "roof"\ndriver = "modbus"\nprofile = "{profile}"'), "--simulated-only")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("  - not simulated: yuragi-sim cannot play it", done.stdout)
+        self.assertIn("  - not simulated: yuragi-sim cannot simulate it", done.stdout)
         self.assertRegex(done.stdout, r"(?m)^rehearsal .*not a hand-over.*: remark$", "nothing was measured")
         self.assertIn("my-own", done.stderr)
         self.assertNotIn("sign it", done.stderr)

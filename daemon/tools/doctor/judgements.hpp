@@ -7,7 +7,7 @@
 
 namespace yuragi::daemon::tools::doctor {
 
-// From what was found to what it means and which command mends it. Pure.
+// From what was found to what it means and which command fixes it. Pure.
 
 /// Below this year a clock has never been set: the first release is later.
 inline constexpr int kFirstPlausibleYear = 2024;

@@ -236,7 +236,7 @@ std::vector<Finding> judge(const ListenFacts& listen, const ServiceUnit& unit) {
                                           "CAP_NET_BIND_SERVICE",
                                           listen.first_unprivileged_port, edit(unit)))};
     }
-    if (!listen.listener) return {};  // who asks may perhaps not listen there
+    if (!listen.listener) return {};  // the current user may lack the right to listen there
   }
   // The running service gives it up before it is started again.
   const bool is_the_service = !unit.name.empty() && listen.listener && listen.listener == unit.user_id;

@@ -174,9 +174,9 @@ TEST(Pictures, FilesThatAreNoneAreRefusedWithoutWaiting) {
     return picture ? "is read" : picture.error().message;
   };
   EXPECT_THAT(why(folder / "none.png"), HasSubstr("cannot be read: No such file"));
-  EXPECT_THAT(why(folder), HasSubstr("no regular file"));
+  EXPECT_THAT(why(folder), HasSubstr("not a regular file"));
   ASSERT_EQ(::mkfifo((folder / "pipe.png").c_str(), 0600), 0);
-  EXPECT_THAT(why(folder / "pipe.png"), HasSubstr("no regular file"));
+  EXPECT_THAT(why(folder / "pipe.png"), HasSubstr("not a regular file"));
   std::ofstream(folder / "large.png").close();
   std::filesystem::resize_file(folder / "large.png", 40U << 20);
   EXPECT_THAT(why(folder / "large.png"), HasSubstr("is a file of 40 MB; allowed: up to 16 MB"));

@@ -103,7 +103,7 @@ TEST(ClockJudge, SaysSinceWhenAndWhy) {
   ClockDoubt doubt{.since = std::chrono::floor<std::chrono::seconds>(kNoon), .ahead_s = 400 * 86'400LL, .running = 5h};
   EXPECT_EQ(
       text_of(doubt),
-      "the clock may be wrong, since 2026-11-23T12:00:00Z: it jumped ahead by 400 days; recordings are not deleted "
+      "the clock may be wrong since 2026-11-23T12:00:00Z: it jumped ahead by 400 days; recordings are not deleted "
       "by age until it has run for another 19 h or is synchronized");
   doubt.ahead_s = -7200;
   EXPECT_THAT(text_of(doubt), HasSubstr(": it jumped back by 2 h;"));

@@ -81,8 +81,8 @@ TEST(Attention, IsNeededByARecorderThatCannotWrite) {
 
 TEST(Attention, IsNeededByAClockThatIsDoubted) {
   wire::Sensors sensors = well();
-  sensors.recorder->clock_doubt = "the clock may be wrong, since today";
-  EXPECT_THAT(needs_attention(sensors), ElementsAre("the clock may be wrong, since today"));
+  sensors.recorder->clock_doubt = "the clock may be wrong since today";
+  EXPECT_THAT(needs_attention(sensors), ElementsAre("the clock may be wrong since today"));
 }
 
 TEST(Attention, IsNeededByReadingsThatWereLost) {
