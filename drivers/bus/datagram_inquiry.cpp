@@ -114,7 +114,7 @@ Result<std::vector<DatagramAnswer>, Failure> ask_networks(const DatagramInquiry&
     wait_for_datagram(socket, asked < kAskedAfter.size() ? std::min(end, start + kAskedAfter.at(asked)) : end);
     udp::endpoint from;
     const std::size_t size = socket.receive_from(boost::asio::buffer(buffer), from, 0, error);
-    if (error) continue;  // nothing has come; or a host has told that nobody listens there
+    if (error) continue;  // nothing received, or a host has reported that the port is closed
     DatagramAnswer answer{{buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(size)},
                           from.address().to_string()};
     if (std::ranges::find(answers, answer) == answers.end()) answers.push_back(std::move(answer));

@@ -28,7 +28,8 @@ struct DatagramAnswer {
 
 /// Asks three times within the first three seconds, as datagrams get lost, from a port of its own, and takes what comes
 /// to that port: each answer once, at most 1000 of them. What is sent leaves no local network (a time to live of 1),
-/// unless it is to one address. Waits for the whole duration. The failure's text: why nobody could be asked.
+/// unless it is to one address. Waits for the whole duration. The failure's text is the reason why no request could be
+/// sent.
 Result<std::vector<DatagramAnswer>, Failure> ask_networks(const DatagramInquiry& inquiry);
 
 }  // namespace yuragi::drivers::bus

@@ -19,7 +19,7 @@ constexpr std::size_t kMostServices = 16;
 /// No message of multicast DNS is longer (RFC 6762, section 17).
 constexpr std::size_t kLongestMessage = 9000;
 constexpr std::size_t kLongestLabel = 63;
-/// The class of a record, without the bit that tells others to forget what they knew (RFC 6762, section 10.2).
+/// The class of a record, without the bit that makes others discard cached records (RFC 6762, section 10.2).
 constexpr unsigned kClassMask = 0x7FFF;
 
 using DomainName = std::array<char, NS_MAXDNAME>;

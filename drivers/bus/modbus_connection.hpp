@@ -38,7 +38,7 @@ struct ModbusPatience {
 std::string describe(const ModbusLine& line);
 
 /// The silence that separates two messages on a serial line: 3.5 characters, or 1.75 ms above 19200 bit/s (MODBUS over
-/// Serial Line V1.02, section 2.5.1.1); nothing over TCP.
+/// Serial Line V1.02, section 2.5.1.1); zero over TCP.
 Nanoseconds frame_gap(const ModbusLine& line) noexcept;
 
 /// The result of waiting for a reply.

@@ -32,7 +32,7 @@ struct PluggedUsbDevice {
   bool is_permitted = true;  ///< this user may open it
 };
 
-/// A control transfer's beginning, but for its length (USB 2.0 specification, 9.3).
+/// The beginning of a control transfer without its length (USB 2.0 specification, 9.3).
 struct UsbRequest {
   std::uint8_t request_type = 0;
   std::uint8_t request = 0;
@@ -46,7 +46,7 @@ enum class UsbStatus : std::uint8_t {
   kStalled,      ///< the device refuses this request
   kOverflow,     ///< the device sent more than was requested
   kInterrupted,  ///< interrupt() was called
-  kGone,         ///< the device, or the way to it, is not there any more
+  kGone,         ///< the device, or the connection to it, is gone
 };
 
 struct UsbTransfer {

@@ -116,7 +116,7 @@ class WebSocketPort final : public BytePort {
         context_.poll();
       }
     } catch (const std::bad_alloc&) {
-      // Then the server is told nothing, and notices that the connection ends.
+      // The server gets no closing frame, and notices only that the connection ends.
     }
     drop();
   }
@@ -189,7 +189,7 @@ class WebSocketPort final : public BytePort {
     }
   }
 
-  /// Ends the connection, and whatever is under way on it.
+  /// Ends the connection and all pending operations.
   void drop() noexcept {
     error_code ignored;
     connection_->stream.next_layer().close(ignored);

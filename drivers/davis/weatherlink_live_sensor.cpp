@@ -11,7 +11,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::string_view kConditionsTarget = "/v1/current_conditions";
-/// The maker allows up to a day; nothing ends them, so a device that nobody asks any more shall soon fall silent.
+/// The maker allows up to a day. They cannot be stopped, so a short time makes a device that is no longer used fall
+/// silent soon.
 constexpr std::string_view kBroadcastsTarget = "/v1/real_time?duration=300";
 constexpr Nanoseconds kRenewal = 120s;
 /// The maker: conditions at most every 10 s.

@@ -24,7 +24,7 @@ inline constexpr std::size_t kMaxTextFields = 96;
 struct TextFields {
   std::array<std::string_view, kMaxTextFields> values{};
   std::size_t count = 0;
-  bool are_all = true;  ///< false where the line has more than kMaxTextFields
+  bool are_all = true;  ///< false if the line has more than kMaxTextFields
 
   /// A field without the blanks around it; empty where the line has ended already.
   std::string_view operator[](std::size_t i) const noexcept { return i < count ? values[i] : std::string_view(); }
@@ -35,7 +35,7 @@ TextFields split_fields(std::string_view text, char separator) noexcept;
 /// Without the blanks, tabs, line ends and NUL bytes at both ends.
 std::string_view trimmed(std::string_view text) noexcept;
 
-/// A decimal number as devices print them ("046.", "+3.4", ".5"): nothing for an empty field, kMalformed for anything
+/// A decimal number as devices print them ("046.", "+3.4", ".5"): nullopt for an empty field, kMalformed for anything
 /// else (exponents, hexadecimal numbers, "nan", two numbers).
 Result<std::optional<double>, Refusal> parse_number(std::string_view field) noexcept;
 

@@ -101,7 +101,7 @@ struct UmbReply {
   std::array<UmbChannel, kMostUmbChannels> channels{};
   std::size_t count = 0;
 
-  /// That channel; nullptr where the reply does not have it.
+  /// Returns that channel; nullptr if the reply does not have it.
   const UmbChannel* find(std::uint16_t channel) const noexcept;
 };
 
@@ -115,8 +115,8 @@ Result<UmbReply, Refusal> decode_umb_reply(std::optional<std::uint16_t> address,
 /// left out. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> wind_of(const UmbReply& reply) noexcept;
 
-/// What it says besides the wind, without its time. Values are not checked for their range (wind::plausible_part).
-/// Thread-safe and realtime-safe: yes.
+/// Returns the other quantities in a reply, without its time. Values are not checked for their range
+/// (wind::plausible_part). Thread-safe and realtime-safe: yes.
 wind::StationQuantities quantities_of(const UmbReply& reply) noexcept;
 
 }  // namespace yuragi::drivers::decode::lufft

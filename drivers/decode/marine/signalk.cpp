@@ -38,7 +38,7 @@ std::string full_text(const SignalKJson& object, const char* name) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// "$source", or what "source" says of it: "n2k.105".
+/// Returns "$source", or the same made from "source": "n2k.105".
 std::string source_of(const SignalKJson& update) {
   std::string named = shown_text(update, "$source");
   const auto source = update.find("source");

@@ -65,7 +65,7 @@ class MicFrameReader {
 
   /// The next frame, or why what stood there is none: kMalformed (not the protocol: skipped up to the next mark),
   /// kBadChecksum, kNotMine (a block before any hello, or of another shape), kTooShort (a payload that ends too early),
-  /// kInvalid (a number that cannot be). Nothing: more bytes are needed.
+  /// kInvalid (an impossible number). Nullopt: more bytes are needed.
   std::optional<Item> next();
 
   /// Forgets everything, for a new worker.

@@ -35,7 +35,7 @@ struct WxtOptions {
 /// kImplausible. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_wxt(const WxtOptions& options, std::string_view line) noexcept;
 
-/// What such a line says besides the wind, without its time; nothing where decode_wxt() would refuse it as anything but
+/// Returns the other quantities in such a line, without its time; nullopt if decode_wxt() would refuse it, except as
 /// kNotMine, kInvalid or kImplausible. Values are not checked for their range (wind::plausible_part). Thread-safe and
 /// realtime-safe: yes.
 std::optional<wind::StationQuantities> decode_wxt_quantities(const WxtOptions& options, std::string_view line) noexcept;
