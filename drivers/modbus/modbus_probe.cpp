@@ -36,7 +36,7 @@ bool has_side_effects(const ModbusProfile& profile) {
          });
 }
 
-/// The device's own force, and what it says of the speed. Devices round, and average, in ways of their own.
+/// Compares the device's own wind force with the speed. Devices round and average in different ways.
 void judge_by_force(const ModbusProfile& profile, const Registers& reply, ModbusFit& fit) {
   if (!reply || !fit.speed_m_s) return;
   const auto force = decode::modbus::decode_number(*profile.beaufort, reply->span());
@@ -333,7 +333,7 @@ std::string sensor_table_for(const std::string& name, const bus::ModbusLine& lin
       table += fmt::format("parity = \"{}\"\n", line.parity == 'N' ? "none" : line.parity == 'E' ? "even" : "odd");
     }
   }
-  // Whatever else is on the slave of the speed follows it.
+  // All other quantities of that slave follow it.
   if (fit.speed_slave != profile.speed.slave) table += fmt::format("speed_slave = {}\n", fit.speed_slave);
   return table;
 }

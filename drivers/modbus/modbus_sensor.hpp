@@ -25,7 +25,7 @@ namespace yuragi::drivers::modbus {
 /// no valid reply comes, after waits that double up to 10 minutes.
 class ModbusSensor final : public sensor::ReopeningSensor {
  public:
-  /// `direction_bus`: the vane's own line; nullptr where it is on the same. `seed` makes the waits of several sensors
+  /// `direction_bus`: the vane's own line; nullptr if it is on the same. `seed` makes the waits of several sensors
   /// differ.
   ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus, const std::shared_ptr<ModbusBus>& direction_bus,
                std::uint32_t seed);

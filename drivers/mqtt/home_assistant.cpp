@@ -17,7 +17,7 @@ namespace {
 
 using Announcement = nlohmann::json;
 
-/// Longer texts are nobody's names and topics, and would fill the list.
+/// Longer texts are not names or topics, and would fill the list.
 constexpr std::size_t kLongestAnnouncedText = 200;
 
 /// The text under that key, or under its abbreviation; empty where there is none, or no printable one.
@@ -62,8 +62,8 @@ std::optional<AnnouncedKind> kind_of(const std::string& device_class, const std:
   return says(label, {"gust", "max"}) ? AnnouncedKind::kGust : AnnouncedKind::kSpeed;
 }
 
-/// Where a template takes the value from, as a JSON pointer; nothing for one that does more than that. Rounding and
-/// making it a number change nothing that matters.
+/// Returns where a template takes the value from, as a JSON pointer; nullopt for one that does more than that. Rounding
+/// and conversion to a number are accepted.
 std::optional<std::string> pointer_of_template(const std::string& text) {
   static const std::regex kPath(
       R"(^\{\{\s*(value|value_json((?:\.[A-Za-z_]\w*|\[\s*(?:'[^'\]]+'|"[^"\]]+"|\d+)\s*\])+))\s*)"
@@ -92,7 +92,7 @@ std::string with_base(std::string topic, const std::string& base) {
   return topic;
 }
 
-/// What an announcement says, of `sensor`, which is all of it or one of its components.
+/// Returns the value that an announcement describes for `sensor`, which is all of it or one of its components.
 std::optional<AnnouncedValue> value_of(const Announcement& all, const Announcement& sensor, const std::string& path) {
   const auto text = [&](const char* key, const char* abbreviation) {
     const std::string own = text_of(sensor, key, abbreviation);

@@ -39,7 +39,7 @@ class RecordingPlayer {
   /// the time at which it would have begun (PlayerOptions::lead_s). Not if it begins paused.
   virtual void begin_early(double lead_s) = 0;
 
-  /// Queues an order and returns its number, counted from 1; nothing where the queue is full.
+  /// Queues an order and returns its number, counted from 1; nullopt if the queue is full.
   virtual std::optional<std::uint64_t> order(const PlayerOrder& order) = 0;
 
   /// As of the last poll().

@@ -15,7 +15,7 @@ namespace yuragi::drivers::text {
 struct Nmea2000SensorSettings {
   TextSensorSettings text;
   decode::marine::BusLineOptions lines;
-  std::optional<std::uint8_t> address;  ///< take this device's wind only; nothing: any
+  std::optional<std::uint8_t> address;  ///< take only this device's wind; nullopt: any
   ChosenWindSettings wind = {};
 };
 

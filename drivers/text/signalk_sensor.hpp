@@ -27,8 +27,8 @@ SignalKSensorSettings signalk_sensor_settings_of(const ParameterValues& values);
 /// Wind of a Signal K server, or of a device that sends deltas.
 ///
 /// A server sends the values of one message one after the other; they make one wind by their source and time. To a new
-/// client it first sends what it remembers, however old that is: what is from before its own time in its hello is not
-/// used until a source says something with another time.
+/// client it first sends what it remembers, however old that is: values from before the time in its hello are not used
+/// until their source sends one with another time.
 class SignalKSensor final : public TextSensor {
  public:
   SignalKSensor(SignalKSensorSettings settings, std::unique_ptr<bus::BytePort> port);

@@ -227,7 +227,7 @@ bool TextSensor::take_bytes(const Instant& now, sensor::SensorSink& sink) {
   return has_published;
 }
 
-/// A line that was too long, or was cut off by the next one, and whose bytes are not kept but for the last ones.
+/// Takes a line that was too long, or was cut off by the next one; only its last bytes are kept.
 void TextSensor::take_broken_line(decode::Refusal why, std::span<const std::uint8_t> end, sensor::SensorSink& sink) {
   if (std::exchange(skips_line_, false)) return;
   if (why == decode::Refusal::kMalformed) ++garbled_lines_;

@@ -8,14 +8,14 @@
 
 namespace yuragi::drivers::windlog {
 
-/// What a database says of itself.
+/// The marks in a database that show its kind.
 struct FileFormat {
   std::int64_t application = 0;
   std::int64_t version = 0;  ///< of a recording's format
   std::int64_t objects = 0;  ///< tables and the like
 
   bool is_recording() const { return application == kApplicationId; }
-  /// Nothing was ever written to it: a new file, or one whose first write never came to its end.
+  /// Returns true if it was never written to: a new file, or one whose first write was never completed.
   bool is_blank() const { return application == 0 && objects == 0; }
 };
 

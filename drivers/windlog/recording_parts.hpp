@@ -15,7 +15,7 @@ namespace yuragi::drivers::windlog {
 /// The name of a completed part of a recording that began at a moment.
 std::filesystem::path part_name(const std::filesystem::path& recording, UtcTime begin);
 
-/// The moment in the name of a part of `recording`; nothing for any other file.
+/// Returns the moment in the name of a part of `recording`; nullopt for any other file.
 std::optional<UtcTime> begin_of_part(const std::filesystem::path& recording, const std::filesystem::path& file);
 
 struct RecordingPart {

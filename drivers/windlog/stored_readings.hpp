@@ -52,10 +52,10 @@ class StoredReadings {
   /// The configuration text of a session.
   virtual Result<std::string, Failure> configuration(std::int64_t session) const = 0;
 
-  /// The log time of the first reading at or after a moment; nothing if all are before it.
+  /// Returns the log time of the first reading at or after a moment; nullopt if all are before it.
   virtual Result<std::optional<Nanoseconds>, Failure> log_time_of(UtcTime moment) const = 0;
 
-  /// The log time of the last reading of those sensors; nothing if they have no reading.
+  /// Returns the log time of the last reading of those sensors; nullopt if they have no reading.
   virtual Result<std::optional<Nanoseconds>, Failure> last_log_time(const std::vector<bool>& of_sensors) const = 0;
 
   /// Passes what stations said besides the wind, from one log time on and before another, to `use`. Returns the number

@@ -26,14 +26,14 @@ class WindlogCursor {
   static Result<WindlogCursor, Failure> open(const std::filesystem::path& file, std::string_view sensor,
                                              const std::stop_token& stop = {});
 
-  /// The next reading; nothing at the end, until more has been recorded.
+  /// Returns the next reading; nullopt at the end, until more has been recorded.
   Result<std::optional<LoggedReading>, Failure> next();
 
   /// Makes next() return the first reading at or after a log time.
   void seek(Nanoseconds log_time);
 
-  /// The log time of a place as a person writes it; for UTC that of the first reading at or after it. Nothing if all
-  /// are before it.
+  /// Returns the log time of a place as a person writes it; for UTC that of the first reading at or after it, nullopt
+  /// if all are before it.
   Result<std::optional<Nanoseconds>, Failure> find(const LogMoment& moment);
 
   /// The log time of the last reading, as of the opening.

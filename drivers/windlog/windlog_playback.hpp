@@ -47,8 +47,8 @@ class WindlogPlayback {
   WindlogPlayback(WindlogPlayback&&) noexcept;
   WindlogPlayback& operator=(WindlogPlayback&&) noexcept;
 
-  /// The next reading, in the order of log time; nothing at the end (never, if it loops). Fails where the file cannot
-  /// be read on; the next call tries the same place again.
+  /// Returns the next reading, in the order of log time; nullopt at the end (never, if it loops). Fails on a read
+  /// error; the next call tries the same place again.
   Result<std::optional<PlayedReading>, Failure> next();
 
   /// Rows that were passed over because no reading can look like that; in this round, if it loops.

@@ -14,7 +14,7 @@ namespace {
 constexpr Nanoseconds kMaxLateness = std::chrono::seconds(1);
 // What is further away than this never comes: a clock could not hold it. About 30 years.
 constexpr double kMaxWait_s = 1e9;
-// Nothing comes after the end; a clock can add this to any time.
+// Stands for "never" after the end; a clock can add this to any time.
 constexpr Nanoseconds kAfterTheEnd = std::chrono::hours(24);
 // A cross-fade has so many readings at least, or it would be a step; and is no more than this part of the recording.
 constexpr int kLeastReadingsOfFade = 3;
@@ -46,7 +46,7 @@ bool is_same_wind(const wind::WindReading& a, const wind::WindReading& b) {
   return a.speed_m_s == b.speed_m_s && a.direction_deg == b.direction_deg;
 }
 
-/// Seconds after a sign: "+30", "-12.5"; nothing for a text of another form.
+/// Returns the seconds after a sign: "+30", "-12.5"; nullopt for a text of another form.
 std::optional<double> parse_relative(std::string_view text) {
   if (text.size() < 2 || (text.front() != '+' && text.front() != '-')) return std::nullopt;
   double by_s = 0.0;
@@ -154,7 +154,7 @@ Result<MonoTime, Failure> WindlogPlayer::play(const Instant& now, const Use& use
   }
 }
 
-/// Reads the upcoming reading, unless it is there already; nothing at the end.
+/// Reads the upcoming reading, unless it is already there, or the end is reached.
 Result<void, Failure> WindlogPlayer::fetch() {
   if (playing_.upcoming) return {};
   auto read = playing_.cursor.next();

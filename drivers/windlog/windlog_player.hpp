@@ -54,13 +54,13 @@ struct PlayerPosition {
 /// sensor does not become stale. Where the recording has a gap, so has the replay; of a gap of days the whole days are
 /// left out, so that the time of day goes on as it was.
 ///
-/// A Failure says why the file cannot be read, or that it does not contain what is requested; an order that fails
+/// A Failure has the reason why the file cannot be read, or does not contain what is requested; an order that fails
 /// changes nothing, and play() tries the same place again. Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogPlayer {
  public:
   using Use = std::function<void(const wind::WindReading&)>;
 
-  /// Readings that one play() gives at most, whatever the rate.
+  /// The most readings that one play() gives, at any rate.
   static constexpr int kMaxReadingsPerPlay = 4096;
   static constexpr std::uint64_t kMaxSteps = 1'000'000;
 

@@ -55,12 +55,12 @@ class WindlogWriter {
   /// its sensor's is moved to a nanosecond that is free.
   Result<void, Failure> append(std::int64_t sensor, const wind::WindReading& reading);
 
-  /// Adds what a sensor's station says besides the wind, as far as it is plausible: one row a second (format.hpp).
-  /// False, with nothing undone, where it cannot be added: nothing is plausible, its time cannot be, there is no such
-  /// sensor, or the file's table for it is damaged. A failure is one of the disk.
+  /// Adds the other quantities of a sensor's station, as far as they are plausible: one row a second (format.hpp).
+  /// Returns false, with nothing undone, if they cannot be added: none is plausible, the time is impossible, there is
+  /// no such sensor, or the file's table for them is damaged. A failure is one of the disk.
   Result<bool, Failure> append(std::int64_t sensor, const wind::StationQuantities& quantities);
 
-  /// When the first session of a file that has readings or quantities was begun; nothing where it has none.
+  /// Returns when the first session of a file that has readings or quantities was begun; nullopt if it has none.
   Result<std::optional<UtcTime>, Failure> began();
 
   /// The time of the last reading before the session that was begun last, or when the session before that was begun if

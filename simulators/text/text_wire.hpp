@@ -24,7 +24,8 @@ class TextWire {
   virtual std::string read(std::span<const int> ready) = 0;
   /// What each client gets first. A wire that knows no clients does not send it.
   virtual void greet_with(const std::string& /*bytes*/) {}
-  /// From now on a client gets nothing but its greeting until it has said something. A wire that hears nobody sends on.
+  /// From now on a client gets only its greeting until it has sent something. A wire that cannot receive continues to
+  /// send.
   virtual void wait_for_clients() {}
   /// Sends the bytes to all clients.
   virtual void write(std::string_view bytes) = 0;
@@ -61,7 +62,7 @@ std::unique_ptr<TextWire> make_websocket_wire(const WebSocketWireOptions& option
 std::unique_ptr<TextWire> make_udp_wire(const std::string& host, std::uint16_t port);
 
 /// A CAN interface of this machine; each write is a frame (`struct can_frame` of linux/can.h). Throws
-/// std::runtime_error where it is not there at first.
+/// std::runtime_error if it is missing at first.
 std::unique_ptr<TextWire> make_can_wire(const std::string& interface);
 
 }  // namespace yuragi::simulators::text
