@@ -57,7 +57,7 @@ std::vector<Interface> interfaces() {
   return found;
 }
 
-/// Sends the question wherever it is to go. The last error where it could be sent nowhere.
+/// Sends the question to all its destinations. Returns the last error if it could not be sent to any.
 error_code ask(udp::socket& socket, const DatagramInquiry& inquiry, const address_v4* to) {
   error_code error = boost::asio::error::network_unreachable;
   bool is_sent = false;

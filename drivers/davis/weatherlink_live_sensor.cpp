@@ -142,7 +142,7 @@ void WeatherLinkLiveSensor::advance_request(const Instant& now, sensor::SensorSi
   }
 }
 
-/// Where broadcasts still come nothing is lost yet; and where only they are missing, the conditions have a wind.
+/// While broadcasts arrive nothing is lost yet; and if only they are missing, the conditions have a wind.
 void WeatherLinkLiveSensor::fail_request(MonoTime now, const std::string& why, sensor::SensorSink& sink) {
   if (request_ == Request::kBroadcasts) {
     advice_ = ": " + why;

@@ -26,7 +26,7 @@ struct TextFields {
   std::size_t count = 0;
   bool are_all = true;  ///< false if the line has more than kMaxTextFields
 
-  /// A field without the blanks around it; empty where the line has ended already.
+  /// A field without the blanks around it; empty if the line has ended already.
   std::string_view operator[](std::size_t i) const noexcept { return i < count ? values[i] : std::string_view(); }
 };
 
@@ -45,8 +45,8 @@ Result<std::optional<double>, Refusal> parse_direction_deg(std::string_view fiel
 /// The exclusive or of all bytes: the checksum of NMEA 0183, Gill and FT Technologies.
 std::uint8_t xor_checksum(std::string_view text) noexcept;
 
-/// Is `digits` that checksum of `text`? Two hexadecimal digits, of either case: kTooShort where there are fewer,
-/// kMalformed where there is more.
+/// Is `digits` that checksum of `text`? Two hexadecimal digits, of either case: kTooShort if there are fewer,
+/// kMalformed if there is more.
 std::optional<Refusal> xor_checksum_refusal(std::string_view text, std::string_view digits) noexcept;
 
 /// What stands between '$' and '*' in a line with a sentence. What comes before the last '$' is skipped (NUL bytes, a

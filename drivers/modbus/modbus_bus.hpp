@@ -100,7 +100,7 @@ class ModbusBus {
 };
 
 /// The bus of that line: the existing one, if another sensor has it, or a new one. A serial port is identified by the
-/// device that its name links to. Throws std::runtime_error where it is in use with another baud rate, parity or number
+/// device that its name links to. Throws std::runtime_error if it is in use with another baud rate, parity or number
 /// of stop bits. Thread-safe: yes.
 std::shared_ptr<ModbusBus> shared_modbus_bus(const bus::ModbusLine& line);
 

@@ -81,7 +81,7 @@ class ProbedLine {
 
   Result<void, Failure> open() { return connection_->open(interruption_); }
 
-  /// The registers, or what was wrong with the reply; kTimeout where there was none.
+  /// The registers, or what was wrong with the reply; kTimeout if there was none.
   Registers cached_exchange(const decode::modbus::ModbusRequest& request) {
     const auto key = std::tuple(request.unit, request.function, request.address, request.count);
     if (const auto known = replies_.find(key); known != replies_.end()) return known->second;

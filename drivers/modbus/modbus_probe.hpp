@@ -58,7 +58,7 @@ struct ModbusHit {
   std::uint8_t id = 0;
   /// The best first: those that read more than zeros, those that the device's own wind force does not contradict, those
   /// with most quantities, those with factory settings. None: a device that no profile knows. One half of a pair only
-  /// where nothing else fits.
+  /// if nothing else fits.
   std::vector<ModbusFit> fits;
   /// The names of the profiles, the best first, that read the same register with different scales, if the device does
   /// not show which is right. Empty: there is no such doubt.

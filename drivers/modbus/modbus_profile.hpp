@@ -36,7 +36,7 @@ struct ModbusProfile {
   std::string source;  ///< the document with its register map
   std::vector<ProfileEvidence> confirmed_by;
   std::string unconfirmed;  ///< what nobody confirms, for people; empty: all is confirmed
-  std::string revision;     ///< of the device or its firmware, where the map differs among them
+  std::string revision;     ///< of the device or its firmware, if the map differs among them
 
   bool is_serial = true;  ///< its native transport; a serial device can also be reached over TCP, through a gateway
   int baud = 9600;

@@ -20,7 +20,7 @@ using Announcement = nlohmann::json;
 /// Longer texts are not names or topics, and would fill the list.
 constexpr std::size_t kLongestAnnouncedText = 200;
 
-/// The text under that key, or under its abbreviation; empty where there is none, or no printable one.
+/// The text under that key, or under its abbreviation; empty if there is none, or no printable one.
 std::string text_of(const Announcement& announcement, const char* key, const char* abbreviation) {
   for (const char* const name : {key, abbreviation}) {
     const auto found = announcement.find(name);
@@ -33,7 +33,7 @@ std::string text_of(const Announcement& announcement, const char* key, const cha
   return "";
 }
 
-/// The object under that key, or under its abbreviation; an empty one where there is none.
+/// The object under that key, or under its abbreviation; an empty one if there is none.
 Announcement object_of(const Announcement& announcement, const char* key, const char* abbreviation) {
   for (const char* const name : {key, abbreviation}) {
     const auto found = announcement.find(name);

@@ -58,8 +58,8 @@ struct MqttSettings {
   MqttSource direction;
   MqttSource gust;
   StationIdentity station;         ///< which ones are read
-  double metres_per_second = 1.0;  ///< where the message does not say it
-  bool has_own_unit = false;       ///< it was set, and holds also where the message's unit is not known
+  double metres_per_second = 1.0;  ///< if the message does not have it
+  bool has_own_unit = false;       ///< it was set, and also holds if the message's unit is unknown
   Nanoseconds hold = std::chrono::seconds(60);
   Nanoseconds silence = std::chrono::minutes(15);
 };

@@ -304,7 +304,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
   bool is_silent_ = true;
 };
 
-/// Throws, naming the setting, where they cannot work together.
+/// Throws, naming the setting, if they cannot work together.
 EcowittPushSettings ecowitt_push_settings_of(const ParameterValues& values) {
   const EcowittPushKeys keys = kEcowittPushFields.of(values);
   EcowittPushSettings settings;

@@ -63,8 +63,8 @@ struct HttpLimits {
 };
 
 /// A small server of HTTP/1.0 and 1.1, one request for each connection. It does its work within serve() alone, on the
-/// caller's thread, and holds at most HttpLimits of memory and time for whoever connects: where more connect than it
-/// takes, the oldest connection gives way to the new one, so that silent ones cannot keep others out.
+/// caller's thread, and holds at most HttpLimits of memory and time for its clients: if more connect than it takes, the
+/// oldest connection gives way to the new one, so that silent ones cannot keep others out.
 ///
 /// Thread-safe: interrupt() alone; everything else belongs to one thread.
 class HttpServer {

@@ -1,8 +1,8 @@
 // The stations of WeatherFlow (Tempest; Sky before it), whose hub broadcasts their messages in the local network
 // (WeatherFlow, "Tempest UDP Reference", v171; drivers/SOURCES.md S9.1). This driver sends nothing.
 //
-// The wind is that of `rapid_wind`, usually every 3 s: every 6 s, minute or 5 minutes where the station saves its
-// battery. A station that sends none between two of its observations (each minute) gives the mean wind of those.
+// The wind is that of `rapid_wind`, usually every 3 s: every 6 s, minute or 5 minutes if the station saves its battery.
+// A station that sends none between two of its observations (each minute) gives the mean wind of those.
 #include "drivers/decode/network/tempest.hpp"
 
 #include <algorithm>

@@ -66,7 +66,7 @@ struct DriverDescription {
   std::string_view summary;
   std::span<const Parameter> parameters;
   /// Constructs a sensor from resolved values, without touching the device: poll() does that. Throws
-  /// std::runtime_error, saying what to do, where the values contradict each other or name a missing file.
+  /// std::runtime_error, saying what to do, if the values contradict each other or name a missing file.
   std::unique_ptr<Sensor> (*open)(const ParameterValues& values);
   /// Finds plugged-in devices that this driver can read; nullptr if nothing can be plugged in. Opens devices only
   /// briefly.

@@ -12,7 +12,7 @@ namespace yuragi::drivers::sensor {
 /// changes the environment.
 Result<Secret, Failure> secret_in_environment(const std::string& variable);
 
-/// The secret of a driver's parameters NAME (itself), NAME_file and NAME_env (where it is), of which at most one is
+/// The secret of a driver's parameters NAME (itself), NAME_file and NAME_env (its place), of which at most one is
 /// given; empty: none is. Throws std::runtime_error, naming the parameter, if it cannot be read.
 Secret secret_of(const ParameterValues& values, const std::string& name);
 

@@ -19,7 +19,7 @@ struct Nmea2000SensorSettings {
   ChosenWindSettings wind = {};
 };
 
-/// The values of kNmea2000Driver's parameters. Throws std::runtime_error where they cannot work together.
+/// The values of kNmea2000Driver's parameters. Throws std::runtime_error if they cannot work together.
 Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values);
 
 /// Wind of an NMEA 2000 bus, as a gateway or program writes it in lines, or from a CAN interface.

@@ -64,8 +64,8 @@ void SignalKSensor::forget_remembered(decode::marine::SignalKUpdate& update) {
 }
 
 /// Times of one server are written alike, so that they can be compared as texts. A source's clock may always be behind
-/// the server's; so a value whose time changes does not count as remembered. A server sends remembered values only to
-/// clients that subscribe.
+/// the server's, so a value counts as remembered only until its time changes. Only servers, to which a client
+/// subscribes, send remembered values.
 bool SignalKSensor::is_remembered(const decode::marine::SignalKUpdate& update, std::size_t quantity) {
   const bus::BytePortKind kind = settings().address.kind;
   const bool is_server = kind == bus::BytePortKind::kTcpClient || kind == bus::BytePortKind::kWebSocket;

@@ -21,7 +21,7 @@ struct SignalKSensorSettings {
   ChosenWindSettings wind = {};
 };
 
-/// The values of kSignalKDriver's parameters. Throws std::runtime_error where they cannot work together.
+/// The values of kSignalKDriver's parameters. Throws std::runtime_error if they cannot work together.
 SignalKSensorSettings signalk_sensor_settings_of(const ParameterValues& values);
 
 /// Wind of a Signal K server, or of a device that sends deltas.

@@ -298,7 +298,7 @@ Nanoseconds TextSensor::silence_limit() const {
   return first * (1 << vain_openings_);
 }
 
-/// Reports the cause where there are no readings.
+/// Reports the cause if there are no readings.
 void TextSensor::judge_device(MonoTime now, sensor::SensorSink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
@@ -320,7 +320,7 @@ std::size_t TextSensor::cut_lines() const {
   return refused_[static_cast<std::size_t>(decode::Refusal::kTooShort)].count;
 }
 
-/// The reason why most lines were refused: lines of other formats count only where there is nothing else.
+/// The reason why most lines were refused: lines of other formats count only if there are no others.
 decode::Refusal TextSensor::main_refusal() const {
   constexpr auto kOthers = static_cast<std::size_t>(decode::Refusal::kNotMine);
   std::size_t most = kOthers;

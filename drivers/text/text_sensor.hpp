@@ -29,7 +29,7 @@ struct TextSensorSettings {
   Nanoseconds delay_after_open{};                                    ///< messages before that are discarded
   Nanoseconds silence_timeout{};   ///< after which the device is opened again; zero: from its usual pauses
   double play_rate_hz = 0.0;       ///< of a file that is played
-  std::string greeting;            ///< what to send once after opening, where the transport can send
+  std::string greeting;            ///< what to send once after opening, if the transport can send
   std::string request;             ///< what to send for one reply
   Nanoseconds poll_interval{};     ///< zero: the device sends without requests
   Nanoseconds response_timeout{};  ///< at most the poll interval
@@ -120,7 +120,7 @@ class TextSensor : public sensor::ReopeningSensor {
   sensor::ReadingLimit limit_;  ///< UDP and CAN: anybody can send
   int vain_openings_ = 0;
 
-  // Received since the last reading: to report the cause where none follows.
+  // Received since the last reading: to report the cause if none follows.
   struct Refused {
     std::size_t count = 0;
     std::string first_line;

@@ -19,7 +19,7 @@ struct FileFormat {
   bool is_blank() const { return application == 0 && objects == 0; }
 };
 
-/// Fails where the database cannot be read.
+/// Fails if the database cannot be read.
 inline Result<FileFormat, Failure> format_of(sqlite::Database& database) {
   const auto application = database.integer("PRAGMA application_id");
   if (!application) return application.error();

@@ -20,8 +20,8 @@ namespace yuragi::drivers::windlog {
 // Version 1, which can still be read: one table of readings of all sensors, with an index by time. A reader refuses
 // newer ones.
 
-/// What SQLite keeps beside a recording while it is open, by the end of its name; where one of them is left, the
-/// recorder was killed, and it holds the newest readings.
+/// What SQLite keeps beside a recording while it is open, by the end of its name; if one of them is left, the recorder
+/// was killed, and it holds the newest readings.
 inline constexpr std::string_view kWalSuffix = "-wal";
 inline constexpr std::array<std::string_view, 3> kSideSuffixes = {kWalSuffix, "-shm", "-journal"};
 

@@ -41,7 +41,7 @@ struct LoggedReading {
 
 /// What a sensor's station said besides the wind in one second.
 struct LoggedQuantities {
-  Nanoseconds log_time{0};             ///< below zero where it came before the first reading
+  Nanoseconds log_time{0};             ///< below zero if it came before the first reading
   std::size_t sensor = 0;              ///< index into WindlogReader::sensors()
   wind::StationQuantities quantities;  ///< with the times of the recording machine
 };

@@ -20,7 +20,7 @@ namespace yuragi::drivers::windlog {
 class PartsInTurn final : public StoredReadings {
  public:
   /// Opens each file, oldest first, for what it contains. A file without readings adds its quantities alone, and one
-  /// that is damaged nothing; fails where no file can be read, and with the first failure.
+  /// that is damaged nothing; fails if no file can be read, and with the first failure.
   static Result<std::unique_ptr<PartsInTurn>, Failure> open(const std::vector<std::filesystem::path>& files,
                                                             const std::stop_token& stop);
 

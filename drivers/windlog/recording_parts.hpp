@@ -23,7 +23,7 @@ struct RecordingPart {
   UtcTime begin;
 };
 
-/// The completed parts of a recording, oldest first; none where the folder cannot be read.
+/// The completed parts of a recording, oldest first; none if the folder cannot be read.
 std::vector<RecordingPart> completed_parts(const std::filesystem::path& recording);
 
 /// The files of a recording: its completed parts, oldest first, and the file that may still grow, if it exists.

@@ -97,7 +97,7 @@ class FileCheck {
     return {};
   }
 
-  /// Fails where the order of the times is none, too.
+  /// Fails if the times are not in order, too.
   Result<void, Failure> read_all(std::size_t index, GapFinder& gaps) {
     auto streams = stored_.blocks(std::vector<bool>(stored_.sensors.size(), true));
     if (!streams) return streams.error();

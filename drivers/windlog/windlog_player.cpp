@@ -265,7 +265,7 @@ wind::WindReading WindlogPlayer::blended(MonoTime time) {
   return between(*leaving_.current, *playing_.current, part);
 }
 
-/// Advances the playhead that is fading out to a time; where it cannot be read it repeats its last reading.
+/// Advances the playhead that is fading out to a time; on a read error it repeats its last reading.
 void WindlogPlayer::follow_leaving(MonoTime time) {
   if (leaving_.is_frozen || is_paused_) return;
   for (;;) {

@@ -51,7 +51,7 @@ struct PlayerPosition {
 /// with any order. A jump (a seek, or the seam of a loop) is a cross-fade of `seam_s`: the readings of the old place
 /// and of the new one are blended as vectors, so that there is no step; for that a loop begins again `seam_s` before
 /// its end. While it is paused it repeats its reading, marked as held, at its usual interval: the wind holds, and the
-/// sensor does not become stale. Where the recording has a gap, so has the replay; of a gap of days the whole days are
+/// sensor does not become stale. If the recording has a gap, so has the replay; of a gap of days the whole days are
 /// left out, so that the time of day goes on as it was.
 ///
 /// A Failure has the reason why the file cannot be read, or does not contain what is requested; an order that fails
@@ -140,8 +140,8 @@ class WindlogPlayer {
   std::optional<wind::WindReading> last_out_;
 };
 
-/// The wind between two readings, `part` (0 to 1) of the way from `from` to `to`: as vectors where both have a
-/// direction, else by speed. Everything else is of `to`.
+/// The wind between two readings, `part` (0 to 1) of the way from `from` to `to`: as vectors if both have a direction,
+/// else by speed. Everything else is of `to`.
 wind::WindReading between(const wind::WindReading& from, const wind::WindReading& to, double part);
 
 }  // namespace yuragi::drivers::windlog

@@ -27,12 +27,11 @@ namespace yuragi::drivers::windlog {
 /// or is damaged, is a failure.
 ///
 /// A recording that is a series of files (recording_parts.hpp) is read as one, by the name of the file that is written.
-/// Files of it that are damaged are left out (damage()); only where all are, the series is a failure.
-/// Reads a recording that another process is writing (the readings committed so far, and later ones as they come), and
-/// one that a killed process left with FILE-wal beside it; SQLite then creates FILE-shm, which needs a folder that can
-/// be written to. Where nothing can be created it reads files that were properly closed, and refuses others
-/// with the reason.
-/// Owns the open file; holds no lock between calls. Thread-safe: no. Realtime-safe: no.
+/// Files of it that are damaged are left out (damage()); only if all are, the series is a failure. Reads a recording
+/// that another process is writing (the readings committed so far, and later ones as they come), and one that a killed
+/// process left with FILE-wal beside it; SQLite then creates FILE-shm, which needs a folder that can be written to.
+/// Where nothing can be created it reads files that were properly closed, and refuses others with the reason. Owns the
+/// open file; holds no lock between calls. Thread-safe: no. Realtime-safe: no.
 class WindlogReader {
  public:
   /// `stop`: a request of it ends this call, and later ones, within milliseconds with a failure.

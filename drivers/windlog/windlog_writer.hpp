@@ -46,7 +46,7 @@ class WindlogWriter {
   /// Notes which completed file was before this one in its series, by the moment in its name. Once for each file.
   Result<void, Failure> set_previous_part(UtcTime begin);
 
-  /// Adds a sensor to the session; returns the id that append() takes. Fails where the recording would have readings of
+  /// Adds a sensor to the session; returns the id that append() takes. Fails if the recording would have readings of
   /// more than kMostSeries names.
   Result<std::int64_t, Failure> add_sensor(std::string_view name, std::string_view driver, std::string_view options);
 

@@ -45,7 +45,7 @@ class TextWire {
 /// A serial port; `link`, if not empty, is the name that it has each time it is plugged in. Throws std::system_error.
 std::unique_ptr<TextWire> make_pty_wire(const std::string& link);
 
-/// A TCP server; port 0 takes a free one. Throws std::runtime_error where the address cannot be listened on.
+/// A TCP server; port 0 takes a free one. Throws std::runtime_error if the address cannot be listened on.
 std::unique_ptr<TextWire> make_tcp_wire(const std::string& host, std::uint16_t port);
 
 struct WebSocketWireOptions {
@@ -55,7 +55,7 @@ struct WebSocketWireOptions {
   std::string token = {};  ///< a client without it gets HTTP 401; empty: none is wanted
 };
 
-/// A WebSocket server, each message as text. Throws std::runtime_error where the address cannot be listened on.
+/// A WebSocket server, each message as text. Throws std::runtime_error if the address cannot be listened on.
 std::unique_ptr<TextWire> make_websocket_wire(const WebSocketWireOptions& options);
 
 /// Datagrams to one address, one for each write. Throws std::runtime_error for a text that is no address.

@@ -59,7 +59,7 @@ std::optional<double> value_of(std::uint8_t type, ByteSpan bytes) {
   return value;
 }
 
-/// A status, a channel, and, where the status is good, the type and the value.
+/// A status, a channel, and, if the status is good, the type and the value.
 std::optional<UmbChannel> channel_of(std::uint8_t status, ByteSpan bytes) {
   if (bytes.size() < 2) return {};
   UmbChannel channel{.channel = little_endian_16(bytes, 0), .status = status, .value = {}};

@@ -106,8 +106,8 @@ struct UmbReply {
 };
 
 /// The reply in one frame; or the first thing that is wrong with it: kTooShort, kMalformed (longer, or not the layout),
-/// kBadChecksum, kNotMine (a request, another command, or not from `address` where one is given), kException (the
-/// status of the whole is not 0), kMalformed (its channels). Thread-safe and realtime-safe: yes.
+/// kBadChecksum, kNotMine (a request, another command, or not from `address` if one is given), kException (the status
+/// of the whole is not 0), kMalformed (its channels). Thread-safe and realtime-safe: yes.
 Result<UmbReply, Refusal> decode_umb_reply(std::optional<std::uint16_t> address, ByteSpan frame) noexcept;
 
 /// The wind of a reply: the fast channels before the others. kInvalid (no speed and no direction), kImplausible. An

@@ -58,7 +58,7 @@ class MicFrameReader {
  public:
   struct Item {
     Result<MicFrame, Refusal> frame;
-    std::vector<std::uint8_t> bytes;  ///< the whole frame; empty where none was found
+    std::vector<std::uint8_t> bytes;  ///< the whole frame; empty if none was found
   };
 
   void push(std::span<const std::uint8_t> bytes);

@@ -28,8 +28,8 @@ namespace yuragi::drivers::decode::network {
 //   rate of rain            rainratein (rrain_piezo)                                              inches an hour
 //   time                    dateutc                     dateutc            dateutc
 //
-// A value that is missing is -9999, empty, or left out. The time is that of the gateway's clock, which nobody sets
-// where there is no internet: it is not used.
+// A value that is missing is -9999, empty, or left out. The time is that of the gateway's clock, which is wrong without
+// internet: it is not used.
 
 /// Longer than any push: stations with all sensors that a gateway can receive send less than 4 KiB.
 inline constexpr std::size_t kLongestStationPush = 16UL * 1024;

@@ -40,7 +40,7 @@ bool is_serial_number(const std::string& text) {
   return !text.empty() && text.size() <= kLongestSerialNumber && is_printable;
 }
 
-/// The text of that name in an object; empty where there is none.
+/// The text of that name in an object; empty if there is none.
 std::string text_of(const Json& message, const char* name) {
   const auto found = message.find(name);
   return found != message.end() && found->is_string() ? found->get_ref<const std::string&>() : std::string();
