@@ -63,8 +63,8 @@ struct MicFit {
 /// The power law with the least squared error in speed. Fails with too few pairs or too little difference between them.
 Result<MicPowerLaw, Failure> fit_mic_power_law(std::span<const MicLevelAndSpeed> pairs, double noise_power);
 
-/// The power law through two known winds; the noise is taken off both. Fails if they are too much alike, or where no
-/// power law goes through both.
+/// The power law through two known winds; the noise is taken off both. Fails if they are too similar, or if no power
+/// law goes through both.
 Result<MicPowerLaw, Failure> mic_power_law_through(const MicLevelAndSpeed& soft, const MicLevelAndSpeed& loud,
                                                    double noise_power);
 
