@@ -9,14 +9,14 @@
 
 namespace yuragi::drivers::bus {
 
-/// A question to whoever is in the local networks, by UDP over IPv4.
+/// A question to all devices in the local networks, by UDP over IPv4.
 struct DatagramInquiry {
   std::vector<std::uint8_t> question;
   std::uint16_t port = 0;
   /// The one address that is asked, or a multicast group, asked on each interface; empty: the broadcast address of each
   /// interface.
   std::string to = {};
-  Nanoseconds duration = std::chrono::seconds(5);  ///< answers are taken for so long
+  Nanoseconds duration = std::chrono::seconds(5);  ///< time in which answers are accepted
 };
 
 struct DatagramAnswer {

@@ -31,7 +31,7 @@ std::optional<std::string> name_at(const ns_msg& message, const std::uint8_t* fr
   return name.data();
 }
 
-/// Calls `take` with each record of the answer, and of what is said besides.
+/// Calls `take` with each record of the answer section and of the additional section.
 template <class Take>
 void for_each_record(ns_msg& message, Take&& take) {
   for (const ns_sect section : {ns_s_an, ns_s_ar}) {

@@ -14,7 +14,7 @@ namespace yuragi::drivers::bus {
 inline constexpr std::uint16_t kMulticastDnsPort = 5353;
 inline constexpr const char* kMulticastDnsGroup = "224.0.0.251";
 
-/// One service that somebody announces.
+/// One announced service.
 struct AnnouncedService {
   std::string name;  ///< of the instance, as announced: "weatherlinklive-700008"; printable, at most 63 characters
   std::string address = {};  ///< IPv4; empty: not in the message

@@ -31,7 +31,7 @@ struct ModbusLine {
 /// How long a device may take.
 struct ModbusPatience {
   Nanoseconds response_timeout = std::chrono::milliseconds(500);  ///< from request to the end of the reply
-  Nanoseconds byte_timeout = std::chrono::milliseconds(50);  ///< RTU: a line quiet for so long has ended its message
+  Nanoseconds byte_timeout = std::chrono::milliseconds(50);       ///< RTU: this silence on the line ends a message
 };
 
 /// "host:port", or the serial port: for people.

@@ -20,7 +20,7 @@ struct MqttSubscription {
   bool uses_tls = false;
   std::string ca_file;              ///< certificates that the broker is checked with; empty: the system's
   std::vector<std::string> topics;  ///< + matches one level, # all that follow
-  Nanoseconds keep_alive = std::chrono::seconds(15);      ///< a broker that is silent for so long is pinged; >= 5 s
+  Nanoseconds keep_alive = std::chrono::seconds(15);      ///< a broker that is silent for this time is pinged; >= 5 s
   Nanoseconds connect_timeout = std::chrono::seconds(5);  ///< until all subscriptions are accepted
 };
 

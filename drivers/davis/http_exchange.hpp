@@ -13,7 +13,7 @@
 namespace yuragi::drivers::davis {
 
 /// One request after another to a server of HTTP/1.1, each over a connection of its own, and its reply piece by piece,
-/// so that whoever waits for it can do other things and can be interrupted. Replies of more than 64 KiB are refused.
+/// so that the caller can do other work meanwhile, and can be interrupted. Replies of more than 64 KiB are refused.
 ///
 /// Thread-safe: interrupt() alone; everything else belongs to one thread.
 class HttpExchange {

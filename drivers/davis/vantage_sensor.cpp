@@ -33,7 +33,7 @@ constexpr Nanoseconds kPacketPatience = 6s;
 /// The bytes of one packet follow each other faster.
 constexpr Nanoseconds kPacketCut = 1s;
 constexpr int kVainRequests = 4;
-/// Without wind in the packets for so long, the station has a problem.
+/// Without wind in the packets for this time, the station has a problem.
 constexpr Nanoseconds kWindPatience = 10s;
 /// What a console takes to end its packets.
 constexpr Nanoseconds kFarewell = 100ms;

@@ -23,7 +23,7 @@ constexpr Nanoseconds kLiveLongestRead = 200ms;
 constexpr Nanoseconds kHttpRead = 50ms;
 /// Broadcasts come every 2.5 s.
 constexpr Nanoseconds kBroadcastPatience = 10s;
-/// Without any message for so long the device counts as lost.
+/// Without any message for this time the device counts as lost.
 constexpr Nanoseconds kLivePatience = 30s;
 
 std::string_view text_of(const std::vector<std::uint8_t>& buffer, std::size_t size) {
@@ -98,7 +98,7 @@ bool WeatherLinkLiveSensor::has_broadcasts(MonoTime now) const {
   return has_broadcast_ && now - last_broadcast_ < kBroadcastPatience;
 }
 
-/// The conditions first: they say whose broadcasts to take.
+/// The conditions come first, because they have the id of the device whose broadcasts are accepted.
 void WeatherLinkLiveSensor::begin_request(const sensor::Clock& clock, sensor::SensorSink& sink) {
   MonoTime now = clock.now().mono;
   if (now >= next_conditions_) {

@@ -24,9 +24,8 @@ struct WeatherLinkLiveSettings {
 /// The values of kWeatherLinkLiveDriver's parameters. Throws std::runtime_error if they cannot work together.
 WeatherLinkLiveSettings weatherlink_live_settings_of(const ParameterValues& values);
 
-/// A WeatherLink Live. Over HTTP it is asked for its conditions, which say which device it is and what the weather is,
-/// and for broadcasts, which say the wind every 2.5 s; both again and again. While no broadcasts come, the wind is that
-/// of the conditions.
+/// A WeatherLink Live. Over HTTP it is repeatedly asked for its conditions (its id and the weather), and for broadcasts
+/// of the wind every 2.5 s. Without broadcasts the wind is that of the conditions.
 class WeatherLinkLiveSensor final : public sensor::ReopeningSensor {
  public:
   WeatherLinkLiveSensor(const WeatherLinkLiveSettings& settings, std::unique_ptr<bus::BytePort> http,

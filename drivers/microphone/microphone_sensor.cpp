@@ -11,7 +11,7 @@ namespace {
 /// A time stamp farther than this from now is of another clock, or wrong.
 constexpr Nanoseconds kBelievableAge = std::chrono::seconds(5);
 
-/// A worker that does not start in time has so many times longer at last: the machine may be slow.
+/// A worker that does not start in time gets up to this many times longer: the machine may be slow.
 constexpr int kMostPatience = 8;
 
 }  // namespace

@@ -25,7 +25,7 @@ constexpr std::array kKnocks = {decode::modbus::ModbusRequest{.function = 3, .ad
 /// Below this a value counts as 0: a float that is read in a wrong order of words can be 1e-40.
 constexpr double kLeastLive = 0.005;
 
-/// From so many m/s on the wind has 1, 2, ... 12 Beaufort (WMO No. 306, code table 1100).
+/// The speeds, m/s, from which the wind has 1, 2, ... 12 Beaufort (WMO No. 306, code table 1100).
 constexpr std::array kBeaufortFrom_m_s = {0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7};
 
 bool has_side_effects(const ModbusProfile& profile) {
@@ -64,7 +64,7 @@ bool has_one_slave(const ModbusProfile& profile) {
   return !profile.direction || profile.direction->slave == profile.speed.slave;
 }
 
-/// Stop bits make no difference here: whoever sends two is heard by those who expect one, and the other way round.
+/// Stop bits make no difference here: a device that sends two is understood by one that expects one, and vice versa.
 bool is_home_of(const bus::ModbusLine& line, const ModbusProfile& profile) {
   return line.framing == decode::modbus::ModbusFraming::kTcp ||
          (line.baud == profile.baud && line.parity == profile.parity);

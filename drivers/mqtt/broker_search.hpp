@@ -15,7 +15,7 @@ struct BrokerSearch {
   bus::MqttSubscription broker;                 ///< without the topics
   std::string settings;                         ///< the same as lines of TOML
   std::string prefix = "homeassistant";         ///< of the announcements' topics
-  Nanoseconds pause = std::chrono::seconds(1);  ///< it has ended when the broker has sent nothing for so long
+  Nanoseconds pause = std::chrono::seconds(1);  ///< the search ends after this silence of the broker
 };
 
 /// The anemometers that publishers announce on the broker by Home Assistant's discovery (home_assistant.hpp).

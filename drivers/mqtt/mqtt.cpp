@@ -1,6 +1,6 @@
-// Wind that somebody publishes on an MQTT broker (OASIS, "MQTT Version 3.1.1", 2014): a home's weather station, a
-// gateway, a microcontroller. Speed, direction and gust may come in one JSON message or each on a topic of its own.
-// Common publishers have a preset (mqtt_preset.cpp), which single settings override.
+// Wind that is published on an MQTT broker (OASIS, "MQTT Version 3.1.1", 2014): a home's weather station, a gateway, a
+// microcontroller. Speed, direction and gust may come in one JSON message or each on a topic of its own. Common
+// publishers have a preset (mqtt_preset.cpp), which single settings override.
 //
 // A retained message was kept by the broker for later subscribers: its age is unknown, and it is never taken for the
 // live wind.
@@ -170,7 +170,7 @@ struct HeldValue {
   MonoTime since{};
 };
 
-/// A text of somebody else's as the status can show it.
+/// Makes a received text printable for the status.
 std::string shown(const std::string& text) {
   std::string printable = text;
   make_printable(printable);

@@ -214,7 +214,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     const std::string shown = decode::network::without_push_secrets(form);
     sink.raw(sensor::RawDirection::kReceived, {reinterpret_cast<const std::uint8_t*>(shown.data()), shown.size()});
     const std::string sender = bus::plain_address(request.sender).to_string();
-    // A page of anybody, open in a browser of this network, can have it push.
+    // Any web page that is open in a browser of this network can make the browser push.
     if (request.is_of_browser) {
       trouble_ = "refuses pushes of a web browser at " + sender;
       return PushRefusal{Refusal::kNotMine, {403, "browsers are refused"}};

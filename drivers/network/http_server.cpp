@@ -101,7 +101,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
       return reply(answer);
     }
     if (error == beast::error::timeout) return service->failed(HttpFailure::kTooSlow, sender_);
-    if (error == http::error::end_of_stream) return;  // it said nothing: somebody looked whether the port is open
+    if (error == http::error::end_of_stream) return;  // it sent nothing: a check whether the port is open
     if (error == http::error::partial_message) {
       service->failed(HttpFailure::kCutOff, sender_);
       return reply({.status = 400, .text = "the request is cut off"});

@@ -203,7 +203,7 @@ sensor::ValueSelection tempest_selection(const ParameterValues& values) {
 }
 
 Result<sensor::SimulatedDevice, Failure> tempest_simulated(const ParameterValues& values) {
-  std::vector<std::string> options = {"--interval", "1"};  // else it would say too little in the time that there is
+  std::vector<std::string> options = {"--interval", "1"};  // otherwise too few messages in the time available
   const std::string station = kTempestFields.of(values).serial_number;
   if (!station.empty()) options.insert(options.end(), {"--station", station});
   return sensor::simulated_sender("tempest", "--udp", values, options);

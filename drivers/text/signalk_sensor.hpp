@@ -48,7 +48,7 @@ class SignalKSensor final : public TextSensor {
     std::bitset<decode::marine::kSignalKFrames> is_offered = {};
     Instant time = {};
   };
-  /// The first time that a source has said a quantity.
+  /// The first time with which a source has sent a quantity.
   struct FirstTime {
     std::string source;
     std::size_t quantity = 0;

@@ -19,7 +19,7 @@ constexpr Nanoseconds kLongestRead = 200ms;
 constexpr Nanoseconds kBurstEnd = 200ms;
 /// The bytes of one line follow each other faster; a line that pauses for longer was cut off.
 constexpr Nanoseconds kLineCut = 500ms;
-/// Without a reading for so long, or for five times the usual pause, something is wrong.
+/// Without a reading for this time, or for five times the usual pause, something is wrong.
 constexpr Nanoseconds kPatience = 3s;
 /// A device whose usual pause is not known yet is opened again after this.
 constexpr Nanoseconds kFirstSilence = 120s;
@@ -27,7 +27,7 @@ constexpr Nanoseconds kFirstSilence = 120s;
 constexpr Nanoseconds kLatestReply = 2s;
 /// The silence after which a device is opened again doubles so often.
 constexpr int kMostDoublings = 6;
-/// A device that does not reply gets fewer requests: the interval grows up to so many times.
+/// A device that does not reply gets fewer requests: the interval grows up to this many times.
 constexpr int kRarestRequest = 8;
 /// So many blocks at most are discarded at the beginning; a device that sends more does not stop.
 constexpr int kForgottenBlocks = 64;

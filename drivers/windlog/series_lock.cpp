@@ -16,7 +16,7 @@ namespace yuragi::drivers::windlog {
 namespace {
 
 constexpr mode_t kMode = 0640;  // as a recording
-/// A holder removes the file when it ends; whoever opened it before that tries again with the next one.
+/// A holder removes the file when it ends; a program that opened it before that tries again with the next one.
 constexpr int kMaxTries = 100;
 
 /// The file that locks a recording; nullopt if its name cannot be looked up.

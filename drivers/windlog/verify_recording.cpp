@@ -235,7 +235,7 @@ Result<Verification, Failure> verify_recording(const std::filesystem::path& reco
   verification.gaps = std::move(gaps.gaps);
   std::ranges::stable_sort(verification.gaps, {}, &RecordingGap::from);
 
-  // The oldest files may have been deleted, as the rules say.
+  // The oldest files may have been deleted by the rules.
   const auto parts = completed_parts(recording);
   std::ranges::sort(seen.previous);
   seen.previous.erase(std::unique(seen.previous.begin(), seen.previous.end()), seen.previous.end());

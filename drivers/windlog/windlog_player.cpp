@@ -12,11 +12,11 @@ namespace {
 
 // Later than this (the machine was suspended) it goes on from where it was.
 constexpr Nanoseconds kMaxLateness = std::chrono::seconds(1);
-// What is further away than this never comes: a clock could not hold it. About 30 years.
+// A longer wait counts as endless, because a clock could not hold it. About 30 years.
 constexpr double kMaxWait_s = 1e9;
 // Stands for "never" after the end; a clock can add this to any time.
 constexpr Nanoseconds kAfterTheEnd = std::chrono::hours(24);
-// A cross-fade has so many readings at least, or it would be a step; and is no more than this part of the recording.
+// The minimum of readings in a cross-fade, or it would be a step; and its maximum part of the recording.
 constexpr int kLeastReadingsOfFade = 3;
 constexpr int kParts = 3;
 // A held reading is repeated no more often than this.

@@ -20,7 +20,7 @@ struct PlayerOptions {
   double rate = 1.0;       ///< seconds of the recording in one second; above 0
   double seam_s = 5.0;     ///< how long a jump (a loop's seam, a seek) takes; 0: no cross-fade
   bool is_paused = false;  ///< stand at the first reading until resume() or step()
-  /// Begin so many seconds of the recording earlier than asked, so that what it moves has lived in its wind by then.
+  /// Begin this many seconds of the recording earlier than asked, so that the scenes have settled in its wind by then.
   /// Not if `is_paused`. Before the recording's beginning, or in a silence, the first reading is held. What cannot be
   /// read of this part is left out.
   double lead_s = 0.0;

@@ -73,7 +73,7 @@ class WindlogReader {
 
   /// Passes the other quantities of stations, from one log time on and before another, to `use`, in order, independent
   /// of choose() and seek(). From zero on means all from the beginning, also what came before the first reading.
-  /// Returns the number of rows that cannot be such. A file of a series that has no readings is left out.
+  /// Returns the number of impossible rows. A file of a series that has no readings is left out.
   Result<std::size_t, Failure> each_quantities(Nanoseconds from, Nanoseconds to, const UseQuantities& use) const {
     return stored_->each_quantities(from, to, use);
   }

@@ -21,7 +21,7 @@ std::int64_t nanoseconds(UtcTime time) {
   return time.time_since_epoch().count();
 }
 
-/// The readings of all series as one table, for whoever looks into the file with another program.
+/// The readings of all series as one table, for other programs that read the file.
 std::string view_of(std::int64_t series) {
   std::string view = "DROP VIEW IF EXISTS reading; CREATE VIEW reading AS";
   for (std::int64_t each = 1; each <= series; ++each) {
@@ -216,7 +216,7 @@ Result<std::int64_t, Failure> WindlogWriter::begin_of_next_session(UtcTime start
     return no_room(database_);
   }
   last_before_session_ = (*last)->utc;
-  // Nor before what stations said last: the clock may have been set back since.
+  // Nor before the last quantities of stations: the clock may have been set back since.
   if (const auto said_ns = last_quantities_ns(); said_ns && *said_ns < kMaxTime_ns - 1) {
     begin_ns = std::max(begin_ns, *said_ns + 1);
   }

@@ -30,7 +30,8 @@ class TextWire {
   /// Sends the bytes to all clients.
   virtual void write(std::string_view bytes) = 0;
 
-  /// Drops its clients and refuses those that come, for as long as it is wanted. Only a wire that can say so does.
+  /// Drops its clients and refuses those that come, for as long as it is wanted. Only a wire whose protocol can refuse
+  /// does so.
   virtual void refuse(bool /*is_wanted*/) {}
 
   /// Closes the port and all connections. A second call does nothing.

@@ -11,7 +11,7 @@
 
 namespace yuragi::drivers::decode::marine {
 
-/// How a gateway or program writes what is said on an NMEA 2000 bus.
+/// How a gateway or program writes the messages of an NMEA 2000 bus.
 enum class BusLineFormat : std::uint8_t {
   kAuto,  ///< detected, line by line
   kYachtDevices,

@@ -63,7 +63,7 @@ class MicFrameReader {
 
   void push(std::span<const std::uint8_t> bytes);
 
-  /// The next frame, or why what stood there is none: kMalformed (not the protocol: skipped up to the next mark),
+  /// Returns the next frame, or why it is not one: kMalformed (not the protocol: skipped up to the next mark),
   /// kBadChecksum, kNotMine (a block before any hello, or of another shape), kTooShort (a payload that ends too early),
   /// kInvalid (an impossible number). Nullopt: more bytes are needed.
   std::optional<Item> next();

@@ -150,8 +150,8 @@ XdrRole xdr_role(std::string_view id, int first_id) {
   }
 }
 
-/// Are these quadruples, each of a type of one letter? Fields that have moved up by one that was lost are none. What is
-/// behind the last one must be empty.
+/// Are these quadruples, each of a type of one letter? Fields after a lost one have moved up, and are not quadruples.
+/// What is behind the last one must be empty.
 bool are_xdr_quadruples(const TextFields& fields) {
   std::size_t at = 1;
   for (; at + 3 < fields.count; at += 4) {
