@@ -191,7 +191,7 @@ Result<void, Failure> UmbSensor::give_up_reply(MonoTime now, sensor::SensorSink&
     const std::string trouble = trouble_.empty() ? silence_trouble() : trouble_;
     refuse(Refusal::kTimeout, trouble, sink);
   }
-  if (++vain_requests_ >= kVainRequests) return Failure{trouble_ + ": reopening it"};
+  if (++vain_requests_ >= kVainRequests) return Failure{trouble_ + "; reopening it"};
   return {};
 }
 
