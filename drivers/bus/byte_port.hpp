@@ -57,9 +57,9 @@ struct BytePortAddress {
 
   CanFilter can = {};
 
-  /// WebSocket: sent as "Authorization: Bearer ..." and as nothing else; empty: nothing is sent. It is not encrypted.
+  /// WebSocket: sent only as "Authorization: Bearer ...", unencrypted; empty: not sent.
   Secret token = {};
-  /// WebSocket: a server that says nothing for half as long is pinged; one that says nothing for so long is lost.
+  /// WebSocket: a server that sends nothing for half of this time is pinged; after all of it the connection is lost.
   Nanoseconds idle_timeout = std::chrono::seconds(30);
 
   Nanoseconds connect_timeout = std::chrono::seconds(3);

@@ -6,7 +6,7 @@
 
 namespace yuragi::drivers::bus {
 
-/// The real one. Serial ports and sockets are Boost.Asio's. Throws std::system_error where the process has no
+/// The real one. Serial ports and sockets are Boost.Asio's. Throws std::system_error if the process has no
 /// descriptors left.
 ///
 /// A serial port is locked against other programs while it is open (flock, and TIOCEXCL against those that do not ask

@@ -1,6 +1,6 @@
 // Frames of a CAN interface, as the lines that candump -L writes (can-utils): text, as of the gateways to such a bus,
 // so that a person, a log and `yuragi decode` read them alike. The socket is one of the kernel's (CAN_RAW), which
-// passes on the frames of the filter alone, and what the interface's controller says of its own errors.
+// passes on only the frames of the filter, and the error frames of the interface's controller.
 #include <algorithm>
 #include <cerrno>
 #include <utility>
@@ -25,7 +25,7 @@ bool set_raw(int socket, int option, const Value& value) {
   return setsockopt(socket, SOL_CAN_RAW, option, &value, sizeof value) == 0;
 }
 
-/// True: it receives. False: errno says why not.
+/// Returns true if it receives; otherwise errno has the reason.
 bool listen_at(int socket, const BytePortAddress& address) {
   const can_filter wanted = {.can_id = address.can.identifier | CAN_EFF_FLAG,
                              .can_mask = address.can.mask | CAN_EFF_FLAG | CAN_RTR_FLAG};
@@ -87,7 +87,7 @@ class CanBytePort final : public DescriptorPort {
     return arrival;
   }
 
-  /// Yuragi says nothing on a bus that it does not belong to.
+  /// Always false: Yuragi sends nothing on a bus that it is not part of.
   bool write(std::span<const std::uint8_t> /*bytes*/) override { return false; }
 
  protected:

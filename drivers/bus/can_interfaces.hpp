@@ -22,7 +22,7 @@ std::vector<CanInterfaceInfo> find_can_interfaces(const std::filesystem::path& c
 /// Why a CAN interface could not be opened, which gave this `errno`, and the command to type. Pure.
 std::string can_trouble(const std::string& interface, int error);
 
-/// The command that switches an interface on, with NMEA 2000's bit rate where it is not virtual. Pure.
+/// The command that switches an interface on, with NMEA 2000's bit rate if it is not virtual. Pure.
 std::string can_up_command(const std::string& interface);
 
 }  // namespace yuragi::drivers::bus

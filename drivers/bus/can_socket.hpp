@@ -8,7 +8,7 @@
 namespace yuragi::drivers::bus {
 
 /// Opens the socket of a CAN interface, which does not block: each read is one `struct can_frame` of the kernel's.
-/// Negative: errno says why there is none.
+/// Returns a negative number on failure, with the reason in errno.
 using OpenCanSocket = std::function<int(const BytePortAddress& address)>;
 
 /// The kernel's.

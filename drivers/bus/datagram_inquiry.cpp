@@ -57,7 +57,7 @@ std::vector<Interface> interfaces() {
   return found;
 }
 
-/// Sends the question wherever it is to go. The last error where it could be sent nowhere.
+/// Sends the question to all its destinations. Returns the last error if it could not be sent to any.
 error_code ask(udp::socket& socket, const DatagramInquiry& inquiry, const address_v4* to) {
   error_code error = boost::asio::error::network_unreachable;
   bool is_sent = false;
@@ -114,7 +114,7 @@ Result<std::vector<DatagramAnswer>, Failure> ask_networks(const DatagramInquiry&
     wait_for_datagram(socket, asked < kAskedAfter.size() ? std::min(end, start + kAskedAfter.at(asked)) : end);
     udp::endpoint from;
     const std::size_t size = socket.receive_from(boost::asio::buffer(buffer), from, 0, error);
-    if (error) continue;  // nothing has come; or a host has told that nobody listens there
+    if (error) continue;  // nothing received, or a host has reported that the port is closed
     DatagramAnswer answer{{buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(size)},
                           from.address().to_string()};
     if (std::ranges::find(answers, answer) == answers.end()) answers.push_back(std::move(answer));

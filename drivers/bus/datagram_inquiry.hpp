@@ -9,14 +9,14 @@
 
 namespace yuragi::drivers::bus {
 
-/// A question to whoever is in the local networks, by UDP over IPv4.
+/// A question to all devices in the local networks, by UDP over IPv4.
 struct DatagramInquiry {
   std::vector<std::uint8_t> question;
   std::uint16_t port = 0;
   /// The one address that is asked, or a multicast group, asked on each interface; empty: the broadcast address of each
   /// interface.
   std::string to = {};
-  Nanoseconds duration = std::chrono::seconds(5);  ///< answers are taken for so long
+  Nanoseconds duration = std::chrono::seconds(5);  ///< time in which answers are accepted
 };
 
 struct DatagramAnswer {
@@ -28,7 +28,8 @@ struct DatagramAnswer {
 
 /// Asks three times within the first three seconds, as datagrams get lost, from a port of its own, and takes what comes
 /// to that port: each answer once, at most 1000 of them. What is sent leaves no local network (a time to live of 1),
-/// unless it is to one address. Waits for the whole duration. The failure's text: why nobody could be asked.
+/// unless it is to one address. Waits for the whole duration. The failure's text is the reason why no request could be
+/// sent.
 Result<std::vector<DatagramAnswer>, Failure> ask_networks(const DatagramInquiry& inquiry);
 
 }  // namespace yuragi::drivers::bus

@@ -7,7 +7,7 @@
 namespace yuragi::drivers::bus {
 namespace {
 
-/// A device that takes nothing for so long will not take it later either.
+/// A device that accepts no bytes for this time will not accept them later.
 constexpr Nanoseconds kWritePatience = std::chrono::seconds(1);
 
 }  // namespace

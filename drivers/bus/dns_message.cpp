@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::size_t kMaxServices = 16;
 /// No message of multicast DNS is longer (RFC 6762, section 17).
-constexpr std::size_t kMaxMessage = 9000;
-constexpr std::size_t kMaxLabel = 63;
-/// The class of a record, without the bit that tells others to forget what they knew (RFC 6762, section 10.2).
+constexpr std::size_t kLongestMessage = 9000;
+constexpr std::size_t kLongestLabel = 63;
+/// The class of a record, without the bit that makes others discard cached records (RFC 6762, section 10.2).
 constexpr unsigned kClassMask = 0x7FFF;
 
 using DomainName = std::array<char, NS_MAXDNAME>;
@@ -31,7 +31,7 @@ std::optional<std::string> name_at(const ns_msg& message, const std::uint8_t* fr
   return name.data();
 }
 
-/// Calls `take` with each record of the answer, and of what is said besides.
+/// Calls `take` with each record of the answer section and of the additional section.
 template <class Take>
 void for_each_record(ns_msg& message, Take&& take) {
   for (const ns_sect section : {ns_s_an, ns_s_ar}) {

@@ -14,20 +14,20 @@ namespace yuragi::drivers::bus {
 inline constexpr std::uint16_t kMulticastDnsPort = 5353;
 inline constexpr const char* kMulticastDnsGroup = "224.0.0.251";
 
-/// One service that somebody announces.
+/// One announced service.
 struct AnnouncedService {
-  std::string name;  ///< of the instance, as it says: "weatherlinklive-700008"; can be shown, at most 63 characters
-  std::string address = {};  ///< IPv4; empty: the message does not say it
-  std::uint16_t port = 0;    ///< 0: the message does not say it
+  std::string name;  ///< of the instance, as announced: "weatherlinklive-700008"; printable, at most 63 characters
+  std::string address = {};  ///< IPv4; empty: not in the message
+  std::uint16_t port = 0;    ///< 0: not in the message
 
   bool operator==(const AnnouncedService&) const = default;
 };
 
 /// The question for services of a type ("_signalk-ws._tcp.local"), with the id 0: the WeatherLink Live answers no id
-/// above 4 (drivers/SOURCES.md S9.20). Empty where the type is no name. Thread-safe: yes.
+/// above 4 (drivers/SOURCES.md S9.20). Empty if the type is not a name. Thread-safe: yes.
 std::vector<std::uint8_t> service_question(const std::string& type);
 
-/// The services of that type in an answer; none for any bytes that are no answer. At most 16 of one message.
+/// The services of that type in an answer; empty for bytes that are not an answer. At most 16 of one message.
 /// Thread-safe: yes.
 std::vector<AnnouncedService> services_in(std::span<const std::uint8_t> message, const std::string& type);
 

@@ -28,7 +28,7 @@ class FileBytePort final : public DescriptorPort {
     close();
     if (interruption().is_set()) return Failure{"interrupted"};
 
-    // A pipe that is open for writing too never ends, whoever comes and goes at its other end.
+    // A pipe that is also open for writing never ends when its writers close it.
     struct stat what {};
     if (stat(address().path.c_str(), &what) != 0) return failure_of(errno);
     if (!S_ISREG(what.st_mode) && !S_ISFIFO(what.st_mode)) {

@@ -79,11 +79,11 @@ class HidDevice {
   /// The next input report, waiting for at most `timeout`; numbered reports begin with their number.
   virtual HidArrival read(std::span<std::uint8_t> buffer, Nanoseconds timeout) = 0;
 
-  /// Sends an output report: its number (0 where the device has none), then its bytes. False: it failed. Waits for at
+  /// Sends an output report: its number (0 if the device has none), then its bytes. False: it failed. Waits for at
   /// most 5 s, the kernel's own fixed limit.
   virtual bool write(std::span<const std::uint8_t> report) = 0;
 
-  /// Requests input report `id`, which begins with that number. kSilence where the device refuses or does not reply
+  /// Requests input report `id`, which begins with that number. kSilence if the device refuses or does not reply
   /// (within the kernel's 5 s).
   virtual HidArrival get_input_report(std::uint8_t id, std::span<std::uint8_t> buffer) = 0;
 

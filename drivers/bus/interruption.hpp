@@ -18,7 +18,7 @@ enum class WaitFor : std::uint8_t { kReadable, kWritable };
 
 /// Lets another thread end every wait of a port, now and from then on.
 ///
-/// Thread-safe: yes. Throws std::system_error where the process has no descriptors left.
+/// Thread-safe: yes. Throws std::system_error if the process has no descriptors left.
 class Interruption {
  public:
   Interruption();

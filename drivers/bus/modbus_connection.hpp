@@ -31,14 +31,14 @@ struct ModbusLine {
 /// How long a device may take.
 struct ModbusPatience {
   Nanoseconds response_timeout = std::chrono::milliseconds(500);  ///< from request to the end of the reply
-  Nanoseconds byte_timeout = std::chrono::milliseconds(50);  ///< RTU: a line quiet for so long has ended its message
+  Nanoseconds byte_timeout = std::chrono::milliseconds(50);       ///< RTU: this silence on the line ends a message
 };
 
 /// "host:port", or the serial port: for people.
 std::string describe(const ModbusLine& line);
 
 /// The silence that separates two messages on a serial line: 3.5 characters, or 1.75 ms above 19200 bit/s (MODBUS over
-/// Serial Line V1.02, section 2.5.1.1); nothing over TCP.
+/// Serial Line V1.02, section 2.5.1.1); zero over TCP.
 Nanoseconds frame_gap(const ModbusLine& line) noexcept;
 
 /// The result of waiting for a reply.

@@ -20,7 +20,7 @@ struct MqttSubscription {
   bool uses_tls = false;
   std::string ca_file;              ///< certificates that the broker is checked with; empty: the system's
   std::vector<std::string> topics;  ///< + matches one level, # all that follow
-  Nanoseconds keep_alive = std::chrono::seconds(15);      ///< a broker that is silent for so long is pinged; >= 5 s
+  Nanoseconds keep_alive = std::chrono::seconds(15);      ///< a broker that is silent for this time is pinged; >= 5 s
   Nanoseconds connect_timeout = std::chrono::seconds(5);  ///< until all subscriptions are accepted
 };
 
@@ -50,7 +50,7 @@ class MqttClient {
   virtual ~MqttClient() = default;
 
   /// Connects and subscribes. The failure's text: why, and what to do. Blocks for the connect time-out at most, or
-  /// twice that where a host name has to be looked up.
+  /// twice that if a host name must be looked up.
   virtual Result<void, Failure> connect() = 0;
   virtual void disconnect() noexcept = 0;
 
@@ -64,7 +64,7 @@ class MqttClient {
   virtual void interrupt() noexcept = 0;
 };
 
-/// The real one, by libmosquitto. Throws std::runtime_error where there is no memory or descriptor left for it.
+/// The real one, by libmosquitto. Throws std::runtime_error if there is no memory or descriptor left for it.
 std::unique_ptr<MqttClient> make_mqtt_client(const MqttSubscription& subscription);
 
 /// Is it a valid topic filter?

@@ -19,9 +19,9 @@ struct OscMessage {
   std::optional<UtcTime> meant_for;            ///< the latest time tag of the bundles that it is in; empty: at once
 };
 
-/// The messages in one datagram, taken apart by liblo: one, or those of a bundle and of the bundles in it, whatever
-/// time they are meant for. A time tag counts from 1900, or from 2036 on from there (RFC 4330, 3); 1, the mark for "at
-/// once", and 0 are none. kMalformed where any of it is not OSC, kTooShort for an empty one. Opens nothing, and never
+/// The messages in one datagram, parsed by liblo: one, or those of a bundle and of the bundles in it, whatever time
+/// they are meant for. A time tag counts from 1900, or from 2036 on from there (RFC 4330, 3); 1, the mark for "at
+/// once", and 0 are none. kMalformed if any of it is not OSC, kTooShort for an empty one. Opens nothing, and never
 /// throws for any bytes. Thread-safe: yes.
 Result<std::vector<OscMessage>, decode::Refusal> decode_osc(std::span<const std::uint8_t> datagram);
 

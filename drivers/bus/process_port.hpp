@@ -11,9 +11,9 @@ namespace yuragi::drivers::bus {
 /// A program of ours whose standard output is the port: what wraps a library that can hang must be a process, since a
 /// thread that spins cannot be ended. `command`: the program's path and its arguments.
 ///
-/// open() starts it. close() kills it, whatever it is doing, and leaves no zombie. It dies with the thread that opened
-/// it, should that end without close(). Standard input is empty; standard error is the daemon's own. read() returns
-/// kLost when the program has ended, after the last of its bytes. write() is refused.
+/// open() starts it. close() kills it in any state, and leaves no zombie. It dies with the thread that opened it,
+/// should that end without close(). Standard input is empty; standard error is the daemon's own. read() returns kLost
+/// when the program has ended, after the last of its bytes. write() is refused.
 std::unique_ptr<BytePort> make_process_port(std::vector<std::string> command);
 
 }  // namespace yuragi::drivers::bus

@@ -17,7 +17,7 @@ std::string trimmed(const std::string& text) {
   return text.substr(begin, text.find_last_not_of(" \t") + 1 - begin);
 }
 
-/// The same net, whatever address of it was given.
+/// Returns the same network for any of its addresses.
 ip::network_v4 net_of(const ip::address_v4& address, unsigned short bits) {
   return ip::network_v4(address, bits).canonical();
 }

@@ -11,14 +11,14 @@
 
 namespace yuragi::drivers::bus {
 
-/// Whose datagrams are taken. An address that a sender claims can be forged by whoever shares its network: this keeps
+/// Selects the senders whose datagrams are accepted. Anybody in a sender's network can forge its address: this keeps
 /// mistakes and strangers away, and does not replace a firewall.
 ///
 /// Thread-safe: its const functions are.
 class SenderFilter {
  public:
-  /// From addresses and nets separated by commas: "192.168.1.20, 10.0.0.0/8, fd00::/8". Empty: takes any sender. The
-  /// failure's text: which is neither an address nor a net.
+  /// From addresses and networks separated by commas: "192.168.1.20, 10.0.0.0/8, fd00::/8". Empty: takes any sender.
+  /// The failure's text: which is neither an address nor a net.
   static Result<SenderFilter, Failure> parse(const std::string& senders);
 
   /// An IPv4 address that came through an IPv6 socket counts as IPv4.
@@ -38,7 +38,7 @@ bool senders_cover(const std::string& wide, const std::string& narrow);
 /// IPv4 addresses that came through an IPv6 socket look like it; people write them as they are.
 boost::asio::ip::address plain_address(const boost::asio::ip::address& address);
 
-/// Can only programs of this machine send to it? Fails where it is no address.
+/// Can only programs of this machine send to it? Fails if it is no address.
 Result<bool, Failure> is_loopback(const std::string& address);
 
 }  // namespace yuragi::drivers::bus

@@ -47,7 +47,7 @@ std::map<fs::path, std::string> links_in(const fs::path& folder) {
   return links;
 }
 
-/// The name of a group, as /etc/group has it; its number where it has none.
+/// Returns the name of a group in /etc/group; its number if it has none.
 std::string group_name(gid_t group) {
   std::ifstream in("/etc/group");
   for (std::string line; std::getline(in, line);) {

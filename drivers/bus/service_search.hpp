@@ -9,8 +9,8 @@
 
 namespace yuragi::drivers::bus {
 
-/// Asks for services of a type ("_signalk-ws._tcp.local") by multicast DNS, or one address alone, for so long. Each
-/// service once, with the address that it says, or whose answer it is. Fails as ask_networks() does.
+/// Asks for services of a type ("_signalk-ws._tcp.local") by multicast DNS, or at one address, for that duration.
+/// Returns each service once, with the announced address, or that of the sender. Fails like ask_networks().
 Result<std::vector<AnnouncedService>, Failure> find_services(const std::string& type, const std::string& to,
                                                              std::uint16_t port, Nanoseconds duration);
 

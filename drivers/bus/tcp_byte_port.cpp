@@ -71,7 +71,7 @@ class TcpBytePort final : public DescriptorPort {
     return {result, boost::system::system_category()};
   }
 
-  /// A peer that vanished silently is noticed after about 25 s, also where nothing is ever sent to it.
+  /// A peer that vanished silently is noticed after about 25 s, even if nothing is ever sent to it.
   void set_keep_alive() {
     boost::system::error_code ignored;
     socket_.set_option(boost::asio::socket_base::keep_alive(true), ignored);

@@ -22,9 +22,9 @@ namespace ip = boost::asio::ip;
 
 /// One datagram as it was received.
 struct Datagram {
-  ssize_t size = -1;  ///< negative: errno says why there is none
+  ssize_t size = -1;  ///< negative: failed, with the reason in errno
   udp::endpoint from;
-  std::uint32_t dropped = 0;  ///< datagrams that the kernel has dropped since the socket was opened; 0: it does not say
+  std::uint32_t dropped = 0;  ///< datagrams that the kernel has dropped since the socket was opened; 0: not reported
 };
 
 /// With SO_RXQ_OVFL the kernel adds its count of dropped datagrams to each one that follows them (socket(7)).
@@ -139,7 +139,7 @@ class UdpBytePort final : public DescriptorPort {
   boost::asio::io_context context_;
   udp::socket socket_{context_};
   SenderFilter filter_;
-  std::uint32_t dropped_ = 0;  ///< the kernel's count, as it was told last
+  std::uint32_t dropped_ = 0;  ///< the kernel's count as last reported
 };
 
 }  // namespace

@@ -27,12 +27,12 @@ std::string describe(const UsbId& id);
 struct PluggedUsbDevice {
   UsbId id;
   std::string port;          ///< where it is plugged in: "1-2.3" is port 3 of the hub at port 2 of bus 1. Stays
-  std::string serial;        ///< empty where the device has none to show
+  std::string serial;        ///< empty if the device has none to show
   std::string node;          ///< "/dev/bus/usb/001/005"; another one each time that it is plugged in
   bool is_permitted = true;  ///< this user may open it
 };
 
-/// A control transfer's beginning, but for its length (USB 2.0 specification, 9.3).
+/// The beginning of a control transfer without its length (USB 2.0 specification, 9.3).
 struct UsbRequest {
   std::uint8_t request_type = 0;
   std::uint8_t request = 0;
@@ -46,7 +46,7 @@ enum class UsbStatus : std::uint8_t {
   kStalled,      ///< the device refuses this request
   kOverflow,     ///< the device sent more than was requested
   kInterrupted,  ///< interrupt() was called
-  kGone,         ///< the device, or the way to it, is not there any more
+  kGone,         ///< the device, or the connection to it, is gone
 };
 
 struct UsbTransfer {
@@ -74,7 +74,7 @@ class UsbDevice {
 
   // Each ends within `timeout`, give or take a second on a bus that hangs. More than `data` has room for is kOverflow.
 
-  /// A control transfer; `data` is filled where `request` reads, and sent where it writes.
+  /// A control transfer; `data` is filled if `request` reads, and sent if it writes.
   virtual UsbTransfer control(const UsbRequest& request, std::span<std::uint8_t> data, Nanoseconds timeout) = 0;
   /// A bulk transfer from or to an end point, by its number without the direction bit.
   virtual UsbTransfer read(std::uint8_t endpoint, std::span<std::uint8_t> data, Nanoseconds timeout) = 0;

@@ -31,7 +31,7 @@ namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 
-/// A server that takes nothing for so long will not take it later either.
+/// A server that accepts no bytes for this time will not accept them later.
 constexpr Nanoseconds kMessagePatience = std::chrono::seconds(1);
 
 class WebSocketSocket : public asio::ip::tcp::socket {
@@ -39,8 +39,7 @@ class WebSocketSocket : public asio::ip::tcp::socket {
   using asio::ip::tcp::socket::socket;
 };
 
-/// What Beast calls when the last word is said: hangs up at once, and does not wait until the server does, which may be
-/// never.
+/// Called by Beast after the closing frames: closes at once, because a server may never close its side.
 template <class Handler>
 void async_teardown(beast::role_type /*role*/, WebSocketSocket& socket, Handler&& handler) {
   error_code ignored;
@@ -116,7 +115,7 @@ class WebSocketPort final : public BytePort {
         context_.poll();
       }
     } catch (const std::bad_alloc&) {
-      // Then the server is told nothing, and notices that the connection ends.
+      // The server gets no closing frame, and notices only that the connection ends.
     }
     drop();
   }
@@ -189,7 +188,7 @@ class WebSocketPort final : public BytePort {
     }
   }
 
-  /// Ends the connection, and whatever is under way on it.
+  /// Ends the connection and all pending operations.
   void drop() noexcept {
     error_code ignored;
     connection_->stream.next_layer().close(ignored);

@@ -13,7 +13,7 @@
 namespace yuragi::drivers::davis {
 
 /// One request after another to a server of HTTP/1.1, each over a connection of its own, and its reply piece by piece,
-/// so that whoever waits for it can do other things and can be interrupted. Replies of more than 64 KiB are refused.
+/// so that the caller can do other work meanwhile, and can be interrupted. Replies of more than 64 KiB are refused.
 ///
 /// Thread-safe: interrupt() alone; everything else belongs to one thread.
 class HttpExchange {
@@ -26,7 +26,7 @@ class HttpExchange {
   Result<void, Failure> begin(const std::string& target);
   bool is_under_way() const noexcept { return parser_ != nullptr; }
 
-  /// Waits for so long for more of the reply: its body, when all of it is there; nothing, when there is more to come. A
+  /// Waits for that time for more of the reply. Returns its body once it is complete, nullopt while more is to come. A
   /// failure is one of the connection, of the protocol, or a status that is not 200.
   std::optional<Result<std::string, Failure>> advance(Nanoseconds timeout);
 

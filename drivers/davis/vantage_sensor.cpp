@@ -33,7 +33,7 @@ constexpr Nanoseconds kPacketPatience = 6s;
 /// The bytes of one packet follow each other faster.
 constexpr Nanoseconds kPacketCut = 1s;
 constexpr int kVainRequests = 4;
-/// Without wind in the packets for so long, the station has a problem.
+/// Without wind in the packets for this time, the station has a problem.
 constexpr Nanoseconds kWindPatience = 10s;
 /// What a console takes to end its packets.
 constexpr Nanoseconds kFarewell = 100ms;
@@ -66,7 +66,7 @@ Result<MonoTime, Failure> VantageSensor::open(const sensor::Clock& clock) {
   return now;
 }
 
-/// A console that sends packets is told to end, by what wakes it; until it has, it may still read that from the port.
+/// A wake-up ends the packets of a console. The port stays open for a moment, so that the console can read the wake-up.
 void VantageSensor::close() noexcept {
   if (std::exchange(phase_, Phase::kWake) == Phase::kReceive && port_->write(bytes_of(kWakeUp))) {
     port_->read(buffer_, kFarewell);
@@ -97,7 +97,7 @@ Result<MonoTime, Failure> VantageSensor::work(const sensor::Clock& clock, sensor
       return now.mono;
     case bus::ByteStatus::kLost:
     case bus::ByteStatus::kEnd:
-      phase_ = Phase::kWake;  // nobody is there to be told to end
+      phase_ = Phase::kWake;  // the console is gone: close() need not end its packets
       return Failure{where_ + " is gone: it is reopened when it is back; check its plug, its power and the network"};
     case bus::ByteStatus::kBytes:
       done = take(decode::ByteSpan(buffer_).first(arrival.size), now, sink);

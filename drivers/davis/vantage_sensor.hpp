@@ -16,7 +16,7 @@ namespace yuragi::drivers::davis {
 
 /// Which packets a console is asked for.
 enum class VantagePackets : std::uint8_t {
-  kAuto,   ///< LOOP2, or LOOP where the console does not know it
+  kAuto,   ///< LOOP2, or LOOP if the console does not support it
   kLoop,   ///< by the command LOOP
   kLoop2,  ///< by the command LPS
 };
@@ -26,7 +26,7 @@ struct VantageSettings {
   VantagePackets packets = VantagePackets::kAuto;
 };
 
-/// The values of kDavisDriver's parameters. Throws std::runtime_error where they cannot work together.
+/// The values of kDavisDriver's parameters. Throws std::runtime_error if they cannot work together.
 VantageSettings vantage_settings_of(const ParameterValues& values);
 
 /// A console of a Davis station. It is woken, asked for its rain collector and for so many packets, and before the last

@@ -1,8 +1,8 @@
 // The WeatherLink Live of Davis stations, in the local network: Davis, "WeatherLink Live Local API"; drivers/SOURCES.md
 // S10.2.
 //
-//   GET /v1/current_conditions         all that its stations say; at most every 10 s
-//   GET /v1/real_time?duration=300    the wind every 2.5 s for so many seconds, broadcast to UDP port 22222
+//     GET /v1/current_conditions         all values of its stations; at most every 10 s
+//     GET /v1/real_time?duration=300    the wind every 2.5 s for that many seconds, broadcast to UDP port 22222
 #include <stdexcept>
 #include <string>
 

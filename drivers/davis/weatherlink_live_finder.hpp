@@ -7,7 +7,7 @@
 
 namespace yuragi::drivers::davis {
 
-/// The WeatherLink Lives that answer by multicast DNS within the search's time. Throws FailureError where nobody can be
+/// The WeatherLink Lives that answer by multicast DNS within the search's time. Throws FailureError if nobody can be
 /// asked.
 std::vector<sensor::FoundDevice> find_weatherlink_lives(const sensor::NetworkSearch& search);
 

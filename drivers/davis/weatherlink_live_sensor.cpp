@@ -11,7 +11,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::string_view kConditionsTarget = "/v1/current_conditions";
-/// The maker allows up to a day; nothing ends them, so a device that nobody asks any more shall soon fall silent.
+/// The maker allows up to a day. They cannot be stopped, so a short time makes a device that is no longer used fall
+/// silent soon.
 constexpr std::string_view kBroadcastsTarget = "/v1/real_time?duration=300";
 constexpr Nanoseconds kRenewal = 120s;
 /// The maker: conditions at most every 10 s.
@@ -22,7 +23,7 @@ constexpr Nanoseconds kLiveLongestRead = 200ms;
 constexpr Nanoseconds kHttpRead = 50ms;
 /// Broadcasts come every 2.5 s.
 constexpr Nanoseconds kBroadcastPatience = 10s;
-/// Without any message for so long the device counts as lost.
+/// Without any message for this time the device counts as lost.
 constexpr Nanoseconds kLivePatience = 30s;
 
 std::string_view text_of(const std::vector<std::uint8_t>& buffer, std::size_t size) {
@@ -97,7 +98,7 @@ bool WeatherLinkLiveSensor::has_broadcasts(MonoTime now) const {
   return has_broadcast_ && now - last_broadcast_ < kBroadcastPatience;
 }
 
-/// The conditions first: they say whose broadcasts to take.
+/// The conditions come first, because they have the id of the device whose broadcasts are accepted.
 void WeatherLinkLiveSensor::begin_request(const sensor::Clock& clock, sensor::SensorSink& sink) {
   MonoTime now = clock.now().mono;
   if (now >= next_conditions_) {
@@ -141,7 +142,7 @@ void WeatherLinkLiveSensor::advance_request(const Instant& now, sensor::SensorSi
   }
 }
 
-/// Where broadcasts still come nothing is lost yet; and where only they are missing, the conditions have a wind.
+/// While broadcasts arrive nothing is lost yet; and if only they are missing, the conditions have a wind.
 void WeatherLinkLiveSensor::fail_request(MonoTime now, const std::string& why, sensor::SensorSink& sink) {
   if (request_ == Request::kBroadcasts) {
     advice_ = ": " + why;

@@ -21,12 +21,11 @@ struct WeatherLinkLiveSettings {
   int transmitter = 0;              ///< 1 to 8; 0: the first that has a wind
 };
 
-/// The values of kWeatherLinkLiveDriver's parameters. Throws std::runtime_error where they cannot work together.
+/// The values of kWeatherLinkLiveDriver's parameters. Throws std::runtime_error if they cannot work together.
 WeatherLinkLiveSettings weatherlink_live_settings_of(const ParameterValues& values);
 
-/// A WeatherLink Live. Over HTTP it is asked for its conditions, which say which device it is and what the weather is,
-/// and for broadcasts, which say the wind every 2.5 s; both again and again. While no broadcasts come, the wind is that
-/// of the conditions.
+/// A WeatherLink Live. Over HTTP it is repeatedly asked for its conditions (its id and the weather), and for broadcasts
+/// of the wind every 2.5 s. Without broadcasts the wind is that of the conditions.
 class WeatherLinkLiveSensor final : public sensor::ReopeningSensor {
  public:
   WeatherLinkLiveSensor(const WeatherLinkLiveSettings& settings, std::unique_ptr<bus::BytePort> http,
@@ -63,7 +62,7 @@ class WeatherLinkLiveSensor final : public sensor::ReopeningSensor {
   MonoTime next_conditions_{};
   MonoTime next_renewal_{};
   std::string trouble_;      ///< of the last request for conditions, if it failed
-  std::string advice_;       ///< what may be wrong where no broadcasts come
+  std::string advice_;       ///< what may be wrong if no broadcasts arrive
   std::string device_;       ///< whose broadcasts are taken; empty: not known yet
   int transmitter_ = 0;      ///< which one was taken first
   bool is_received_ = true;  ///< by the last conditions: the station reaches the WeatherLink Live

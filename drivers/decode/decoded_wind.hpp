@@ -48,7 +48,7 @@ std::string_view name_of(DecodedStatus status) noexcept;
 std::optional<double> wrapped_direction_deg(double direction_deg) noexcept;
 
 /// The last step of every decoder: `wind` itself if at least one value is there and all are as DecodedWind promises;
-/// kInvalid where none is there, kImplausible where one is out of its range. A gust below the speed is none, and left
+/// kInvalid if none is there, kImplausible if one is out of its range. A gust below the speed is none, and left
 /// out. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> checked(const DecodedWind& wind) noexcept;
 

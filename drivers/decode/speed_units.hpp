@@ -62,7 +62,7 @@ inline constexpr std::array kSpeedWords = {
     SpeedWord{"cm/s", kCentimetresPerSecondUnit},
 };
 
-/// The unit that is written exactly so; nothing for any other word.
+/// Returns the unit that is written exactly so; nullopt for any other word.
 constexpr std::optional<SpeedUnit> speed_unit_of_word(std::string_view word) noexcept {
   for (const SpeedWord& each : kSpeedWords) {
     if (each.word == word) return each.unit;

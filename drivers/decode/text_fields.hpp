@@ -24,9 +24,9 @@ inline constexpr std::size_t kMaxTextFields = 96;
 struct TextFields {
   std::array<std::string_view, kMaxTextFields> values{};
   std::size_t count = 0;
-  bool are_all = true;  ///< false where the line has more than kMaxTextFields
+  bool are_all = true;  ///< false if the line has more than kMaxTextFields
 
-  /// A field without the blanks around it; empty where the line has ended already.
+  /// A field without the blanks around it; empty if the line has ended already.
   std::string_view operator[](std::size_t i) const noexcept { return i < count ? values[i] : std::string_view(); }
 };
 
@@ -35,7 +35,7 @@ TextFields split_fields(std::string_view text, char separator) noexcept;
 /// Without the blanks, tabs, line ends and NUL bytes at both ends.
 std::string_view trimmed(std::string_view text) noexcept;
 
-/// A decimal number as devices print them ("046.", "+3.4", ".5"): nothing for an empty field, kMalformed for anything
+/// A decimal number as devices print them ("046.", "+3.4", ".5"): nullopt for an empty field, kMalformed for anything
 /// else (exponents, hexadecimal numbers, "nan", two numbers).
 Result<std::optional<double>, Refusal> parse_number(std::string_view field) noexcept;
 
@@ -45,8 +45,8 @@ Result<std::optional<double>, Refusal> parse_direction_deg(std::string_view fiel
 /// The exclusive or of all bytes: the checksum of NMEA 0183, Gill and FT Technologies.
 std::uint8_t xor_checksum(std::string_view text) noexcept;
 
-/// Is `digits` that checksum of `text`? Two hexadecimal digits, of either case: kTooShort where there are fewer,
-/// kMalformed where there is more.
+/// Is `digits` that checksum of `text`? Two hexadecimal digits, of either case: kTooShort if there are fewer,
+/// kMalformed if there is more.
 std::optional<Refusal> xor_checksum_refusal(std::string_view text, std::string_view digits) noexcept;
 
 /// What stands between '$' and '*' in a line with a sentence. What comes before the last '$' is skipped (NUL bytes, a

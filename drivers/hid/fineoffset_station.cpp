@@ -226,7 +226,7 @@ class FineOffsetStation final : public HidStation {
       record_clock_.forget();
       search_steps_ = 0;
     }
-    // Once per interval, and soon after the console writes, where that is known. A delayed read does not delay the
+    // Once per interval, and soon after the console writes, if that time is known. A delayed read does not delay the
     // next one.
     const Nanoseconds interval = std::max(timing_.interval_or(kFineOffsetEvery), timing_.paced(kFineOffsetEvery));
     due_ = std::max(due_, now - interval / 2) + interval;

@@ -106,7 +106,7 @@ std::vector<sensor::FoundDevice> find_hid() {
   return found;
 }
 
-/// Those whose reports tell an average from a gust. Source: drivers/SOURCES.md S2.1 to S2.3.
+/// Of stations whose reports have both an average and a gust. Source: drivers/SOURCES.md S2.1 to S2.3.
 std::optional<sensor::StatedValue> hid_value(const ParameterValues& values) {
   const std::string station = kHidFields.of(values).station;
   std::string_view source;

@@ -37,9 +37,9 @@ class HidExchange {
   bool discard_waiting();
 
   void refuse(decode::Refusal why) { sink_.refused(why); }
-  /// Passes what the station says besides the wind on, as of now; nothing where there is none.
+  /// Passes on the station's other quantities, as of now; does nothing if there are none.
   void publish(std::optional<wind::StationQuantities> quantities);
-  /// Publishes the wind as of now. Returns false, and counts a refusal, where it has no speed.
+  /// Publishes the wind as of now. Returns false, and counts a refusal, if it has no speed.
   bool publish(const decode::DecodedWind& wind);
 
  private:

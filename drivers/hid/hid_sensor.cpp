@@ -52,7 +52,7 @@ std::string HidSensor::why_useless(HidExchange& exchange) {
   return "does not accept requests: unplug its cable, remove its batteries, then connect both again";
 }
 
-/// Nothing is due: checks that the device is still there.
+/// Checks between two steps that the device is still present.
 Result<MonoTime, Failure> HidSensor::look_after(HidExchange& exchange) {
   const HidMessage message = exchange.read(Nanoseconds::zero());
   if (message.status == bus::HidStatus::kLost) return Failure{name_ + " is gone: plug it in again"};

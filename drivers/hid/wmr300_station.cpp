@@ -44,7 +44,7 @@ class Wmr300Station final : public HidStation {
     if (is_sound) received_at_ = step.next;
     if (!decode::hid::wants_wmr300_acknowledgement(packet)) {
       if (!is_sound) exchange.refuse(decode::Refusal::kMalformed);
-      // It identifies itself. If no data came since the heartbeat before, it must be told to start sending.
+      // It identifies itself. If no data came since the heartbeat before, it needs the command to start sending.
       const bool is_idle = step.next - data_ > timing_.paced(kWmr300HeartbeatEvery) / 2;
       return !decode::hid::is_wmr300_identity(packet) || !is_idle ||
              exchange.send(decode::hid::encode_wmr300_begin(packet));

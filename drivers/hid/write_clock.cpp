@@ -22,7 +22,7 @@ bool WriteClock::happened_between(MonoTime from, MonoTime to) {
 }
 
 WriteClock::Window WriteClock::window_before(MonoTime time) const {
-  // Rounded down also where the window lies ahead.
+  // Rounded down even if the window lies ahead.
   Nanoseconds since = time - window_->from;
   std::int64_t periods = since / period_;
   if (since < Nanoseconds::zero() && since % period_ != Nanoseconds::zero()) --periods;

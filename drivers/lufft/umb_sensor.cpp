@@ -15,9 +15,9 @@ using decode::Refusal;
 constexpr Nanoseconds kMaxRead = 200ms;
 /// A reply that is later than this is not expected any more.
 constexpr Nanoseconds kLatestReply = 2s;
-/// After so many requests without a reply the port is opened again.
+/// After this many requests without a reply the port is reopened.
 constexpr int kVainRequests = 4;
-/// Without a reading for so long, or for so many intervals, something is wrong.
+/// Without a reading for this time, or for this many intervals, something is wrong.
 constexpr Nanoseconds kPatience = 3s;
 constexpr int kPatientIntervals = 3;
 constexpr int kForgottenBlocks = 16;
@@ -191,7 +191,7 @@ Result<void, Failure> UmbSensor::give_up_reply(MonoTime now, sensor::SensorSink&
     const std::string trouble = trouble_.empty() ? silence_trouble() : trouble_;
     refuse(Refusal::kTimeout, trouble, sink);
   }
-  if (++vain_requests_ >= kVainRequests) return Failure{trouble_ + ": reopening it"};
+  if (++vain_requests_ >= kVainRequests) return Failure{trouble_ + "; reopening it"};
   return {};
 }
 

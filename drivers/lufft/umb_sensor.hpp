@@ -20,7 +20,7 @@ struct UmbSettings {
   Nanoseconds response_timeout{};  ///< at most the poll interval
 };
 
-/// The values of kUmbDriver's parameters. Throws std::runtime_error where they cannot work together.
+/// The values of kUmbDriver's parameters. Throws std::runtime_error if they cannot work together.
 UmbSettings umb_settings_of(const ParameterValues& values);
 
 /// A device of Lufft's that is asked for its channels, again and again.

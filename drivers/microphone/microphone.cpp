@@ -112,7 +112,7 @@ std::vector<double> parse_faces(const std::string& text) {
   return faces_deg;
 }
 
-/// Throws where they cannot work together.
+/// Throws if they cannot work together.
 MicrophoneSettings settings_of(const MicrophoneKeys& keys, const MicLevelSettings& level, std::size_t channels) {
   MicrophoneSettings settings = keys.settings;
   MicEstimatorOptions& estimator = settings.estimator;

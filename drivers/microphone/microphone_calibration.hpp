@@ -23,7 +23,7 @@ struct MicLevelSettings {
 /// The driver's parameters of these, from band_low to noise_floor.
 std::span<const Parameter> mic_level_parameters();
 
-/// Their values: a curve where one is given, else the power law; a gain of 0 (not calibrated) is taken for
+/// Their values: a curve if one is given, otherwise the power law; a gain of 0 (not calibrated) is taken for
 /// MicPowerLaw's own. Throws std::runtime_error for a curve that is none.
 MicLevelSettings mic_level_settings_of(const ParameterValues& values);
 

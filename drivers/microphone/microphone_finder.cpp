@@ -80,7 +80,7 @@ void add_forbidden(std::vector<sensor::FoundDevice>& found) {
 std::string microphone_worker_program() {
   std::error_code failure;
   const fs::path own = fs::read_symlink("/proc/self/exe", failure);
-  // The link goes on leading to this very program where an update has put another in its place.
+  // The link still leads to this program after an update has put another in its place.
   if (own.filename() == kProgram || own.filename() == fmt::format("{} (deleted)", kProgram)) return "/proc/self/exe";
   const fs::path beside = own.parent_path() / kProgram;
   if (access(beside.c_str(), X_OK) == 0) return beside;

@@ -11,8 +11,8 @@ namespace {
 /// A time stamp farther than this from now is of another clock, or wrong.
 constexpr Nanoseconds kBelievableAge = std::chrono::seconds(5);
 
-/// A worker that does not start in time has so many times longer at last: the machine may be slow.
-constexpr int kMaxPatience = 8;
+/// A worker that does not start in time gets up to this many times longer: the machine may be slow.
+constexpr int kMostPatience = 8;
 
 }  // namespace
 
@@ -122,7 +122,7 @@ void MicrophoneSensor::take(const decode::microphone::MicBlock& block, const Ins
 void MicrophoneSensor::publish(const decode::microphone::MicEstimate& estimate,
                                const decode::microphone::MicBlock& block, const Instant& now,
                                sensor::SensorSink& sink) {
-  // The block's stamp is of the system's monotonic clock; it is only used where that can be ours.
+  // The block's stamp is of the system's monotonic clock; it is used only if that can be ours.
   const MonoTime end{Nanoseconds(block.end_mono_ns)};
   const bool is_ours = end <= now.mono && now.mono - end < kBelievableAge;
   const Nanoseconds age =

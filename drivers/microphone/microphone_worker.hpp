@@ -20,8 +20,8 @@ struct MicWorkerOptions {
 /// (drivers/decode/microphone/mic_frame.hpp) to `output`, until the reader closes it, the device stops, or `is_over`.
 /// After an error it ends soon and reports why: restarting the process is the only reliable recovery of PortAudio.
 ///
-/// Blocks. Returns true if it was told to end, false if the microphone failed (a trouble frame has the reason). The
-/// caller then ends the process without destroying `input`, whose library may hang.
+/// Blocks. Returns true if it was stopped, false if the microphone failed (a trouble frame has the reason). The caller
+/// then ends the process without destroying `input`, whose library may hang.
 bool run_microphone_worker(const MicWorkerOptions& options, bus::AudioInput& input, const sensor::Clock& clock,
                            int output, const std::atomic<bool>& is_over);
 

@@ -146,7 +146,7 @@ bus::ModbusLine line_of(const ModbusKeys& keys, const ModbusProfile& profile) {
   return line;
 }
 
-/// The separate line of the vane; nullptr where it has none.
+/// Returns the separate line of the vane; nullptr if it has none.
 std::shared_ptr<ModbusBus> direction_bus_of(const ModbusKeys& keys, const ModbusProfile& profile,
                                             const bus::ModbusLine& line) {
   if (keys.direction_device.empty()) return nullptr;
@@ -201,7 +201,7 @@ sensor::ValueSelection modbus_selection(const ParameterValues& values) {
                      .value = fmt::format("function {}, register {}", profile.speed.function, profile.speed.address)}}};
 }
 
-/// Every profile that can be found by name. One that cannot be read says why.
+/// Returns every profile that can be found by name; for one that cannot be read, the reason.
 std::vector<sensor::KnownDevice> known_modbus_devices() {
   std::vector<sensor::KnownDevice> devices;
   for (const std::string& name : modbus_profile_names("")) {

@@ -13,8 +13,8 @@
 namespace yuragi::drivers::modbus {
 namespace {
 
-/// A connection that was dropped silently looks like a slow device: after so many requests in a row without a reply it
-/// is assumed lost.
+/// A connection that was dropped silently looks like a slow device: after this many requests in a row without a reply
+/// it is assumed lost.
 constexpr int kSilentRequestsBeforeReopen = 3;
 
 ModbusTrouble trouble(ModbusTrouble::Kind kind) {

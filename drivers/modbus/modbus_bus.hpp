@@ -47,7 +47,7 @@ class ModbusBus {
   const std::string& where() const noexcept { return where_; }
   decode::modbus::ModbusFraming framing() const noexcept { return line_.framing; }
 
-  /// Can sensors with these settings share it? The failure's text says what differs.
+  /// Can sensors with these settings share it? The failure's text is what differs.
   Result<void, Failure> suits(const bus::ModbusLine& line) const;
 
   /// Sets the least time from a reply to the next request of any sensor; the longest of all calls holds.
@@ -100,7 +100,7 @@ class ModbusBus {
 };
 
 /// The bus of that line: the existing one, if another sensor has it, or a new one. A serial port is identified by the
-/// device that its name links to. Throws std::runtime_error where it is in use with another baud rate, parity or number
+/// device that its name links to. Throws std::runtime_error if it is in use with another baud rate, parity or number
 /// of stop bits. Thread-safe: yes.
 std::shared_ptr<ModbusBus> shared_modbus_bus(const bus::ModbusLine& line);
 

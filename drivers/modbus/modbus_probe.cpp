@@ -25,7 +25,7 @@ constexpr std::array kKnocks = {decode::modbus::ModbusRequest{.function = 3, .ad
 /// Below this a value counts as 0: a float that is read in a wrong order of words can be 1e-40.
 constexpr double kMinLive = 0.005;
 
-/// From so many m/s on the wind has 1, 2, ... 12 Beaufort (WMO No. 306, code table 1100).
+/// The speeds, m/s, from which the wind has 1, 2, ... 12 Beaufort (WMO No. 306, code table 1100).
 constexpr std::array kBeaufortFrom_m_s = {0.3, 1.6, 3.4, 5.5, 8.0, 10.8, 13.9, 17.2, 20.8, 24.5, 28.5, 32.7};
 
 bool has_side_effects(const ModbusProfile& profile) {
@@ -36,7 +36,7 @@ bool has_side_effects(const ModbusProfile& profile) {
          });
 }
 
-/// The device's own force, and what it says of the speed. Devices round, and average, in ways of their own.
+/// Compares the device's own wind force with the speed. Devices round and average in different ways.
 void judge_by_force(const ModbusProfile& profile, const Registers& reply, ModbusFit& fit) {
   if (!reply || !fit.speed_m_s) return;
   const auto force = decode::modbus::decode_number(*profile.beaufort, reply->span());
@@ -64,7 +64,7 @@ bool has_one_slave(const ModbusProfile& profile) {
   return !profile.direction || profile.direction->slave == profile.speed.slave;
 }
 
-/// Stop bits make no difference here: whoever sends two is heard by those who expect one, and the other way round.
+/// Stop bits make no difference here: a device that sends two is understood by one that expects one, and vice versa.
 bool is_home_of(const bus::ModbusLine& line, const ModbusProfile& profile) {
   return line.framing == decode::modbus::ModbusFraming::kTcp ||
          (line.baud == profile.baud && line.parity == profile.parity);
@@ -81,7 +81,7 @@ class ProbedLine {
 
   Result<void, Failure> open() { return connection_->open(interruption_); }
 
-  /// The registers, or what was wrong with the reply; kTimeout where there was none.
+  /// The registers, or what was wrong with the reply; kTimeout if there was none.
   Registers cached_exchange(const decode::modbus::ModbusRequest& request) {
     const auto key = std::tuple(request.unit, request.function, request.address, request.count);
     if (const auto known = replies_.find(key); known != replies_.end()) return known->second;
@@ -333,7 +333,7 @@ std::string sensor_table_for(const std::string& name, const bus::ModbusLine& lin
       table += fmt::format("parity = \"{}\"\n", line.parity == 'N' ? "none" : line.parity == 'E' ? "even" : "odd");
     }
   }
-  // Whatever else is on the slave of the speed follows it.
+  // All other quantities of that slave follow it.
   if (fit.speed_slave != profile.speed.slave) table += fmt::format("speed_slave = {}\n", fit.speed_slave);
   return table;
 }

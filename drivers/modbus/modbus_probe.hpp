@@ -27,9 +27,9 @@ struct ModbusProbePlan {
   bool tries_all_lines = false;  ///< continue after a line on which a slave replied
 };
 
-/// What the device's own wind force says of the speed that a profile reads.
+/// The device's own wind force, compared with the speed that a profile reads.
 enum class ForceVerdict : std::uint8_t {
-  kNone,         ///< there is none, or it is 0: nothing can be said
+  kNone,         ///< there is none, or it is 0: no comparison
   kAgrees,       ///< they are the same, to within one Beaufort
   kContradicts,  ///< the profile's scale is wrong
 };
@@ -49,19 +49,19 @@ struct ModbusFit {
   bool is_at_home = false;  ///< line settings and ids are those of the profile itself
 };
 
-/// Is anything but 0 in it? A profile of another device often reads zeros.
+/// Has it any value except 0? A profile of another device often reads zeros.
 bool is_live(const ModbusFit& fit);
 
 /// A slave that replied.
 struct ModbusHit {
   bus::ModbusLine line;
   std::uint8_t id = 0;
-  /// The best first: those that read anything but zeros, those that the device's own wind force does not contradict,
-  /// those with most quantities, those with factory settings. None: a device that no profile knows. One half of a pair
-  /// only where nothing else fits.
+  /// The best first: those that read more than zeros, those that the device's own wind force does not contradict, those
+  /// with most quantities, those with factory settings. None: a device that no profile knows. One half of a pair only
+  /// if nothing else fits.
   std::vector<ModbusFit> fits;
-  /// The best of them and these read the same register with different scales, and the device says nothing by which to
-  /// tell who is right: the names of the profiles, the best one's first. Empty: there is no such doubt.
+  /// The names of the profiles, the best first, that read the same register with different scales, if the device does
+  /// not show which is right. Empty: there is no such doubt.
   std::vector<std::string> scale_doubts;
 };
 

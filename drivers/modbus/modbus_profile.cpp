@@ -264,7 +264,7 @@ decode::modbus::ModbusQuantity read_direction(TableReader reader, std::int64_t a
   return direction;
 }
 
-/// A number without a unit, or whose name tells it.
+/// Reads a number without a unit, or with the unit in its name.
 decode::modbus::ModbusQuantity read_number(TableReader reader, std::int64_t address_base) {
   decode::modbus::ModbusQuantity quantity = read_quantity(reader, address_base);
   reader.finish();

@@ -17,8 +17,9 @@ namespace yuragi::drivers::modbus {
 /// The rates that a serial line may have, bit/s.
 inline constexpr std::array<std::int64_t, 8> kModbusBauds = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 
-/// Who says that a register map is right, from strong to weak: bytes that a real device sent, the maker's own document,
-/// a program that its users run with the device, a seller's text. The texts are those of profiles; drivers/SOURCES.md.
+/// Who confirms that a register map is right, from strong to weak: bytes that a real device sent, the maker's own
+/// document, a program that its users run with the device, a seller's text. The texts are those of profiles;
+/// drivers/SOURCES.md.
 enum class ProfileEvidence : std::uint8_t { kRecording, kMaker, kDecoder, kSeller };
 inline constexpr std::array<std::string_view, 4> kProfileEvidenceNames = {"recording", "maker", "decoder", "seller"};
 
@@ -34,8 +35,8 @@ struct ModbusProfile {
   std::string name;    ///< of the device, for people
   std::string source;  ///< the document with its register map
   std::vector<ProfileEvidence> confirmed_by;
-  std::string unconfirmed;  ///< what nobody confirms, for people; empty: nothing
-  std::string revision;     ///< of the device or its firmware, where the map differs among them
+  std::string unconfirmed;  ///< what nobody confirms, for people; empty: all is confirmed
+  std::string revision;     ///< of the device or its firmware, if the map differs among them
 
   bool is_serial = true;  ///< its native transport; a serial device can also be reached over TCP, through a gateway
   int baud = 9600;

@@ -120,7 +120,7 @@ Result<MonoTime, Failure> ModbusSensor::read_first(const sensor::Clock& clock, s
 }
 
 void ModbusSensor::read_more(Read& read, const sensor::Clock& clock, sensor::SensorSink& sink) {
-  // The vane's own line, where it has one, is opened here; without it there is no direction.
+  // The vane's own line, if it has one, is opened here; without it there is no direction.
   if (const auto opened = read.bus->open(interruption_, clock); !opened) {
     read.trouble = without(profile_, read.what) + ": " + opened.error().message;
     read.not_before = clock.now().mono + read.backoff.next();

@@ -21,11 +21,11 @@ namespace yuragi::drivers::modbus {
 /// waits that double from 0.25 s up to 10 s, until the next valid reply.
 ///
 /// The station's other quantities are published once in the profile's `quantities_interval`. Those that stand beside
-/// the wind come along with it; the others are asked for in that round, after its wind has been published, and, where
-/// no valid reply comes, after waits that double up to 10 minutes.
+/// the wind come along with it; the others are asked for in that round, after its wind has been published, and, if no
+/// valid reply comes, after waits that double up to 10 minutes.
 class ModbusSensor final : public sensor::ReopeningSensor {
  public:
-  /// `direction_bus`: the vane's own line; nullptr where it is on the same. `seed` makes the waits of several sensors
+  /// `direction_bus`: the vane's own line; nullptr if it is on the same. `seed` makes the waits of several sensors
   /// differ.
   ModbusSensor(ModbusProfile profile, std::shared_ptr<ModbusBus> bus, const std::shared_ptr<ModbusBus>& direction_bus,
                std::uint32_t seed);

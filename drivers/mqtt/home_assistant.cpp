@@ -17,10 +17,10 @@ namespace {
 
 using Announcement = nlohmann::json;
 
-/// Longer texts are nobody's names and topics, and would fill the list.
-constexpr std::size_t kMaxAnnouncedText = 200;
+/// Longer texts are not names or topics, and would fill the list.
+constexpr std::size_t kLongestAnnouncedText = 200;
 
-/// The text under that key, or under its abbreviation; empty where there is none, or no printable one.
+/// The text under that key, or under its abbreviation; empty if there is none, or no printable one.
 std::string text_of(const Announcement& announcement, const char* key, const char* abbreviation) {
   for (const char* const name : {key, abbreviation}) {
     const auto found = announcement.find(name);
@@ -33,7 +33,7 @@ std::string text_of(const Announcement& announcement, const char* key, const cha
   return "";
 }
 
-/// The object under that key, or under its abbreviation; an empty one where there is none.
+/// The object under that key, or under its abbreviation; an empty one if there is none.
 Announcement object_of(const Announcement& announcement, const char* key, const char* abbreviation) {
   for (const char* const name : {key, abbreviation}) {
     const auto found = announcement.find(name);
@@ -62,8 +62,8 @@ std::optional<AnnouncedKind> kind_of(const std::string& device_class, const std:
   return says(label, {"gust", "max"}) ? AnnouncedKind::kGust : AnnouncedKind::kSpeed;
 }
 
-/// Where a template takes the value from, as a JSON pointer; nothing for one that does more than that. Rounding and
-/// making it a number change nothing that matters.
+/// Returns where a template takes the value from, as a JSON pointer; nullopt for one that does more than that. Rounding
+/// and conversion to a number are accepted.
 std::optional<std::string> pointer_of_template(const std::string& text) {
   static const std::regex kPath(
       R"(^\{\{\s*(value|value_json((?:\.[A-Za-z_]\w*|\[\s*(?:'[^'\]]+'|"[^"\]]+"|\d+)\s*\])+))\s*)"
@@ -92,7 +92,7 @@ std::string with_base(std::string topic, const std::string& base) {
   return topic;
 }
 
-/// What an announcement says, of `sensor`, which is all of it or one of its components.
+/// Returns the value that an announcement describes for `sensor`, which is all of it or one of its components.
 std::optional<AnnouncedValue> value_of(const Announcement& all, const Announcement& sensor, const std::string& path) {
   const auto text = [&](const char* key, const char* abbreviation) {
     const std::string own = text_of(sensor, key, abbreviation);

@@ -29,14 +29,13 @@ struct AnnouncedValue {
   bool operator==(const AnnouncedValue&) const = default;
 };
 
-/// What one announcement says of the wind, by its device_class (wind_speed, wind_direction), or where its name has
-/// "wind" in it and its unit is one of speed, or the degree; nothing where it is about something else, or no
-/// announcement. A speed is a gust where its name says so ("gust", "max"). Never throws for any bytes. Thread-safe:
-/// yes.
+/// Returns the values of the wind in one announcement, by its device_class (wind_speed, wind_direction), or if its name
+/// contains "wind" and its unit is one of speed, or the degree; empty if it is about something else, or not an
+/// announcement. A speed is a gust if its name contains "gust" or "max". Never throws for any bytes. Thread-safe: yes.
 std::vector<AnnouncedValue> announced_in(std::string_view topic, std::string_view payload);
 
 /// The anemometers among them: one for each speed, with the direction and the gust of the same device. `broker` are the
-/// lines of TOML that say how to reach it.
+/// lines of TOML to reach it.
 std::vector<sensor::FoundDevice> announced_anemometers(std::span<const AnnouncedValue> values,
                                                        const std::string& broker);
 

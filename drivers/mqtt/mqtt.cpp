@@ -1,6 +1,6 @@
-// Wind that somebody publishes on an MQTT broker (OASIS, "MQTT Version 3.1.1", 2014): a home's weather station, a
-// gateway, a microcontroller. Speed, direction and gust may come in one JSON message or each on a topic of its own.
-// Common publishers have a preset (mqtt_preset.cpp), which single settings override.
+// Wind that is published on an MQTT broker (OASIS, "MQTT Version 3.1.1", 2014): a home's weather station, a gateway, a
+// microcontroller. Speed, direction and gust may come in one JSON message or each on a topic of its own. Common
+// publishers have a preset (mqtt_preset.cpp), which single settings override.
 //
 // A retained message was kept by the broker for later subscribers: its age is unknown, and it is never taken for the
 // live wind.
@@ -39,7 +39,7 @@ constexpr std::array<std::string_view, 6> kMqttUnits = {"preset", "m/s", "km/h",
 /// One place in a message where a quantity can stand.
 struct MqttPlace {
   std::string pointer;             ///< a JSON pointer; empty: the payload is the number
-  std::optional<double> factor{};  ///< of a speed to m/s, where the key says its unit; nothing: unit_of() the message
+  std::optional<double> factor{};  ///< of a speed to m/s, if the key has its unit; nullopt: unit_of() the message
 
   bool is_json() const noexcept { return !pointer.empty(); }
 };
@@ -58,8 +58,8 @@ struct MqttSettings {
   MqttSource direction;
   MqttSource gust;
   StationIdentity station;         ///< which ones are read
-  double metres_per_second = 1.0;  ///< where the message does not say it
-  bool has_own_unit = false;       ///< it was set, and holds also where the message's unit is not known
+  double metres_per_second = 1.0;  ///< if the message does not have it
+  bool has_own_unit = false;       ///< it was set, and also holds if the message's unit is unknown
   Nanoseconds hold = std::chrono::seconds(60);
   Nanoseconds silence = std::chrono::minutes(15);
 };
@@ -170,7 +170,7 @@ struct HeldValue {
   MonoTime since{};
 };
 
-/// A text of somebody else's as the status can show it.
+/// Makes a received text printable for the status.
 std::string shown(const std::string& text) {
   std::string printable = text;
   make_printable(printable);
@@ -185,7 +185,7 @@ PayloadForm form_of(const MqttSettings& settings) {
   return PayloadForm::kText;
 }
 
-/// The first of the source's places that the message has; nullptr where it has none.
+/// Returns the first of the source's places that the message has; nullptr if it has none.
 const MqttPlace* place_in(const Payload& payload, const MqttSource& source) {
   const auto place =
       std::ranges::find_if(source.places, [&](const auto& each) { return !payload.lacks(each.pointer); });
@@ -278,7 +278,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
     return has_wind ? stations_.offer(station, now) : stations_.is_read(station);
   }
 
-  /// The factor to m/s of this message's speeds; kInvalid where it says a unit that is not known, and none is set.
+  /// Returns the factor to m/s of this message's speeds; kInvalid if its unit is unknown, and none is set.
   Result<double, decode::Refusal> unit_of(const Payload& payload) {
     if (settings_.preset->unit_pointer.empty()) return settings_.metres_per_second;
     const auto word = payload.text_at(std::string(settings_.preset->unit_pointer));
@@ -289,8 +289,8 @@ class MqttSensor final : public sensor::ReopeningSensor {
     return decode::Refusal::kInvalid;
   }
 
-  /// A direction or gust, as this message says it: without a value where that cannot be read, or is said to be
-  /// unknown; nothing where the message has no place for it.
+  /// Returns a direction or gust of this message: without a value if that cannot be read, or is sent as unknown;
+  /// nullopt if the message has no place for it.
   std::optional<HeldValue> said_in(const MqttSource& source, const std::string& topic, const Payload& payload,
                                    double unit, MonoTime now, sensor::SensorSink& sink) const {
     if (!bus::mqtt_topic_matches(topic, source.topic)) return std::nullopt;
@@ -366,7 +366,7 @@ class MqttSensor final : public sensor::ReopeningSensor {
   HeldValue gust_;              // m/s
   bool is_impossible_ = false;  // the last direction was none
   StationChoice stations_;
-  std::string note_;  // what keeps messages from being read, as the status says it; empty: nothing does
+  std::string note_;  // why messages cannot be read, for the status; empty: they can
   sensor::ReadingLimit limit_;
   bool has_received_ = false;  // of the wind, since it connected
   MonoTime received_at_{};     // or since when it could have
@@ -387,8 +387,8 @@ void check_source(std::string_view name, const MqttSource& source) {
   }
 }
 
-/// The places of a quantity: the one that is set, or the preset's. Of a speed a known key says the unit, unless
-/// `own_unit` was set with the path.
+/// Returns the places of a quantity: the one that is set, or the preset's. A known key of a speed gives its unit,
+/// unless `own_unit` was set with the path.
 std::vector<MqttPlace> places_of(const std::string& path, std::span<const PresetPlace> known, bool has_own_unit) {
   std::vector<MqttPlace> places;
   for (const PresetPlace& place : known) {

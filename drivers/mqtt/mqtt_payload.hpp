@@ -25,19 +25,20 @@ class Payload {
   /// `bytes` must outlive it. Never throws for any bytes.
   explicit Payload(std::string_view bytes, PayloadForm form = PayloadForm::kJson);
 
-  /// Is it JSON that does not have the place? Payloads that are not JSON lack none: whether they can be read,
-  /// number_at() says.
+  /// Is it JSON that does not have the place? Payloads that are not JSON lack none: number_at() finds whether they can
+  /// be read.
   bool lacks(const std::string& pointer) const;
 
-  /// The number at that place; nothing where a JSON payload does not have the place, or has null there. Text that reads
-  /// as a number counts as one, in JSON too. kInvalid: a text that stands for no value, as Home Assistant sends it
-  /// (unavailable, unknown, none, an empty payload). kMalformed: not JSON, or something else there.
+  /// Returns the number at that place; nullopt if a JSON payload does not have the place, or has null there. Text that
+  /// reads as a number counts as one, in JSON too. kInvalid: a text that stands for no value, as Home Assistant sends
+  /// it (unavailable, unknown, none, an empty payload). kMalformed: not JSON, or something else there.
   Result<std::optional<double>, decode::Refusal> number_at(const std::string& pointer) const;
 
-  /// The text at that place, or a whole number as text, as identifiers are sent; nothing where neither is there.
+  /// Returns the text at that place, or a whole number as text, because identifiers are sent so; nullopt if it has
+  /// neither.
   std::optional<std::string> text_at(const std::string& pointer) const;
 
-  /// All of it; discarded (is_discarded()) where it is not JSON.
+  /// All of it; discarded (is_discarded()) if it is not JSON.
   const nlohmann::json& json() const noexcept { return json_; }
 
  private:

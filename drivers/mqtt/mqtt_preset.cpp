@@ -1,4 +1,4 @@
-// Where known publishers say the wind.
+// Where the messages of known publishers have the wind.
 //
 //   preset     topic               speed                   direction        gust                    unit
 //   number     (yours, one each)   the payload is the number                                        m/s

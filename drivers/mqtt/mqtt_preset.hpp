@@ -13,21 +13,21 @@ namespace yuragi::drivers::mqtt {
 /// One place in the messages of a publisher where a quantity can stand.
 struct PresetPlace {
   std::string_view pointer;  ///< a JSON pointer
-  std::string_view unit;     ///< of a speed, as its key says it; empty: as in MqttPreset::unit
+  std::string_view unit;     ///< of a speed, by its key; empty: as in MqttPreset::unit
 };
 
-/// What is known of a publisher: where it says the wind, and in which unit. Of several places for one quantity the
-/// first that a message has counts.
+/// What is known of a publisher: where its messages have the wind, and in which unit. Of several places for one
+/// quantity the first that a message has counts.
 struct MqttPreset {
   std::string_view name;
   std::string_view topic;  ///< empty: it is up to the user
   std::span<const PresetPlace> speed = {};
   std::span<const PresetPlace> direction = {};
   std::span<const PresetPlace> gust = {};
-  std::string_view unit;               ///< of speed and gust, where neither their key nor the message says it
-  std::string_view unit_pointer = {};  ///< where a message says the unit; empty: nowhere
-  bool names_stations = false;         ///< a message says which of several stations sent it (StationIdentity)
-  /// What a message says besides the wind; nullptr: nothing is known of that.
+  std::string_view unit;               ///< of speed and gust, if neither their key nor the message has it
+  std::string_view unit_pointer = {};  ///< where a message has the unit; empty: nowhere
+  bool names_stations = false;         ///< a message names which of several stations sent it (StationIdentity)
+  /// Returns the other quantities in a message; nullptr: none are known.
   std::optional<wind::StationQuantities> (*quantities)(const Payload& payload) = nullptr;
 };
 

@@ -31,7 +31,7 @@ std::optional<wind::StationQuantities> unless_empty(const wind::StationQuantitie
   return has_any ? std::optional(quantities) : std::nullopt;
 }
 
-/// The number under that key in the one sensor of a Tasmota that has it; nothing where two have.
+/// Returns the number under that key in the one sensor of a Tasmota that has it; nullopt if two have it.
 std::optional<double> of_the_only_sensor(const nlohmann::json& message, const char* key) {
   constexpr std::string_view kChip = "ESP32";
   std::optional<double> found;

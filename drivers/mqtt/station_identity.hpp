@@ -8,8 +8,8 @@
 
 namespace yuragi::drivers::mqtt {
 
-/// Which station sent a message, as rtl_433 says it (merbanan/rtl_433, its document of data fields): numbers as text.
-/// Empty: not told, or, where a station is looked for, any. The id of many stations changes with their batteries.
+/// The station that sent a message, in rtl_433's data fields (merbanan/rtl_433): numbers as text. Empty: not sent, or,
+/// to select a station, any. The id of many stations changes with their batteries.
 struct StationIdentity {
   std::string model;    ///< "Acurite-5n1"
   std::string id;       ///< "115", "0a003b"
@@ -42,7 +42,7 @@ class StationChoice {
   /// The connection was opened again: it begins anew.
   void restart() noexcept;
 
-  /// What a person should know: another station has been heard within that time; empty: none has.
+  /// Returns a warning if another station has been received within that time; empty: none has.
   std::string warning(MonoTime now) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace yuragi::drivers::network {
 
-/// The gateways that answer within the search's time. Throws FailureError where nobody can be asked.
+/// The gateways that answer within the search's time. Throws FailureError if nobody can be asked.
 std::vector<sensor::FoundDevice> find_ecowitt_gateways(const sensor::NetworkSearch& search);
 
 }  // namespace yuragi::drivers::network

@@ -1,13 +1,13 @@
 // Weather stations that push their values to a server of the user's choosing: gateways and consoles by Fine Offset
-// (Ecowitt, Froggit, Ambient Weather and their other names) with a "customized" upload, and whatever else speaks the
+// (Ecowitt, Froggit, Ambient Weather and their other names) with a "customized" upload, and all others that use the
 // protocol of Weather Underground (drivers/SOURCES.md S9.3). This is the server.
 //
 //   POST /data/report/                                      a form as the body                   Ecowitt
 //   GET  /weatherstation/updateweatherstation.php?ID=...    a form behind the question mark      Weather Underground
 //   GET  /data/report/?PASSKEY=...                          the same                             Ambient Weather
 //
-// Both kinds are taken at any path, unless one is set. What is taken is answered with 200; an answer from 400 on says
-// in one line what is wrong. Who may send is a choice, as nothing in a push proves whose it is.
+// Both kinds are accepted at any path, unless one is set. An accepted push gets the answer 200; an answer from 400 on
+// has one line about what is wrong. The user sets who may send, because nothing in a push proves its sender.
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
@@ -110,7 +110,7 @@ struct EcowittPushSettings {
   bool is_for_this_machine = true;
 };
 
-/// A push that is refused: why, and what the station is told.
+/// A refused push: why, and the answer to the station.
 struct PushRefusal {
   decode::Refusal why;
   HttpAnswer answer;
@@ -201,7 +201,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     sensor::SensorSink& sink_;
   };
 
-  /// Nothing: it is taken.
+  /// Returns nullopt if it is accepted.
   std::optional<PushRefusal> take(const HttpRequest& request, const Instant& now, sensor::SensorSink& sink) {
     using decode::Refusal;
     if (!limit_.admits(now.mono)) return PushRefusal{Refusal::kTooFrequent, {429, "too many pushes"}};
@@ -214,7 +214,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
     const std::string shown = decode::network::without_push_secrets(form);
     sink.raw(sensor::RawDirection::kReceived, {reinterpret_cast<const std::uint8_t*>(shown.data()), shown.size()});
     const std::string sender = bus::plain_address(request.sender).to_string();
-    // A page of anybody, open in a browser of this network, can have it push.
+    // Any web page that is open in a browser of this network can make the browser push.
     if (request.is_of_browser) {
       trouble_ = "refuses pushes of a web browser at " + sender;
       return PushRefusal{Refusal::kNotMine, {403, "browsers are refused"}};
@@ -304,7 +304,7 @@ class EcowittPushSensor final : public sensor::ReopeningSensor {
   bool is_silent_ = true;
 };
 
-/// Throws, naming the setting, where they cannot work together.
+/// Throws, naming the setting, if they cannot work together.
 EcowittPushSettings ecowitt_push_settings_of(const ParameterValues& values) {
   const EcowittPushKeys keys = kEcowittPushFields.of(values);
   EcowittPushSettings settings;

@@ -7,7 +7,7 @@
 
 namespace yuragi::drivers::network {
 
-/// Whose wind is taken where more than one station is heard: the configured station's, or that of the first one that is
+/// Whose wind is taken if more than one station is received: the configured station's, or that of the first one that is
 /// heard, until it has been silent for long. Thread-safe: no.
 class FollowedStation {
  public:
@@ -21,7 +21,8 @@ class FollowedStation {
   /// The one that is followed has been silent for too long: without a configured one the next that speaks is followed.
   void lose();
 
-  /// The name of another one, where none is configured and another one has been heard in the last minutes; empty: none.
+  /// Returns the name of another one, if none is configured and another one has been received in the last minutes;
+  /// empty: none.
   std::string rival(MonoTime now) const;
 
  private:

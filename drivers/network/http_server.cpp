@@ -53,9 +53,9 @@ class Visit {
 
 }  // namespace
 
-/// One client: its request is read, answered, and whatever it still sends is read and dropped until it closes, as
-/// closing before it does would take the answer from it. All of it within the limit of time, which the stream keeps.
-/// Kept alive by what it waits for.
+/// One client: its request is read and answered; all that it still sends is read and dropped until it closes, because
+/// closing first could destroy the answer. All of this happens within the stream's time limit. Its pending handlers
+/// keep it alive.
 class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(HttpServer& server, tcp::socket socket, const boost::asio::ip::address& sender)
@@ -101,7 +101,7 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
       return reply(answer);
     }
     if (error == beast::error::timeout) return service->failed(HttpFailure::kTooSlow, sender_);
-    if (error == http::error::end_of_stream) return;  // it said nothing: somebody looked whether the port is open
+    if (error == http::error::end_of_stream) return;  // it sent nothing: a check whether the port is open
     if (error == http::error::partial_message) {
       service->failed(HttpFailure::kCutOff, sender_);
       return reply({.status = 400, .text = "the request is cut off"});
@@ -204,7 +204,7 @@ void HttpServer::close() noexcept {
     if (const auto connection = weak.lock()) connection->end();
   }
   connections_.clear();
-  // What waited is told that nothing will come, and lets its connection go.
+  // Pending handlers are cancelled, and release their connections.
   context_.restart();
   context_.poll();
 }

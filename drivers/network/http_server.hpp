@@ -63,8 +63,8 @@ struct HttpLimits {
 };
 
 /// A small server of HTTP/1.0 and 1.1, one request for each connection. It does its work within serve() alone, on the
-/// caller's thread, and holds at most HttpLimits of memory and time for whoever connects: where more connect than it
-/// takes, the oldest connection gives way to the new one, so that those that say nothing cannot keep others out.
+/// caller's thread, and holds at most HttpLimits of memory and time for its clients: if more connect than it takes, the
+/// oldest connection gives way to the new one, so that silent ones cannot keep others out.
 ///
 /// Thread-safe: interrupt() alone; everything else belongs to one thread.
 class HttpServer {
@@ -77,7 +77,7 @@ class HttpServer {
 
   /// Listens. The failure's text: why not, and what to do.
   Result<void, Failure> open();
-  /// Closes all connections, too. The service is not told.
+  /// Closes all connections, too, without a call of the service.
   void close() noexcept;
 
   /// While it is open: the port at which it listens.

@@ -1,8 +1,8 @@
-// The stations of WeatherFlow (Tempest; Sky before it), whose hub broadcasts what they say in the local network
-// (WeatherFlow, "Tempest UDP Reference", v171; drivers/SOURCES.md S9.1). Nothing is asked for and nothing is sent.
+// The stations of WeatherFlow (Tempest; Sky before it), whose hub broadcasts their messages in the local network
+// (WeatherFlow, "Tempest UDP Reference", v171; drivers/SOURCES.md S9.1). This driver sends nothing.
 //
-// The wind is that of `rapid_wind`, usually every 3 s: every 6 s, minute or 5 minutes where the station saves its
-// battery. A station that says none between two of its observations (each minute) gives the mean wind of those.
+// The wind is that of `rapid_wind`, usually every 3 s: every 6 s, minute or 5 minutes if the station saves its battery.
+// A station that sends none between two of its observations (each minute) gives the mean wind of those.
 #include "drivers/decode/network/tempest.hpp"
 
 #include <algorithm>
@@ -166,7 +166,7 @@ class TempestSensor final : public sensor::ReopeningSensor {
         where_, seconds(settings_.silence), settings_.port.port);
   }
 
-  /// A hub tells its own state every 10 s.
+  /// A hub sends its own state every 10 s.
   static constexpr Nanoseconds kHubPatience = std::chrono::seconds(30);
 
   TempestSettings settings_;
@@ -203,7 +203,7 @@ sensor::ValueSelection tempest_selection(const ParameterValues& values) {
 }
 
 Result<sensor::SimulatedDevice, Failure> tempest_simulated(const ParameterValues& values) {
-  std::vector<std::string> options = {"--interval", "1"};  // else it would say too little in the time that there is
+  std::vector<std::string> options = {"--interval", "1"};  // otherwise too few messages in the time available
   const std::string station = kTempestFields.of(values).serial_number;
   if (!station.empty()) options.insert(options.end(), {"--station", station});
   return sensor::simulated_sender("tempest", "--udp", values, options);

@@ -7,8 +7,8 @@
 
 namespace yuragi::drivers::network {
 
-/// The stations with a wind whose hubs are heard within the search's time; and a hub without one, as a trouble. Nothing
-/// is sent. Throws FailureError where it cannot listen.
+/// Returns the stations with a wind whose hubs are received within the search's time; a hub without one with a trouble.
+/// Sends nothing. Throws FailureError if it cannot listen.
 std::vector<sensor::FoundDevice> find_tempest_stations(const sensor::NetworkSearch& search);
 
 }  // namespace yuragi::drivers::network

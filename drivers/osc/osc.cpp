@@ -3,11 +3,11 @@
 //
 //   oscsend 127.0.0.1 9000 /wind ff 4.2 270   speed in m/s, and where it comes from in degrees
 //
-// A message proves nothing about its sender. By default only programs of this machine are heard; whoever listens to
-// others names them (`host` and `from`). No more readings are taken than sensor::ReadingLimit allows.
+// A message proves nothing about its sender. By default only programs of this machine are accepted; others must be
+// named (`host` and `from`). No more readings are taken than sensor::ReadingLimit allows.
 //
-// A bundle says for which time it is meant. Wind of the future is no wind: what is meant for later than the clocks of
-// two machines and a sender's latency explain is refused. Everything else is the wind when it comes.
+// A bundle has the time for which it is meant. One that is further in the future than the clocks of two machines and a
+// sender's latency explain is refused. Everything else is the wind when it arrives.
 //
 // Address and order of the arguments are configurable; they are numbers of any of OSC's types. An argument that is no
 // number, or missing, is an unknown value.
@@ -41,7 +41,7 @@ struct OscSettings {
   std::int64_t gust_argument = -1;
   double metres_per_second = 1.0;
   Nanoseconds silence = std::chrono::seconds(5);
-  bool speaks_on_change = false;  ///< a silence says that the wind is unchanged
+  bool speaks_on_change = false;  ///< a silence means that the wind is unchanged
 };
 
 auto of(auto member) {
@@ -197,13 +197,13 @@ class OscSensor final : public sensor::ReopeningSensor {
   std::unique_ptr<bus::BytePort> port_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(bus::kMaxDatagram);
   sensor::ReadingLimit limit_;
-  std::string strangers_;      // who was refused first, as the status says it; empty: nobody
+  std::string strangers_;      // who was refused first, for the status; empty: nobody
   std::string future_;         // how far ahead the first was that was refused for its time; empty: none
   bool has_received_ = false;  // of the wind, since it has the port
   MonoTime received_at_{};     // or since when it could have
 };
 
-/// Throws, naming the setting, where it is not said who may send.
+/// Throws, naming the setting, if it is not set who may send.
 void check_senders(const std::string& host, const std::string& from) {
   const auto is_loopback = bus::is_loopback(host);
   if (!is_loopback) throw std::runtime_error("host: " + is_loopback.error().message);

@@ -15,7 +15,7 @@ namespace yuragi::drivers::recording {
 struct PlayerOrder {
   enum class Kind : std::uint8_t { kPause, kResume, kStep, kSeek, kRate };
   Kind kind = Kind::kPause;
-  std::uint64_t count = 1;  ///< kStep: so many readings
+  std::uint64_t count = 1;  ///< kStep: this many readings
   std::string place = {};   ///< kSeek: as WindlogPlayer::seek() takes it
   double rate = 1.0;        ///< kRate: above 0
 };
@@ -23,7 +23,7 @@ struct PlayerOrder {
 /// The status of a recording that plays.
 struct PlayerReport {
   std::string file;
-  std::optional<windlog::PlayerPosition> position;  ///< nothing until it has been opened
+  std::optional<windlog::PlayerPosition> position;  ///< nullopt until it has been opened
   std::string failure = {};                         ///< why it cannot be read at present; empty: it can
   std::uint64_t orders_done = 0;                    ///< carried out or refused
   std::string refusal;                              ///< why the last order was not carried out; empty: it was
@@ -35,11 +35,11 @@ class RecordingPlayer {
  public:
   virtual ~RecordingPlayer() = default;
 
-  /// Before the first poll(): begins so many seconds of the clock early, so that what it moves has lived in its wind by
-  /// the time at which it would have begun (PlayerOptions::lead_s). Not if it begins paused.
+  /// Before the first poll(): begins this many seconds of the clock early, so that the scenes have settled in its wind
+  /// by its proper beginning (PlayerOptions::lead_s). Not if it begins paused.
   virtual void begin_early(double lead_s) = 0;
 
-  /// Queues an order and returns its number, counted from 1; nothing where the queue is full.
+  /// Queues an order and returns its number, counted from 1; nullopt if the queue is full.
   virtual std::optional<std::uint64_t> order(const PlayerOrder& order) = 0;
 
   /// As of the last poll().

@@ -16,7 +16,7 @@ class Clock {
   virtual ~Clock() = default;
   virtual Instant now() const noexcept = 0;
 
-  /// Waits until `moment` or a stop is requested, or until `changed` was notified and `is_woken` says true. `lock`
+  /// Waits until `moment` or a stop is requested, or until `changed` was notified and `is_woken` returns true. `lock`
   /// holds the mutex that guards `is_woken`. May return earlier, a second after its call, so that a clock that is set
   /// cannot put a thread to sleep for long.
   virtual void wait_until(MonoTime moment, std::unique_lock<std::mutex>& lock, std::condition_variable_any& changed,

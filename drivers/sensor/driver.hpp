@@ -29,12 +29,12 @@ class LineInUse : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A device that a driver knows by name, and who says that what the driver knows of it is right.
+/// A device that a driver knows by name, and who confirms that what the driver knows of it is right.
 struct KnownDevice {
   std::string name;    ///< in a configuration
   std::string device;  ///< for people
   std::vector<std::string_view> confirmed_by = {};
-  std::string unconfirmed = {};           ///< what nobody confirms; empty: nothing
+  std::string unconfirmed = {};           ///< what nobody confirms; empty: all is confirmed
   std::optional<StatedValue> value = {};  ///< what its speed is; nullopt: unknown
 };
 
@@ -66,24 +66,24 @@ struct DriverDescription {
   std::string_view summary;
   std::span<const Parameter> parameters;
   /// Constructs a sensor from resolved values, without touching the device: poll() does that. Throws
-  /// std::runtime_error, saying what to do, where the values contradict each other or name a missing file.
+  /// std::runtime_error, saying what to do, if the values contradict each other or name a missing file.
   std::unique_ptr<Sensor> (*open)(const ParameterValues& values);
-  /// Finds plugged-in devices that this driver can read; nullptr where nothing can be plugged in. Opens devices only
+  /// Finds plugged-in devices that this driver can read; nullptr if nothing can be plugged in. Opens devices only
   /// briefly.
   std::vector<FoundDevice> (*find)() = nullptr;
-  /// Searches the local networks for stations that it can read, for as long as the search takes; nullptr where it
-  /// cannot. Sends only what the search is for. Throws FailureError where the network cannot be searched.
+  /// Searches the local networks for stations that it can read, for as long as the search takes; nullptr if it cannot.
+  /// Sends only the search's requests. Throws FailureError if the network cannot be searched.
   std::vector<FoundDevice> (*find_in_network)(const NetworkSearch& search) = nullptr;
-  /// What a sensor of these values needs, without touching it; nullptr: nothing. The doctor looks whether it is there,
-  /// and two sensors that claim the same are refused. Does not throw, even for values that open() refuses.
+  /// Returns what a sensor of these values needs, without touching it; nullptr: nothing. The doctor checks whether it
+  /// exists, and two sensors that claim the same are refused. Does not throw, even for values that open() refuses.
   std::vector<Endpoint> (*endpoints)(const ParameterValues& values) = nullptr;
   /// Which values a sensor of these values reads, without touching its device, of values that open() takes; nullptr:
-  /// no two sensors read the same. Two sensors of the driver are refused where one's selection covers the other's.
+  /// no two sensors read the same. Two sensors of the driver are refused if one's selection covers the other's.
   ValueSelection (*selection)(const ParameterValues& values) = nullptr;
   /// The devices that it knows by name; nullptr: none.
   std::vector<KnownDevice> (*known_devices)() = nullptr;
-  /// A sensor of these values speaks on change only: for how long, s, its silence says that nothing has changed; 0, or
-  /// nullptr: it does not. A longer silence is one.
+  /// Returns for how long, s, the silence of a sensor that sends only changes means that nothing has changed; 0, or
+  /// nullptr: it sends all. A longer silence counts as silence.
   double (*unchanged_for_s)(const ParameterValues& values) = nullptr;
   /// What the readings of a sensor of these values should have, of values that open() takes: if it does not come, that
   /// is a fault. nullptr: only what has come is expected.
@@ -94,7 +94,7 @@ struct DriverDescription {
   /// How yuragi-sim plays the device of a sensor of these values, or why it does not, for a technician. A device has
   /// its factory settings, or those of the sensor's entry; never those of a profile: one with mistakes is to show.
   Result<SimulatedDevice, Failure> (*simulated)(const ParameterValues& values) = nullptr;
-  /// What a person sets at the device itself: lines of text; empty: nothing.
+  /// What a person must set at the device itself: lines of text; empty: nothing.
   std::string_view device_setup = {};
   /// It plays a recording: never to be taken for the live wind.
   bool plays_recordings = false;

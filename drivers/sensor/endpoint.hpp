@@ -31,7 +31,7 @@ struct Endpoint {
   bool is_shared = false;  ///< sensors of one driver share the claim; of a UDP port other programs, too
 };
 
-/// What a byte port connects to; nothing for a CAN bus, to which all may listen. Touches no device.
+/// Returns what a byte port connects to; empty for a CAN bus, to which all may listen. Touches no device.
 std::vector<Endpoint> endpoints_at(const bus::BytePortAddress& address);
 
 }  // namespace yuragi::drivers::sensor

@@ -8,10 +8,10 @@
 
 namespace yuragi::drivers::sensor {
 
-/// How the local networks are searched for stations: what broadcasts by itself is listened to, all else is asked.
+/// How the local networks are searched for stations: listens for those that broadcast, and asks the others.
 struct NetworkSearch {
-  Nanoseconds duration = std::chrono::seconds(12);  ///< a hub of WeatherFlow's speaks every 10 s
-  /// Ask this IPv4 address alone; empty: whoever hears broadcasts and multicasts on this machine's interfaces.
+  Nanoseconds duration = std::chrono::seconds(12);  ///< a hub of WeatherFlow sends every 10 s
+  /// Ask only this IPv4 address; empty: all that receive broadcasts and multicasts on this machine's interfaces.
   std::string to = {};
 
   // Where the protocols have them.

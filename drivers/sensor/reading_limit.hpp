@@ -7,9 +7,8 @@
 
 namespace yuragi::drivers::sensor {
 
-/// How many readings a source may publish to which others can send whatever they like, by a network: 100 a second over
-/// any length of time, and at most one second's more at once. No wind needs more, and a flood can fill neither the
-/// rings nor a recording.
+/// Limits the readings of a source to which anybody in a network can send: 100 a second over any length of time, and at
+/// most one second's more at once. No wind needs more, and a flood can fill neither the rings nor a recording.
 ///
 /// A token bucket as a meter (ITU-T I.371, "Traffic control and congestion control in B-ISDN", 2004, annex A: virtual
 /// scheduling). Thread-safe: no. Realtime-safe: yes.

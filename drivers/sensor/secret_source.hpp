@@ -8,12 +8,12 @@
 
 namespace yuragi::drivers::sensor {
 
-/// The value of an environment variable. Fails where it is not set, or empty. Thread-safe: as long as nobody changes
-/// the environment.
+/// Returns the value of an environment variable. Fails if it is not set, or empty. Thread-safe: as long as nobody
+/// changes the environment.
 Result<Secret, Failure> secret_in_environment(const std::string& variable);
 
-/// The secret of a driver's parameters NAME (itself), NAME_file and NAME_env (where it is), of which at most one is
-/// given; empty: none is. Throws std::runtime_error, naming the parameter, where it cannot be had.
+/// The secret of a driver's parameters NAME (itself), NAME_file and NAME_env (its place), of which at most one is
+/// given; empty: none is. Throws std::runtime_error, naming the parameter, if it cannot be read.
 Secret secret_of(const ParameterValues& values, const std::string& name);
 
 }  // namespace yuragi::drivers::sensor

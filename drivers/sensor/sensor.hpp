@@ -21,7 +21,7 @@ class SensorSink {
  public:
   virtual ~SensorSink() = default;
   virtual void reading(const wind::WindReading& reading) = 0;
-  /// What the station says besides the wind, for the recording. Values outside their physical range are left out.
+  /// Receives the station's other quantities, for the recording. Values outside their physical range are left out.
   virtual void quantities(const wind::StationQuantities& /*quantities*/) {}
   virtual void refused(decode::Refusal why, std::uint64_t times = 1) = 0;
   /// Called at each change, and for each failed attempt: what happened, and what to do about it.

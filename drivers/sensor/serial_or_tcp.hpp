@@ -13,7 +13,7 @@ namespace yuragi::drivers::sensor {
 // network has. Thread-safe: yes.
 
 /// Of a port that is a serial one, or else TCP: `bauds` are the rates that the device can have. Throws
-/// std::runtime_error, naming the setting and saying what to do, where they cannot work together.
+/// std::runtime_error, naming the setting and saying what to do, if they cannot work together.
 void check_serial_or_tcp(const bus::BytePortAddress& address, std::span<const int> bauds = bus::kBytePortBauds);
 
 /// The serial ports that are plugged in. Whether such a device is behind one is not known before it is opened. What

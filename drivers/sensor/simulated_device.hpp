@@ -12,7 +12,7 @@ namespace yuragi::drivers::sensor {
 /// is started, and the wind.
 struct SimulatedDevice {
   std::vector<std::string> arguments;  ///< of yuragi-sim: its subcommand, where it listens or sends to, what it plays
-  ParameterValues values;              ///< the sensor's, but for the way to the device; without its port
+  ParameterValues values;              ///< the sensor's, except the connection to the device; without its port
   std::string_view port_key = "port";  ///< which of the values is the port that the simulator reports
   double north_offset_deg = 0.0;       ///< what the driver itself adds to directions
   double speed_step_m_s = 0.1;         ///< the device rounds to it; half of it would do, all leaves room for units

@@ -7,7 +7,7 @@
 
 namespace yuragi::drivers::sensor {
 
-/// The units of speed that can be set where a message does not say one.
+/// The units of speed that can be set for messages without a unit.
 inline constexpr std::array<std::string_view, 5> kSpeedUnitNames = {"m/s", "km/h", "kn", "mph", "ft/s"};
 
 /// The factor to m/s of one of kSpeedUnitNames.

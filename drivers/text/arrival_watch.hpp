@@ -49,7 +49,7 @@ class ArrivalWatch {
     ++count_;
   }
 
-  std::array<Nanoseconds, 8> pauses_{};  // zero where there was none
+  std::array<Nanoseconds, 8> pauses_{};  // zero if there was none
   std::size_t count_ = 0;
   int outages_ = 0;
   MonoTime last_{};

@@ -13,8 +13,8 @@ namespace yuragi::drivers::text {
 /// silent device is opened again. `own` are the driver's, which come first; `delay_after_open_s` is a default.
 std::vector<Parameter> with_byte_port_parameters(std::span<const Parameter> own, double delay_after_open_s);
 
-/// The values of these, and of "interface" where a driver's transport may be "can". Throws std::runtime_error, saying
-/// what to do, where they cannot work together.
+/// The values of these, and of "interface" if a driver's transport may be "can". Throws std::runtime_error, with what
+/// to do, if they cannot work together.
 TextSensorSettings text_sensor_settings_of(const ParameterValues& values);
 
 /// Where a sensor of such values reads, as it is configured, and the endpoint that this is. Do not throw.

@@ -14,7 +14,7 @@ namespace yuragi::drivers::text {
 
 /// Which winds are taken, and how their angles are turned to north.
 struct ChosenWindSettings {
-  std::optional<WindFrame> frame;  ///< accept this frame only; nothing: the best received
+  std::optional<WindFrame> frame;  ///< accept only this frame; nullopt: the best received
   double north_offset_deg = 0.0;   ///< what to add to a direction from the device's own mark
   double variation_deg = 0.0;      ///< what to add to a direction from magnetic north
   bool comes_in_bursts = true;     ///< the first of several winds waits for a better one of the same burst
@@ -30,19 +30,19 @@ sensor::SelectedPart reference_part(const ChosenWindSettings& settings);
 /// The frame in which a direction of that reference is. Thread-safe and realtime-safe: yes.
 WindFrame frame_of_reference(decode::WindReference reference) noexcept;
 
-/// The direction from true north, as far as the settings say how the device stands; nothing where there is none.
+/// Returns the direction from true north, if the settings have the device's orientation; nullopt if there is none.
 /// Thread-safe and realtime-safe: yes.
 std::optional<double> direction_from_north_deg(const ChosenWindSettings& settings,
                                                const decode::DecodedWind& wind) noexcept;
 
-/// Makes one wind of what several sources say, each in its own frame (WindChoice), with directions from north. Speed
-/// and direction may come from different sources, in messages of their own. Thread-safe: no.
+/// Makes one wind of the messages of several sources, each in its own frame (WindChoice), with directions from north.
+/// Speed and direction may come from different sources, in messages of their own. Thread-safe: no.
 class ChosenWind {
  public:
   explicit ChosenWind(const ChosenWindSettings& settings) : settings_(settings), choice_(settings.frame) {}
 
-  /// A source has said this. Returns what to publish now: nothing where it has no speed, is another source's wind, or
-  /// is held until the first burst is over. kNotMine: not in the configured frame.
+  /// Takes a source's wind. Returns what to publish now: nullopt if it has no speed, is another source's wind, or is
+  /// held until the first burst is over. kNotMine: not in the configured frame.
   Result<std::optional<wind::WindReading>, decode::Refusal> offer(const WindChoice::Source& source,
                                                                   const decode::DecodedWind& wind, const Instant& now);
   /// The same of a source whose frame is that of its direction.

@@ -22,10 +22,10 @@ struct LineSensorSettings {
 /// The parameters of the format of a line: the driver's first ones, and the options of `yuragi decode line`.
 std::span<const Parameter> line_reading_parameters();
 
-/// Their values. Throws std::runtime_error, `name: what is wrong`, where they cannot work together.
+/// Their values. Throws std::runtime_error, `name: what is wrong`, if they cannot work together.
 decode::text::LineOptions line_options_of(const ParameterValues& values);
 
-/// The values of kLineDriver's parameters. Throws std::runtime_error where they cannot work together.
+/// The values of kLineDriver's parameters. Throws std::runtime_error if they cannot work together.
 LineSensorSettings line_sensor_settings_of(const ParameterValues& values);
 
 /// A microcontroller that prints numbers, one reading a line, without a checksum. In place of a

@@ -108,7 +108,7 @@ std::vector<std::string> sentences_of(const std::string& list) {
   return sentences;
 }
 
-/// The request of the format's devices; empty where there is none.
+/// The request of the format's devices; empty if there is none.
 std::string request_of(NmeaFormat format, const std::string& device) {
   if (format == NmeaFormat::kUmb) return device + "TR4\r";
   if (format == NmeaFormat::kFt)

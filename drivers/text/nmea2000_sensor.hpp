@@ -15,11 +15,11 @@ namespace yuragi::drivers::text {
 struct Nmea2000SensorSettings {
   TextSensorSettings text;
   decode::marine::BusLineOptions lines;
-  std::optional<std::uint8_t> address;  ///< take this device's wind only; nothing: any
+  std::optional<std::uint8_t> address;  ///< take only this device's wind; nullopt: any
   ChosenWindSettings wind = {};
 };
 
-/// The values of kNmea2000Driver's parameters. Throws std::runtime_error where they cannot work together.
+/// The values of kNmea2000Driver's parameters. Throws std::runtime_error if they cannot work together.
 Nmea2000SensorSettings nmea2000_sensor_settings_of(const ParameterValues& values);
 
 /// Wind of an NMEA 2000 bus, as a gateway or program writes it in lines, or from a CAN interface.

@@ -28,7 +28,7 @@ NmeaFormat format_by_look(std::string_view line) {
   return sentence.find(",WVP=") != std::string_view::npos ? NmeaFormat::kFt : NmeaFormat::kNmea;
 }
 
-/// Talker and sentence of a decoded line, in capitals but for other formats than NMEA's.
+/// Talker and sentence of a decoded line, in capitals for NMEA only.
 struct MessageName {
   std::string talker;
   std::string sentence;
@@ -109,7 +109,7 @@ TextSensor::Judgement NmeaSensor::judge(std::string_view line, const Instant& no
                      *wind, now);
 }
 
-/// Of any sentence of the talker: `sentences` says where the wind is taken from.
+/// Accepts any sentence of the talker: `sentences` selects only those of the wind.
 std::optional<wind::StationQuantities> NmeaSensor::quantities_of(std::string_view line) const {
   const NmeaFormat format = settings_.format == NmeaFormat::kAuto ? format_by_look(line) : settings_.format;
   if (!settings_.talker.empty() && name_of_message(format, line).talker != settings_.talker) return {};

@@ -38,7 +38,7 @@ struct NmeaSensorSettings {
   double speed_range_m_s = 75.0;  ///< of Lufft's ASCII mode
 };
 
-/// The values of kNmeaDriver's parameters. Throws std::runtime_error where they cannot work together.
+/// The values of kNmeaDriver's parameters. Throws std::runtime_error if they cannot work together.
 NmeaSensorSettings nmea_sensor_settings_of(const ParameterValues& values);
 
 /// An anemometer that sends NMEA 0183, or the text of Gill, FT Technologies, Lufft or Vaisala.

@@ -1,6 +1,6 @@
 // Wind of a Signal K server by its WebSocket or TCP stream, or of devices that send Signal K deltas by UDP. The format
 // is described with its decoder: drivers/decode/marine/signalk.hpp. A server sends its hello and then nothing, until a
-// client says what it wants (Signal K specification, subscription protocol; by WebSocket: subscribe=none):
+// client subscribes (Signal K specification, subscription protocol; by WebSocket: subscribe=none):
 //
 //   {"context":"vessels.self","subscribe":[{"path":"environment.wind.*","policy":"instant"}]}
 #include <algorithm>

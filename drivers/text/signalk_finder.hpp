@@ -7,7 +7,7 @@
 
 namespace yuragi::drivers::text {
 
-/// The Signal K servers that answer by multicast DNS within the search's time. Throws FailureError where nobody can be
+/// The Signal K servers that answer by multicast DNS within the search's time. Throws FailureError if nobody can be
 /// asked.
 std::vector<sensor::FoundDevice> find_signalk_servers(const sensor::NetworkSearch& search);
 

@@ -13,7 +13,7 @@ constexpr std::size_t kMaxFirstTimes = 256;
 
 using Outcome = Result<std::optional<wind::WindReading>, decode::Refusal>;
 
-/// Of two outcomes the one that says more, the later one of equals: a reading, nothing, a refusal.
+/// Returns the better of two outcomes (a reading, nothing, a refusal), of equals the later one.
 Outcome better_of(const Outcome& earlier, const Outcome& later) {
   const auto rank = [](const Outcome& outcome) { return !outcome ? 0 : outcome->has_value() ? 2 : 1; };
   return rank(later) >= rank(earlier) ? later : earlier;
@@ -63,8 +63,9 @@ void SignalKSensor::forget_remembered(decode::marine::SignalKUpdate& update) {
   }
 }
 
-/// Times of one server are written alike, so that they can be compared as texts. A source's clock may be behind the
-/// server's for ever; so what changes is never remembered. Only who subscribes is sent what is remembered.
+/// Times of one server are written alike, so that they can be compared as texts. A source's clock may always be behind
+/// the server's, so a value counts as remembered only until its time changes. Only servers, to which a client
+/// subscribes, send remembered values.
 bool SignalKSensor::is_remembered(const decode::marine::SignalKUpdate& update, std::size_t quantity) {
   const bus::BytePortKind kind = settings().address.kind;
   const bool is_server = kind == bus::BytePortKind::kTcpClient || kind == bus::BytePortKind::kWebSocket;

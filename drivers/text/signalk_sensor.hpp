@@ -21,14 +21,14 @@ struct SignalKSensorSettings {
   ChosenWindSettings wind = {};
 };
 
-/// The values of kSignalKDriver's parameters. Throws std::runtime_error where they cannot work together.
+/// The values of kSignalKDriver's parameters. Throws std::runtime_error if they cannot work together.
 SignalKSensorSettings signalk_sensor_settings_of(const ParameterValues& values);
 
 /// Wind of a Signal K server, or of a device that sends deltas.
 ///
 /// A server sends the values of one message one after the other; they make one wind by their source and time. To a new
-/// client it first sends what it remembers, however old that is: what is from before its own time in its hello is not
-/// used until a source says something with another time.
+/// client it first sends what it remembers, however old that is: values from before the time in its hello are not used
+/// until their source sends one with another time.
 class SignalKSensor final : public TextSensor {
  public:
   SignalKSensor(SignalKSensorSettings settings, std::unique_ptr<bus::BytePort> port);
@@ -48,7 +48,7 @@ class SignalKSensor final : public TextSensor {
     std::bitset<decode::marine::kSignalKFrames> is_offered = {};
     Instant time = {};
   };
-  /// The first time that a source has said a quantity.
+  /// The first time with which a source has sent a quantity.
   struct FirstTime {
     std::string source;
     std::size_t quantity = 0;

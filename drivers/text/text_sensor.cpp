@@ -19,15 +19,15 @@ constexpr Nanoseconds kMaxRead = 200ms;
 constexpr Nanoseconds kBurstEnd = 200ms;
 /// The bytes of one line follow each other faster; a line that pauses for longer was cut off.
 constexpr Nanoseconds kLineCut = 500ms;
-/// Without a reading for so long, or for five times the usual pause, something is wrong.
+/// Without a reading for this time, or for five times the usual pause, something is wrong.
 constexpr Nanoseconds kPatience = 3s;
 /// A device whose usual pause is not known yet is opened again after this.
 constexpr Nanoseconds kFirstSilence = 120s;
 /// A reply that is later than this is not expected any more.
 constexpr Nanoseconds kLatestReply = 2s;
 /// The silence after which a device is opened again doubles so often.
-constexpr int kMaxDoublings = 6;
-/// A device that does not reply gets fewer requests: the interval grows up to so many times.
+constexpr int kMostDoublings = 6;
+/// A device that does not reply gets fewer requests: the interval grows up to this many times.
 constexpr int kRarestRequest = 8;
 /// So many blocks at most are discarded at the beginning; a device that sends more does not stop.
 constexpr int kForgottenBlocks = 64;
@@ -227,7 +227,7 @@ bool TextSensor::take_bytes(const Instant& now, sensor::SensorSink& sink) {
   return has_published;
 }
 
-/// A line that was too long, or was cut off by the next one, and whose bytes are not kept but for the last ones.
+/// Takes a line that was too long, or was cut off by the next one; only its last bytes are kept.
 void TextSensor::take_broken_line(decode::Refusal why, std::span<const std::uint8_t> end, sensor::SensorSink& sink) {
   if (std::exchange(skips_line_, false)) return;
   if (why == decode::Refusal::kMalformed) ++garbled_lines_;
@@ -298,7 +298,7 @@ Nanoseconds TextSensor::silence_limit() const {
   return first * (1 << vain_openings_);
 }
 
-/// Reports the cause where there are no readings.
+/// Reports the cause if there are no readings.
 void TextSensor::judge_device(MonoTime now, sensor::SensorSink& sink) {
   const Nanoseconds patience = std::max<Nanoseconds>(kPatience, 5 * readings_.usual_pause());
   if (readings_.quiet_for(now) < patience) return;
@@ -320,7 +320,7 @@ std::size_t TextSensor::cut_lines() const {
   return refused_[static_cast<std::size_t>(decode::Refusal::kTooShort)].count;
 }
 
-/// The reason why most lines were refused: lines of other formats count only where there is nothing else.
+/// The reason why most lines were refused: lines of other formats count only if there are no others.
 decode::Refusal TextSensor::main_refusal() const {
   constexpr auto kOthers = static_cast<std::size_t>(decode::Refusal::kNotMine);
   std::size_t most = kOthers;

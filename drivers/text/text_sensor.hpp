@@ -29,7 +29,7 @@ struct TextSensorSettings {
   Nanoseconds delay_after_open{};                                    ///< messages before that are discarded
   Nanoseconds silence_timeout{};   ///< after which the device is opened again; zero: from its usual pauses
   double play_rate_hz = 0.0;       ///< of a file that is played
-  std::string greeting;            ///< what to send once after opening, where the transport can send
+  std::string greeting;            ///< what to send once after opening, if the transport can send
   std::string request;             ///< what to send for one reply
   Nanoseconds poll_interval{};     ///< zero: the device sends without requests
   Nanoseconds response_timeout{};  ///< at most the poll interval
@@ -51,7 +51,7 @@ class TextSensor : public sensor::ReopeningSensor {
   TextSensor(const TextSensorSettings& settings, std::unique_ptr<bus::BytePort> port);
 
   virtual Judgement judge(std::string_view line, const Instant& now) = 0;
-  /// What a line says besides the wind, whether it has a wind or not; its time is set by the caller.
+  /// Returns the other quantities in a line, with or without a wind; the caller sets their time.
   virtual std::optional<wind::StationQuantities> quantities_of(std::string_view /*line*/) const { return {}; }
   /// After a pause that ends a burst of messages: a reading that was held until then.
   virtual std::optional<wind::WindReading> take_held() { return {}; }
@@ -59,8 +59,8 @@ class TextSensor : public sensor::ReopeningSensor {
   virtual void begin() {}
   /// What the device is, for people.
   virtual std::string name() const = 0;
-  /// What the device itself says is wrong, and what to do; empty: nothing. Told before what its silence or its lines
-  /// suggest.
+  /// Returns a trouble that the device itself reports, and what to do; empty: none. Reported before the causes that its
+  /// silence or its lines suggest.
   virtual std::string told_trouble() const { return {}; }
   /// Lines come, but all are refused like this one: what is wrong, and what to do.
   virtual std::string advice(decode::Refusal why, std::string_view line) const;
@@ -117,10 +117,10 @@ class TextSensor : public sensor::ReopeningSensor {
 
   MonoTime last_bytes_{};
   ArrivalWatch readings_;
-  sensor::ReadingLimit limit_;  ///< UDP and CAN: others can send whatever they like
+  sensor::ReadingLimit limit_;  ///< UDP and CAN: anybody can send
   int vain_openings_ = 0;
 
-  // Received since the last reading: to report the cause where none follows.
+  // Received since the last reading: to report the cause if none follows.
   struct Refused {
     std::size_t count = 0;
     std::string first_line;

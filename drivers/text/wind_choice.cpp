@@ -5,7 +5,7 @@
 namespace yuragi::drivers::text {
 namespace {
 
-/// A source that misses so many of its own pauses has fallen silent.
+/// A source that is silent for this many of its own pauses counts as silent.
 constexpr int kMissedPauses = 3;
 constexpr Nanoseconds kMinAbsence = std::chrono::seconds(3);
 /// The same, before a direction in another frame is taken in place of its own.

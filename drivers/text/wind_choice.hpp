@@ -32,7 +32,7 @@ class WindChoice {
     bool operator==(const Source&) const = default;
   };
 
-  /// What a message says.
+  /// The content of a message.
   struct Said {
     bool has_speed = false;
     bool has_direction = false;
@@ -47,7 +47,7 @@ class WindChoice {
     kForeign,  ///< not in the configured frame
   };
 
-  /// `frame`: accept only this one; nothing: the best.
+  /// `frame`: accept only this one; nullopt: the best.
   explicit WindChoice(std::optional<WindFrame> frame) : wanted_(frame) {}
 
   /// A message of `source` has come.

@@ -6,8 +6,8 @@
 //   mcc1208      09db:00e8   CTR    CH0 to CH7 IN, against ground: -10 to 10 V        ground to +VO (5 V)
 //   labjack-u3   0cd5:0003   FIO4   AIN0 to AIN3: -10 to 10 V, on a U3-LV 0 to 2.4 V  ground to VS (5 V), or less
 //
-// A cup closes a contact to ground, with a resistor up to 5 V where the pin has none of its own. Its data sheet gives
-// its line as m/s for each Hz, which is metres for each pulse, and an offset: 0.765 and 0.35 m/s for an NRG #40C, say.
+// A cup closes a contact to ground, with a resistor up to 5 V if the pin has none of its own. Its data sheet gives its
+// line as m/s for each Hz, which is metres for each pulse, and an offset: 0.765 and 0.35 m/s for an NRG #40C, say.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -104,7 +104,7 @@ UsbSettings usb_settings_of(const ParameterValues& values) {
   return settings;
 }
 
-/// Throws where the values cannot work together.
+/// Throws if the values cannot work together.
 void check_together(const UsbSettings& settings) {
   if (settings.vane.lowest_ratio >= settings.vane.highest_ratio) {
     throw std::runtime_error("vane_lowest: must be below vane_highest");

@@ -24,7 +24,7 @@ struct DaqWiring {
 
 /// What a device reports about itself.
 struct DaqIdentity {
-  std::string serial;  ///< empty where it has no serial number but the one that the bus shows
+  std::string serial;  ///< empty if it has only the serial number that the bus shows
 };
 
 /// The values of one round of requests.

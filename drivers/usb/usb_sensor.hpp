@@ -20,7 +20,7 @@ struct UsbSettings {
   DaqWiring wiring;
   decode::usb::CupCalibration cup;
   decode::usb::VaneCalibration vane;
-  double reference_v = 5.0;                             ///< over the vane's track, where it is not measured
+  double reference_v = 5.0;                             ///< over the vane's track, if it is not measured
   Nanoseconds period = std::chrono::milliseconds(100);  ///< from one round of requests to the next
   Nanoseconds timeout = std::chrono::milliseconds(500);
 };
@@ -30,7 +30,7 @@ class MeanDirection {
  public:
   void add(double direction_deg);
   void clear() { *this = {}; }
-  /// [0, 360); empty where nothing was added, and where the directions cancel.
+  /// [0, 360); empty if nothing was added, or the directions cancel.
   std::optional<double> mean_deg() const;
 
  private:

@@ -11,10 +11,10 @@
 
 namespace yuragi::drivers::windlog {
 
-/// Reads the rows of a statement whose parameters are bound, up to its limit, and resets it. `logged_in_row()` says of
-/// the row where it stands which reading that is, or nothing where it cannot be one, or a Failure where the rows can no
-/// longer be followed. Adds the readings of the wanted sensors to `block`, and the rows that cannot be readings to
-/// `skipped`; after a failure `block` is empty and `skipped` as it was. Returns the number of rows.
+/// Reads the rows of a statement whose parameters are bound, up to its limit, and resets it. `logged_in_row()` returns
+/// the reading in the current row, nullopt if it cannot be a reading, or a Failure if the rows can no longer be
+/// followed. Adds the readings of the wanted sensors to `block`, and the rows that cannot be readings to `skipped`;
+/// after a failure `block` is empty and `skipped` as it was. Returns the number of rows.
 template <class LoggedInRow>
 Result<std::int64_t, Failure> read_block(const sqlite::Database& database, sqlite::Statement& select,
                                          const std::vector<bool>& of_sensors, LoggedInRow logged_in_row,

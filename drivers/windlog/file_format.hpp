@@ -8,18 +8,18 @@
 
 namespace yuragi::drivers::windlog {
 
-/// What a database says of itself.
+/// The marks in a database that show its kind.
 struct FileFormat {
   std::int64_t application = 0;
   std::int64_t version = 0;  ///< of a recording's format
   std::int64_t objects = 0;  ///< tables and the like
 
   bool is_recording() const { return application == kApplicationId; }
-  /// Nothing was ever written to it: a new file, or one whose first write never came to its end.
+  /// Returns true if it was never written to: a new file, or one whose first write was never completed.
   bool is_blank() const { return application == 0 && objects == 0; }
 };
 
-/// Fails where the database cannot be read.
+/// Fails if the database cannot be read.
 inline Result<FileFormat, Failure> format_of(sqlite::Database& database) {
   const auto application = database.integer("PRAGMA application_id");
   if (!application) return application.error();

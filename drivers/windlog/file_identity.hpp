@@ -15,7 +15,7 @@ struct FileIdentity {
   bool operator==(const FileIdentity&) const = default;
 };
 
-/// The error says why the name cannot be looked up. Follows symbolic links. Never throws.
+/// The error is why the name cannot be looked up. Follows symbolic links. Never throws.
 Result<FileIdentity, std::error_code> identity_of(const std::filesystem::path& file) noexcept;
 
 }  // namespace yuragi::drivers::windlog

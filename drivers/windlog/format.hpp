@@ -20,8 +20,8 @@ namespace yuragi::drivers::windlog {
 // Version 1, which can still be read: one table of readings of all sensors, with an index by time. A reader refuses
 // newer ones.
 
-/// What SQLite keeps beside a recording while it is open, by the end of its name; where one of them is left, the
-/// recorder was killed, and it holds the newest readings.
+/// What SQLite keeps beside a recording while it is open, by the end of its name; if one of them is left, the recorder
+/// was killed, and it holds the newest readings.
 inline constexpr std::string_view kWalSuffix = "-wal";
 inline constexpr std::array<std::string_view, 3> kSideSuffixes = {kWalSuffix, "-shm", "-journal"};
 
@@ -67,10 +67,10 @@ inline constexpr std::string_view kSeriesColumns = R"sql((  -- as decoded, befor
   quality       INTEGER NOT NULL      -- 0 good, 1 uncertain, 2 simulated
 ) STRICT)sql";
 
-/// What stations say besides the wind. A file has this table from the first such row on; one without it is complete,
-/// too. Older programs read and continue a file that has it. At most one row a sensor and second: what comes later in
-/// the same second is added to the row, in place of what it said of the same quantity. The columns that follow are
-/// wind::kStationQuantities, each REAL or NULL (not told).
+/// Other quantities of stations. A file has this table from the first such row on; one without it is complete, too.
+/// Older programs read and continue a file that has it. At most one row a sensor and second: later values in the same
+/// second are added to the row, and replace those of the same quantity. The columns that follow are
+/// wind::kStationQuantities, each REAL or NULL (not sent).
 inline constexpr std::string_view kQuantityTable = "quantity";
 inline constexpr std::string_view kQuantityKeys = R"sql((  -- as decoded
   time_ns  INTEGER NOT NULL,  -- on the recording's time line: whole seconds after the session's begin_ns

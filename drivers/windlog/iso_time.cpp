@@ -79,7 +79,7 @@ std::optional<Nanoseconds> take_clock(std::string_view& text) {
   return whole_minutes + std::chrono::seconds(*second) + Nanoseconds(fraction_ns);
 }
 
-/// Z, +02:00, +0200 or +02; nothing is UTC.
+/// Takes Z, +02:00, +0200 or +02; an empty text is UTC.
 std::optional<Nanoseconds> take_zone(std::string_view& text) {
   if (text.empty() || take_sign(text, "Zz")) return Nanoseconds{0};
   const int sign = text.front() == '-' ? -1 : 1;

@@ -19,7 +19,7 @@ using LogMoment = std::variant<Nanoseconds, UtcTime>;
 /// text: what is allowed.
 Result<LogMoment, Failure> parse_log_moment(std::string_view text);
 
-/// Its log time in one recording: for UTC that of the first reading at or after it, or nothing if there is none.
+/// Returns its log time in one recording: for UTC that of the first reading at or after it, nullopt if there is none.
 Result<std::optional<Nanoseconds>, Failure> log_time_of(WindlogReader& reader, const LogMoment& moment);
 
 }  // namespace yuragi::drivers::windlog

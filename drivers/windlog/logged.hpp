@@ -39,9 +39,9 @@ struct LoggedReading {
   wind::WindReading reading;  ///< with the times of the recording machine
 };
 
-/// What a sensor's station said besides the wind in one second.
+/// The other quantities of a sensor's station in one second.
 struct LoggedQuantities {
-  Nanoseconds log_time{0};             ///< below zero where it came before the first reading
+  Nanoseconds log_time{0};             ///< below zero if it came before the first reading
   std::size_t sensor = 0;              ///< index into WindlogReader::sensors()
   wind::StationQuantities quantities;  ///< with the times of the recording machine
 };

@@ -36,7 +36,7 @@ Result<std::optional<LoggedReading>, Failure> MergedReadings::next() {
   return std::optional(earliest->block[earliest->next++]);
 }
 
-/// Reads on where a block is used up, at one moment of the file: a reading that another process commits meanwhile would
+/// Reads on if a block is used up, at one moment of the file: a reading that another process commits meanwhile would
 /// otherwise be merged after later ones.
 Result<void, Failure> MergedReadings::refill() {
   if (database_ != nullptr) {

@@ -10,7 +10,7 @@
 namespace yuragi::drivers::windlog {
 namespace {
 
-/// The version of an older recording's format; nothing for any other file.
+/// Returns the version of an older recording's format; nullopt for any other file.
 std::optional<std::int64_t> older_format(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;

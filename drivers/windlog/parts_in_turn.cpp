@@ -174,7 +174,7 @@ Result<void, Failure> PartsInTurn::add(const std::filesystem::path& file) {
   } else if (own.sessions.empty()) {
     if (!parts_.empty()) part.log_begin = std::max(*begun - parts_.front().last, Nanoseconds{0});
   } else {
-    // Log time begins with the first reading. What was said before has a log time below zero.
+    // Log time begins with the first reading. Quantities before it have a log time below zero.
     for (Part& earlier : parts_) earlier.log_begin = earlier.log_end = std::min(earlier.last - *begun, Nanoseconds{0});
   }
   std::map<std::int64_t, std::int64_t> number_of;  // of a session, by its id in the file

@@ -19,8 +19,8 @@ namespace yuragi::drivers::windlog {
 /// between two (at least zero). Its ids of sessions count through all files. Only the file that is read is open.
 class PartsInTurn final : public StoredReadings {
  public:
-  /// Opens each file, oldest first, for what it contains. A file without readings adds its quantities alone, and one
-  /// that is damaged nothing; fails where no file can be read, and with the first failure.
+  /// Opens each file, oldest first, for what it contains. A file without readings adds only its quantities, and a
+  /// damaged one nothing; fails if no file can be read, and with the first failure.
   static Result<std::unique_ptr<PartsInTurn>, Failure> open(const std::vector<std::filesystem::path>& files,
                                                             const std::stop_token& stop);
 
@@ -46,7 +46,7 @@ class PartsInTurn final : public StoredReadings {
 
   std::vector<std::string> damage() const override { return damage_; }
   /// Is this failure one of the part's data, so that the rest of the part is left out? Then it is noted in damage().
-  /// A disk that fails, or a request to stop, is none: the same place is to be tried again.
+  /// A failing disk, or a request to stop, is not: the same place must be tried again.
   bool leave_out_rest(const Part& part, const std::optional<UtcTime>& read_to, const Failure& failure) const;
 
   const std::vector<Part>& parts() const { return parts_; }

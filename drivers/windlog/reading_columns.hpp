@@ -8,8 +8,8 @@
 
 namespace yuragi::drivers::windlog {
 
-/// The reading of that time in the row where `statement` stands, whose columns from `speed` on are speed, direction,
-/// gust and quality; nothing where they cannot be a reading.
+/// Returns the reading of that time in the current row of `statement`, whose columns from `speed` on are speed,
+/// direction, gust and quality; nullopt if they cannot be a reading.
 inline std::optional<wind::WindReading> reading_of_columns(const sqlite::Statement& statement, int speed,
                                                            const Instant& time) {
   const int direction = speed + 1;

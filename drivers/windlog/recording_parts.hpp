@@ -15,7 +15,7 @@ namespace yuragi::drivers::windlog {
 /// The name of a completed part of a recording that began at a moment.
 std::filesystem::path part_name(const std::filesystem::path& recording, UtcTime begin);
 
-/// The moment in the name of a part of `recording`; nothing for any other file.
+/// Returns the moment in the name of a part of `recording`; nullopt for any other file.
 std::optional<UtcTime> begin_of_part(const std::filesystem::path& recording, const std::filesystem::path& file);
 
 struct RecordingPart {
@@ -23,7 +23,7 @@ struct RecordingPart {
   UtcTime begin;
 };
 
-/// The completed parts of a recording, oldest first; none where the folder cannot be read.
+/// The completed parts of a recording, oldest first; none if the folder cannot be read.
 std::vector<RecordingPart> completed_parts(const std::filesystem::path& recording);
 
 /// The files of a recording: its completed parts, oldest first, and the file that may still grow, if it exists.

@@ -16,8 +16,8 @@ namespace yuragi::drivers::windlog {
 namespace {
 
 constexpr mode_t kMode = 0640;  // as a recording
-/// A holder removes the file when it ends; whoever opened it before that tries again with the next one.
-constexpr int kMaxLockTries = 100;
+/// A holder removes the file when it ends; a program that opened it before that tries again with the next one.
+constexpr int kMaxTries = 100;
 
 /// The file that locks a recording; nullopt if its name cannot be looked up.
 std::optional<std::filesystem::path> lock_file_of(const std::filesystem::path& recording) {
@@ -38,7 +38,7 @@ bool is_open_at(int descriptor, const std::filesystem::path& file) {
   return opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
-/// " (process 123)", or nothing if the file does not contain that.
+/// Returns " (process 123)", or an empty text if the file does not contain that.
 std::string holder_in(int descriptor) {
   std::array<char, 16> text{};
   const ssize_t size = pread(descriptor, text.data(), text.size(), 0);
@@ -113,7 +113,7 @@ SeriesLock& SeriesLock::operator=(SeriesLock&& other) noexcept {
 
 SeriesLock::~SeriesLock() {
   if (descriptor_ < 0) return;
-  // Removed before it is released, and only if it is the one that is locked: nobody else's lock is lost.
+  // Removed before it is released, and only if it is the locked one, so that no other program's lock is lost.
   if (is_open_at(descriptor_, file_)) unlink(file_.c_str());
   close(descriptor_);
 }

@@ -33,7 +33,7 @@ struct Place {
   Instant clocks;
 };
 
-/// What the clocks showed at a time of a session; nothing where that cannot be.
+/// Returns what the clocks showed at a time of a session; nullopt if that is impossible.
 std::optional<Instant> clocks_at(const Start& start, std::int64_t time_ns, std::int64_t clock_ns) {
   const Nanoseconds since_start(time_ns - start.begin_ns);
   const std::int64_t mono_ns = (start.started.mono + since_start).time_since_epoch().count();
@@ -73,7 +73,7 @@ class SeriesTables final : public StoredReadings {
   Result<std::size_t, Failure> each_quantities(Nanoseconds from, Nanoseconds to,
                                                const UseQuantities& use) const override;
 
-  /// The session at a time; nothing before the first.
+  /// Returns the session at a time; nullptr before the first.
   const Start* start_at(std::int64_t time_ns) const {
     const auto after = std::ranges::upper_bound(starts_, time_ns, {}, &Start::begin_ns);
     return after == starts_.begin() ? nullptr : &*std::prev(after);
@@ -201,7 +201,7 @@ Result<std::optional<Place>, Failure> SeriesTables::edge_of(const Start& start, 
   return std::optional<Place>{};
 }
 
-/// The quantities in the row where `row` stands, from column `first` on; nothing where they cannot be.
+/// Returns the quantities in the current row, from column `first` on; nullopt if they are impossible.
 std::optional<wind::StationQuantities> quantities_of_columns(const Statement& row, int first, const Instant& time) {
   wind::StationQuantities quantities;
   quantities.time = time;
@@ -253,7 +253,7 @@ Result<std::size_t, Failure> SeriesTables::each_quantities(Nanoseconds from, Nan
   return skipped;
 }
 
-/// Also where they cannot be read.
+/// Also returns true on a read error.
 bool SeriesTables::has_quantities() const {
   const auto tables = database_.integer("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name = '" +
                                         std::string(kQuantityTable) + "'");

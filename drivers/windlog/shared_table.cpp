@@ -110,7 +110,7 @@ Result<void, Failure> SharedTable::load_sensors() {
   }
   if (auto read = end_of_list(database_, step, "sensors"); !read) return read;
 
-  // They are looked up by id, whatever order a damaged file gave them in.
+  // They are looked up by id, because a damaged file can have them in any order.
   std::stable_sort(sensors.begin(), sensors.end(), [](const auto& a, const auto& b) { return a.id < b.id; });
   return {};
 }

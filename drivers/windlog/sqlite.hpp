@@ -17,7 +17,7 @@ namespace yuragi::drivers::windlog::sqlite {
 enum class Access : std::uint8_t {
   kReadOnly,
   kReadFrozen,  ///< reads a file without a writer, with no lock: for folders in which nothing can be created
-  kReadWrite,   ///< creates the file if it is not there
+  kReadWrite,   ///< creates the file if it is missing
 };
 
 /// How long a statement waits for another writer of the same file: a second recorder, or a checkpoint.

@@ -27,7 +27,7 @@ bool is_absent_or_empty(const std::filesystem::path& file) {
   return error || size == 0;
 }
 
-/// What a file is that was given in place of a recording; empty where it begins as a database does, or is empty.
+/// What a file is that was given in place of a recording; empty if it begins like a database, or is empty.
 std::string foreign_kind(const std::filesystem::path& file) {
   constexpr std::string_view kMagic = "SQLite format 3";
   std::array<char, 512> block{};

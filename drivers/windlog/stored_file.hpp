@@ -15,14 +15,14 @@ struct StoredFile {
   std::unique_ptr<StoredReadings> readings;
 };
 
-/// Fails where there is no such file (kNoInput), or it is a folder or a device (kBadData).
+/// Fails if there is no such file (kNoInput), or it is a folder or a device (kBadData).
 Result<void, Failure> check_is_file(const std::filesystem::path& file);
 
 /// Is it a file that a writer had created, and was killed before it wrote to it?
 bool is_blank_file(const std::filesystem::path& file);
 
 /// Opens a file of any version of the format that this one reads. As WindlogReader::open(). A snapshot is read as it is
-/// at this moment, whatever its writer does; its readings are not to be merged with their database.
+/// at this moment, independent of its writer; its readings must not be merged with their database.
 Result<StoredFile, Failure> open_stored_file(const std::filesystem::path& file, const std::stop_token& stop,
                                              bool is_snapshot = false);
 

@@ -26,11 +26,11 @@ class ReadingBlocks {
   virtual Result<void, Failure> read(std::vector<LoggedReading>& block, std::size_t& skipped) = 0;
 };
 
-/// Takes what stations said besides the wind, in the order of log time.
+/// Takes the other quantities of stations, in the order of log time.
 using UseQuantities = std::function<void(const LoggedQuantities&)>;
 
-/// A recording's content as a version of the format (format.hpp) stores it. A file is not trusted: what cannot be is a
-/// failure. Thread-safe: no. Realtime-safe: no.
+/// A recording's content as a version of the format (format.hpp) stores it. A file is not trusted: impossible content
+/// is a failure. Thread-safe: no. Realtime-safe: no.
 class StoredReadings {
  public:
   virtual ~StoredReadings() = default;
@@ -38,11 +38,11 @@ class StoredReadings {
   /// As of the opening: sessions that have readings, in order, and the sensors of all sessions.
   std::vector<LoggedSession> sessions;
   std::vector<LoggedSensor> sensors;
-  /// When the first session was begun, of a file that has quantities and no reading; else nothing.
+  /// When the first session was begun, of a file that has quantities and no reading; otherwise nullopt.
   std::optional<UtcTime> begun_without_readings;
 
-  /// Of a series of files, those that are damaged, each with the span that is left out, as sentences. What is found
-  /// while it is read comes to them.
+  /// Of a series of files, those that are damaged, each with the span that is left out, as sentences. Damage found
+  /// while reading is added.
   virtual std::vector<std::string> damage() const { return {}; }
 
   /// The readings of those sensors (one flag for each of `sensors`): streams of blocks, to be merged by log time.
@@ -52,14 +52,14 @@ class StoredReadings {
   /// The configuration text of a session.
   virtual Result<std::string, Failure> configuration(std::int64_t session) const = 0;
 
-  /// The log time of the first reading at or after a moment; nothing if all are before it.
+  /// Returns the log time of the first reading at or after a moment; nullopt if all are before it.
   virtual Result<std::optional<Nanoseconds>, Failure> log_time_of(UtcTime moment) const = 0;
 
-  /// The log time of the last reading of those sensors; nothing if they have no reading.
+  /// Returns the log time of the last reading of those sensors; nullopt if they have no reading.
   virtual Result<std::optional<Nanoseconds>, Failure> last_log_time(const std::vector<bool>& of_sensors) const = 0;
 
-  /// Passes what stations said besides the wind, from one log time on and before another, to `use`. Returns the number
-  /// of rows that cannot be such. Version 1 has none.
+  /// Passes the other quantities of stations, from one log time on and before another, to `use`. Returns the number of
+  /// impossible rows. Version 1 has none.
   virtual Result<std::size_t, Failure> each_quantities(Nanoseconds /*from*/, Nanoseconds /*to*/,
                                                        const UseQuantities& /*use*/) const {
     return std::size_t{0};

@@ -24,10 +24,10 @@ Result<UtcOffset, Failure> parse_utc_offset(std::string_view text);
 /// The time since the last local midnight, from 0 to a day.
 Nanoseconds time_of_day(UtcTime moment, const UtcOffset& offset);
 
-/// The first place of a recording, from `from` on, where its local clock showed `wanted`. Where it never did, the
-/// beginning (of a session, or `from`) whose time of day comes next after `wanted`; nothing where there is no reading
-/// from `from` on. Sessions of days and weeks are covered by their times of day alone, so the date does not matter.
-/// A session's clock is taken as of its end: a machine without a battery learns the time only after its start.
+/// The first place of a recording, from `from` on, where its local clock showed `wanted`. If it never did, the
+/// beginning (of a session, or `from`) whose time of day comes next after `wanted`; nullopt if there is no reading from
+/// `from` on. Sessions of days and weeks are covered by their times of day alone, so the date does not matter. A
+/// session's clock is taken as of its end: a machine without a battery learns the time only after its start.
 std::optional<Nanoseconds> find_time_of_day(std::span<const LoggedSession> sessions, Nanoseconds from,
                                             Nanoseconds wanted, const UtcOffset& recorded);
 

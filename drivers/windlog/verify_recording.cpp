@@ -97,7 +97,7 @@ class FileCheck {
     return {};
   }
 
-  /// Fails where the order of the times is none, too.
+  /// Fails if the times are not in order, too.
   Result<void, Failure> read_all(std::size_t index, GapFinder& gaps) {
     auto streams = stored_.blocks(std::vector<bool>(stored_.sensors.size(), true));
     if (!streams) return streams.error();
@@ -235,7 +235,7 @@ Result<Verification, Failure> verify_recording(const std::filesystem::path& reco
   verification.gaps = std::move(gaps.gaps);
   std::ranges::stable_sort(verification.gaps, {}, &RecordingGap::from);
 
-  // The oldest files may have been deleted, as the rules say.
+  // The oldest files may have been deleted by the rules.
   const auto parts = completed_parts(recording);
   std::ranges::sort(seen.previous);
   seen.previous.erase(std::unique(seen.previous.begin(), seen.previous.end()), seen.previous.end());

@@ -33,7 +33,7 @@ struct RecordingGap {
 
 struct Verification {
   std::vector<VerifiedFile> files;             ///< oldest first
-  std::vector<std::filesystem::path> missing;  ///< files that others of the series name, and that are not there
+  std::vector<std::filesystem::path> missing;  ///< files that others of the series name, and that are missing
   std::vector<RecordingGap> gaps;
 
   bool is_sound() const;

@@ -11,7 +11,7 @@ constexpr Nanoseconds kMinInterval = std::chrono::milliseconds(1);
 // As many intervals as settle a median.
 constexpr std::size_t kIntervalsMeasured = 64;
 
-/// A failure to read a recording is one of its data, whatever SQLite calls it.
+/// Makes any failure to read a recording one of its data, with any code of SQLite.
 Failure of_data(const Failure& failure) {
   return {failure.message, failure.kind == FailureKind::kOther ? FailureKind::kBadData : failure.kind};
 }

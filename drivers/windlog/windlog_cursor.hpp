@@ -20,26 +20,26 @@ namespace yuragi::drivers::windlog {
 /// Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogCursor {
  public:
-  /// `sensor`: its name; empty: the one with the first reading; "*": all of them. Fails also where there is no such
+  /// `sensor`: its name; empty: the one with the first reading; "*": all of them. Fails also if there is no such
   /// sensor, or no reading at all. `stop`: a request of it ends this call, and later ones, within milliseconds with a
   /// failure.
   static Result<WindlogCursor, Failure> open(const std::filesystem::path& file, std::string_view sensor,
                                              const std::stop_token& stop = {});
 
-  /// The next reading; nothing at the end, until more has been recorded.
+  /// Returns the next reading; nullopt at the end, until more has been recorded.
   Result<std::optional<LoggedReading>, Failure> next();
 
   /// Makes next() return the first reading at or after a log time.
   void seek(Nanoseconds log_time);
 
-  /// The log time of a place as a person writes it; for UTC that of the first reading at or after it. Nothing if all
-  /// are before it.
+  /// Returns the log time of a place as a person writes it; for UTC that of the first reading at or after it, nullopt
+  /// if all are before it.
   Result<std::optional<Nanoseconds>, Failure> find(const LogMoment& moment);
 
   /// The log time of the last reading, as of the opening.
   Nanoseconds last() const noexcept { return last_; }
 
-  /// The median of the first intervals; one second where there are none, and never less than a millisecond.
+  /// The median of the first intervals; one second if there are none, and never less than a millisecond.
   Nanoseconds interval() const noexcept { return interval_; }
 
   const WindlogReader& reader() const noexcept { return reader_; }

@@ -16,7 +16,7 @@ namespace yuragi::drivers::windlog {
 /// Which part of a recording is played, and how often.
 struct PlaybackOptions {
   /// Where to begin: empty, seconds from the recording's first reading ("90", "12.5"), or a moment in ISO 8601
-  /// ("2018-07-20T14:05:00Z"; UTC where it names no zone).
+  /// ("2018-07-20T14:05:00Z"; UTC if it names no zone).
   std::string start = {};
   /// Begin again at `start` when the end is reached; log time runs on.
   bool loop = false;
@@ -40,15 +40,15 @@ struct PlayedReading {
 /// Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogPlayback {
  public:
-  /// Fails, naming the file and what to do, where it cannot be read, has no such sensor or no reading, or where
-  /// `start` cannot be understood or lies after the end.
+  /// Fails, naming the file and what to do, if it cannot be read, has no such sensor or no reading, or if `start`
+  /// cannot be understood or lies after the end.
   static Result<WindlogPlayback, Failure> open(const std::filesystem::path& file, const PlaybackOptions& options = {});
   ~WindlogPlayback();
   WindlogPlayback(WindlogPlayback&&) noexcept;
   WindlogPlayback& operator=(WindlogPlayback&&) noexcept;
 
-  /// The next reading, in the order of log time; nothing at the end (never, if it loops). Fails where the file cannot
-  /// be read on; the next call tries the same place again.
+  /// Returns the next reading, in the order of log time; nullopt at the end (never, if it loops). Fails on a read
+  /// error; the next call tries the same place again.
   Result<std::optional<PlayedReading>, Failure> next();
 
   /// Rows that were passed over because no reading can look like that; in this round, if it loops.

@@ -12,12 +12,12 @@ namespace {
 
 // Later than this (the machine was suspended) it goes on from where it was.
 constexpr Nanoseconds kMaxLateness = std::chrono::seconds(1);
-// What is further away than this never comes: a clock could not hold it. About 30 years.
+// A longer wait counts as endless, because a clock could not hold it. About 30 years.
 constexpr double kMaxWait_s = 1e9;
-// Nothing comes after the end; a clock can add this to any time.
+// Stands for "never" after the end; a clock can add this to any time.
 constexpr Nanoseconds kAfterTheEnd = std::chrono::hours(24);
-// A cross-fade has so many readings at least, or it would be a step; and is no more than this part of the recording.
-constexpr int kMinReadingsOfFade = 3;
+// The minimum of readings in a cross-fade, or it would be a step; and its maximum part of the recording.
+constexpr int kLeastReadingsOfFade = 3;
 constexpr int kParts = 3;
 // A held reading is repeated no more often than this.
 constexpr Nanoseconds kMinHoldInterval = std::chrono::milliseconds(100);
@@ -46,7 +46,7 @@ bool is_same_wind(const wind::WindReading& a, const wind::WindReading& b) {
   return a.speed_m_s == b.speed_m_s && a.direction_deg == b.direction_deg;
 }
 
-/// Seconds after a sign: "+30", "-12.5"; nothing for a text of another form.
+/// Returns the seconds after a sign: "+30", "-12.5"; nullopt for a text of another form.
 std::optional<double> parse_relative(std::string_view text) {
   if (text.size() < 2 || (text.front() != '+' && text.front() != '-')) return std::nullopt;
   double by_s = 0.0;
@@ -154,7 +154,7 @@ Result<MonoTime, Failure> WindlogPlayer::play(const Instant& now, const Use& use
   }
 }
 
-/// Reads the upcoming reading, unless it is there already; nothing at the end.
+/// Reads the upcoming reading, unless it is already there, or the end is reached.
 Result<void, Failure> WindlogPlayer::fetch() {
   if (playing_.upcoming) return {};
   auto read = playing_.cursor.next();
@@ -265,7 +265,7 @@ wind::WindReading WindlogPlayer::blended(MonoTime time) {
   return between(*leaving_.current, *playing_.current, part);
 }
 
-/// Advances the playhead that is fading out to a time; where it cannot be read it repeats its last reading.
+/// Advances the playhead that is fading out to a time; on a read error it repeats its last reading.
 void WindlogPlayer::follow_leaving(MonoTime time) {
   if (leaving_.is_frozen || is_paused_) return;
   for (;;) {

@@ -20,7 +20,7 @@ struct PlayerOptions {
   double rate = 1.0;       ///< seconds of the recording in one second; above 0
   double seam_s = 5.0;     ///< how long a jump (a loop's seam, a seek) takes; 0: no cross-fade
   bool is_paused = false;  ///< stand at the first reading until resume() or step()
-  /// Begin so many seconds of the recording earlier than asked, so that what it moves has lived in its wind by then.
+  /// Begin this many seconds of the recording earlier than asked, so that the scenes have settled in its wind by then.
   /// Not if `is_paused`. Before the recording's beginning, or in a silence, the first reading is held. What cannot be
   /// read of this part is left out.
   double lead_s = 0.0;
@@ -51,16 +51,16 @@ struct PlayerPosition {
 /// with any order. A jump (a seek, or the seam of a loop) is a cross-fade of `seam_s`: the readings of the old place
 /// and of the new one are blended as vectors, so that there is no step; for that a loop begins again `seam_s` before
 /// its end. While it is paused it repeats its reading, marked as held, at its usual interval: the wind holds, and the
-/// sensor does not become stale. Where the recording has a gap, so has the replay; of a gap of days the whole days are
+/// sensor does not become stale. If the recording has a gap, so has the replay; of a gap of days the whole days are
 /// left out, so that the time of day goes on as it was.
 ///
-/// A Failure says why the file cannot be read, or that it does not contain what is requested; an order that fails
+/// A Failure has the reason why the file cannot be read, or does not contain what is requested; an order that fails
 /// changes nothing, and play() tries the same place again. Thread-safe: no. Realtime-safe: no; it reads a file.
 class WindlogPlayer {
  public:
   using Use = std::function<void(const wind::WindReading&)>;
 
-  /// Readings that one play() gives at most, whatever the rate.
+  /// The most readings that one play() gives, at any rate.
   static constexpr int kMaxReadingsPerPlay = 4096;
   static constexpr std::uint64_t kMaxSteps = 1'000'000;
 
@@ -140,8 +140,8 @@ class WindlogPlayer {
   std::optional<wind::WindReading> last_out_;
 };
 
-/// The wind between two readings, `part` (0 to 1) of the way from `from` to `to`: as vectors where both have a
-/// direction, else by speed. Everything else is of `to`.
+/// The wind between two readings, `part` (0 to 1) of the way from `from` to `to`: as vectors if both have a direction,
+/// else by speed. Everything else is of `to`.
 wind::WindReading between(const wind::WindReading& from, const wind::WindReading& to, double part);
 
 }  // namespace yuragi::drivers::windlog

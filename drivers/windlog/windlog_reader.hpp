@@ -27,12 +27,11 @@ namespace yuragi::drivers::windlog {
 /// or is damaged, is a failure.
 ///
 /// A recording that is a series of files (recording_parts.hpp) is read as one, by the name of the file that is written.
-/// Files of it that are damaged are left out (damage()); only where all are, the series is a failure.
-/// Reads a recording that another process is writing (the readings committed so far, and later ones as they come), and
-/// one that a killed process left with FILE-wal beside it; SQLite then creates FILE-shm, which needs a folder that can
-/// be written to. Where nothing can be created it reads files that were properly closed, and refuses others
-/// with the reason.
-/// Owns the open file; holds no lock between calls. Thread-safe: no. Realtime-safe: no.
+/// Files of it that are damaged are left out (damage()); only if all are, the series is a failure. Reads a recording
+/// that another process is writing (the readings committed so far, and later ones as they come), and one that a killed
+/// process left with FILE-wal beside it; SQLite then creates FILE-shm, which needs a folder that can be written to.
+/// Where nothing can be created it reads files that were properly closed, and refuses others with the reason. Owns the
+/// open file; holds no lock between calls. Thread-safe: no. Realtime-safe: no.
 class WindlogReader {
  public:
   /// `stop`: a request of it ends this call, and later ones, within milliseconds with a failure.
@@ -55,31 +54,31 @@ class WindlogReader {
   /// it, it gives all.
   Result<void, Failure> choose(const std::vector<bool>& of_sensors);
 
-  /// The next reading; nothing at the end, until more has been recorded. After a failure the next call tries the same
-  /// place again.
+  /// Returns the next reading; nullopt at the end, until more has been recorded. After a failure the next call tries
+  /// the same place again.
   Result<std::optional<LoggedReading>, Failure> next();
 
   /// Makes next() return the first reading at or after a log time.
   void seek(Nanoseconds log_time) { readings_->seek(log_time); }
 
-  /// The log time of the first reading at or after a moment; nothing if all are before it. Where the clock was set back
-  /// across that moment, which comes more than once then, it may be that of a later time.
+  /// Returns the log time of the first reading at or after a moment; nullopt if all are before it. If the clock was set
+  /// back across that moment, which then occurs more than once, it may be that of a later time.
   Result<std::optional<Nanoseconds>, Failure> log_time_of(UtcTime moment) { return stored_->log_time_of(moment); }
 
-  /// The log time of the last reading of those sensors (one flag for each of sensors()); nothing if they have no
-  /// reading.
+  /// Returns the log time of the last reading of those sensors (one flag for each of sensors()); nullopt if they have
+  /// no reading.
   Result<std::optional<Nanoseconds>, Failure> last_log_time(const std::vector<bool>& of_sensors) {
     return stored_->last_log_time(of_sensors);
   }
 
-  /// Passes what stations said besides the wind, from one log time on and before another, to `use`, in order; whatever
-  /// choose() and seek() say. From zero on means all from the beginning, also what came before the first reading.
-  /// Returns the number of rows that cannot be such. A file of a series that has no readings is left out.
+  /// Passes the other quantities of stations, from one log time on and before another, to `use`, in order, independent
+  /// of choose() and seek(). From zero on means all from the beginning, also what came before the first reading.
+  /// Returns the number of impossible rows. A file of a series that has no readings is left out.
   Result<std::size_t, Failure> each_quantities(Nanoseconds from, Nanoseconds to, const UseQuantities& use) const {
     return stored_->each_quantities(from, to, use);
   }
 
-  /// Writes a copy of the whole recording as it is at one moment, as one file, which must not be there yet. Fails for a
+  /// Writes a copy of the whole recording as it is at one moment, as one file, which must not exist yet. Fails for a
   /// series of files.
   Result<void, Failure> copy_to(const std::filesystem::path& copy);
 

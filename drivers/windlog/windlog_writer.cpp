@@ -21,7 +21,7 @@ std::int64_t nanoseconds(UtcTime time) {
   return time.time_since_epoch().count();
 }
 
-/// The readings of all series as one table, for whoever looks into the file with another program.
+/// The readings of all series as one table, for other programs that read the file.
 std::string view_of(std::int64_t series) {
   std::string view = "DROP VIEW IF EXISTS reading; CREATE VIEW reading AS";
   for (std::int64_t each = 1; each <= series; ++each) {
@@ -216,14 +216,14 @@ Result<std::int64_t, Failure> WindlogWriter::begin_of_next_session(UtcTime start
     return no_room(database_);
   }
   last_before_session_ = (*last)->utc;
-  // Nor before what stations said last: the clock may have been set back since.
+  // Nor before the last quantities of stations: the clock may have been set back since.
   if (const auto said_ns = last_quantities_ns(); said_ns && *said_ns < kMaxTime_ns - 1) {
     begin_ns = std::max(begin_ns, *said_ns + 1);
   }
   return begin_ns;
 }
 
-/// The place of the last quantities on the recording's time line; nothing where there are none, or their table is
+/// Returns the place of the last quantities on the recording's time line; nullopt if there are none, or their table is
 /// damaged.
 std::optional<std::int64_t> WindlogWriter::last_quantities_ns() {
   const std::string table(kQuantityTable);
@@ -358,7 +358,7 @@ Result<bool, Failure> WindlogWriter::append(std::int64_t sensor, const wind::Sta
     insert_quantities_->reset();
     return true;
   }
-  // Readings must not suffer from a table that is damaged. Where it is the disk, SQLite says so, or takes all back.
+  // Readings must not suffer from a table that is damaged. If the disk is the cause, SQLite reports it, or rolls back.
   const int code = database_.error_code();
   const Failure failure = database_.failure();
   insert_quantities_.reset();
@@ -367,7 +367,7 @@ Result<bool, Failure> WindlogWriter::append(std::int64_t sensor, const wind::Sta
   return failure;
 }
 
-/// False where the file has something else of that name.
+/// Returns false if the file has something else of that name.
 bool WindlogWriter::prepare_quantities() {
   if (insert_quantities_) return true;
   std::string create = "CREATE TABLE IF NOT EXISTS " + std::string(kQuantityTable) + " " + std::string(kQuantityKeys);

@@ -46,8 +46,8 @@ class WindlogWriter {
   /// Notes which completed file was before this one in its series, by the moment in its name. Once for each file.
   Result<void, Failure> set_previous_part(UtcTime begin);
 
-  /// Adds a sensor to the session; returns the id that append() takes. Fails where the recording would have readings of
-  /// more than kMaxSeries names.
+  /// Adds a sensor to the session; returns the id that append() takes. Fails if the recording would have readings of
+  /// more than kMostSeries names.
   Result<std::int64_t, Failure> add_sensor(std::string_view name, std::string_view driver, std::string_view options);
 
   /// Adds a reading. One that is not plausible, or whose time cannot be, is a failure of the caller's and undoes
@@ -55,12 +55,12 @@ class WindlogWriter {
   /// its sensor's is moved to a nanosecond that is free.
   Result<void, Failure> append(std::int64_t sensor, const wind::WindReading& reading);
 
-  /// Adds what a sensor's station says besides the wind, as far as it is plausible: one row a second (format.hpp).
-  /// False, with nothing undone, where it cannot be added: nothing is plausible, its time cannot be, there is no such
-  /// sensor, or the file's table for it is damaged. A failure is one of the disk.
+  /// Adds the other quantities of a sensor's station, as far as they are plausible: one row a second (format.hpp).
+  /// Returns false, with nothing undone, if they cannot be added: none is plausible, the time is impossible, there is
+  /// no such sensor, or the file's table for them is damaged. A failure is one of the disk.
   Result<bool, Failure> append(std::int64_t sensor, const wind::StationQuantities& quantities);
 
-  /// When the first session of a file that has readings or quantities was begun; nothing where it has none.
+  /// Returns when the first session of a file that has readings or quantities was begun; nullopt if it has none.
   Result<std::optional<UtcTime>, Failure> began();
 
   /// The time of the last reading before the session that was begun last, or when the session before that was begun if

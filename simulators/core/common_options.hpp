@@ -24,7 +24,7 @@ struct CommonOptions {
 
   void add_to(CLI::App& command);
 
-  /// The configured wind. Throws std::runtime_error where the recording cannot be played.
+  /// The configured wind. Throws std::runtime_error if the recording cannot be played.
   MeasuredWind make_wind() const;
 
   /// The configured faults, which must be among those that are known. Throws CLI::ValidationError for any other.

@@ -61,11 +61,11 @@ class Faults {
   /// The fault of a moment.
   std::optional<FaultKind> at(double time_s) const;
 
-  /// Reads "silence@10+5": from second 10 on, for 5 s; or durations with their units: "silence@5min+30s". The failure
-  /// says what is allowed.
+  /// Reads "silence@10+5": from second 10 on, for 5 s; or durations with their units: "silence@5min+30s". The failure's
+  /// text is what is allowed.
   Result<Fault, Failure> parse(std::string_view text) const;
 
-  /// Carries out a command typed at `time_s`: a kind and a duration ("silence 5", "silence 2min"; 3 s where none is
+  /// Carries out a command typed at `time_s`: a kind and a duration ("silence 5", "silence 2min"; 3 s if none is
   /// given), "clear" or "help". Returns the text to print.
   std::string obey(std::string_view line, double time_s);
 

@@ -18,7 +18,7 @@ class LineReader {
   int descriptor() const noexcept { return descriptor_; }
   bool is_open() const noexcept { return is_open_; }
 
-  /// Reads once; calls `use` with each whole line, without its end. Waits where nothing can be read.
+  /// Reads once; calls `use` with each whole line, without its end. Waits if nothing can be read.
   template <class Use>
   void read_lines(Use&& use) {
     std::array<char, 512> block{};

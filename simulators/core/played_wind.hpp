@@ -12,7 +12,7 @@ namespace yuragi::simulators::core {
 /// The wind at a simulated sensor, at one moment.
 struct PlayedMoment {
   double speed_m_s = 0.0;
-  double direction_deg = 0.0;  ///< where it comes from, [0, 360); the last known one where a recording has none
+  double direction_deg = 0.0;  ///< where it comes from, [0, 360); the last known one if a recording has none
 };
 
 /// A wind as a function of time. Thread-safe: no.
@@ -27,7 +27,7 @@ class PlayedWind {
 std::unique_ptr<PlayedWind> play_synthetic_wind(const wind::turbulence::SyntheticWindSettings& settings);
 
 /// A recording (.windlog), at the pace at which it was recorded, in a loop. Each reading holds until the next. Throws
-/// std::runtime_error where the file cannot be played.
+/// std::runtime_error if the file cannot be played.
 std::unique_ptr<PlayedWind> play_recorded_wind(const std::string& file);
 
 /// What a sensor in that wind measures: the wind itself, or, under the faults kFreeze and kSpike, a repeated or a false

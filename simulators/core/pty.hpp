@@ -31,7 +31,7 @@ class Pty {
   /// To wait for bytes; -1 while unplugged.
   int descriptor() const noexcept { return master_; }
 
-  /// The bytes that have arrived; empty where no program has the port open. Never waits.
+  /// The bytes that have arrived; empty if no program has the port open. Never waits.
   std::vector<std::uint8_t> read();
   /// Writes all of it; what no program reads is dropped, as on a real line. Never waits.
   void write(std::span<const std::uint8_t> bytes) noexcept;

@@ -97,7 +97,7 @@ void Rehearsal::serve(std::span<const int> ready, double time_s, std::optional<F
   }
   std::fflush(stdout);
 
-  // What a device says last is printed before its end is told.
+  // The last lines of a device are printed before its end is reported.
   std::erase_if(devices_, [](const auto& device) {
     const auto end = device->lines.is_open() ? std::nullopt : device->program.end();
     if (end && !end->is_good()) throw std::runtime_error(fmt::format("the device {} {}", device->name, text_of(*end)));

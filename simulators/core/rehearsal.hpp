@@ -26,7 +26,7 @@ class Rehearsal final : public Simulator {
 
   std::span<const FaultKind> known_faults() const override { return {}; }  // the devices have them
   std::vector<int> descriptors() const override;
-  /// Throws std::runtime_error where a device has failed.
+  /// Throws std::runtime_error if a device has failed.
   void serve(std::span<const int> ready, double time_s, std::optional<FaultKind> fault) override;
   bool take_line(const std::string& line) override;
   std::string status() const override;

@@ -42,7 +42,7 @@ struct RunOptions {
 
 /// Runs a simulator in real time until it is over, the duration has passed, or SIGINT or SIGTERM arrives. Faults are
 /// those of `faults` and those that are typed as lines on standard input, which may end at any time. The status goes to
-/// standard error. Throws std::system_error where waiting itself fails.
+/// standard error. Throws std::system_error if waiting itself fails.
 void run(Simulator& simulator, Faults faults, const RunOptions& options);
 
 }  // namespace yuragi::simulators::core

@@ -9,8 +9,8 @@
 
 namespace yuragi::simulators::core {
 
-/// A TCP server's listening socket, which can be closed and opened again at the same place. Nothing waits: neither it
-/// nor the sockets that it accepts. Thread-safe: no.
+/// A TCP server's listening socket, which can be closed and opened again at the same place. Neither it nor the sockets
+/// that it accepts block. Thread-safe: no.
 class TcpListener {
  public:
   /// Listens; port 0 takes a free one. Throws std::runtime_error for a host that is no numeric address, and for a place
@@ -23,11 +23,11 @@ class TcpListener {
   /// While it is open.
   int descriptor() { return acceptor_.native_handle(); }
 
-  /// A client that has come; nothing where none has.
+  /// Returns a client that has connected; nullopt if none has.
   std::optional<boost::asio::ip::tcp::socket> accept();
 
   void close();
-  /// False where the place is taken.
+  /// Returns false if the address is in use.
   bool open_again();
 
  private:

@@ -18,7 +18,7 @@ struct WindPhase {
 
 /// The phases one after the other. The first begins at 0, and each ramp ends before the next phase begins. In a ramp
 /// the wind goes as a vector from the phase before, which still blows, to the new one, by the share r of the ramp that
-/// has passed: 3 r^2 - 2 r^3. Throws std::runtime_error where a recording cannot be played.
+/// has passed: 3 r^2 - 2 r^3. Throws std::runtime_error if a recording cannot be played.
 std::unique_ptr<PlayedWind> play_phases(const std::vector<WindPhase>& phases);
 
 }  // namespace yuragi::simulators::core

@@ -18,7 +18,7 @@ namespace yuragi::simulators::davis {
 
 struct WeatherLinkLiveOptions {
   double interval_s = 2.5;               ///< from broadcast to broadcast
-  std::uint16_t broadcast_port = 22222;  ///< what it says that they go to
+  std::uint16_t broadcast_port = 22222;  ///< the port that it reports for them
   std::uint64_t garbage_seed = 1;
 };
 

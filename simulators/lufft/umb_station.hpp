@@ -23,7 +23,7 @@ struct UmbStationOptions {
   bool has_fast_channels = true;
   bool measures_more = true;        ///< than the wind: temperature, humidity, pressure, rain
   bool refuses_long_query = false;  ///< of more than two channels
-  bool echoes = false;              ///< the line has one pair of wires: clients hear what they say
+  bool echoes = false;              ///< the line has one pair of wires: clients receive their own requests
   std::uint64_t garbage_seed = 1;
 };
 

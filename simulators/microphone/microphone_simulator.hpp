@@ -18,7 +18,7 @@ struct MicrophoneOutputs {
 /// socket and its name do not exist and the named pipe is closed; both return.
 class MicrophoneSimulator final : public core::Simulator {
  public:
-  /// Listens at once. Throws std::runtime_error where that fails.
+  /// Listens at once. Throws std::runtime_error if that fails.
   MicrophoneSimulator(const MicrophoneOptions& options, MicrophoneOutputs outputs, core::MeasuredWind wind);
   ~MicrophoneSimulator() override;
 

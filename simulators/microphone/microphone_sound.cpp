@@ -16,7 +16,7 @@ constexpr double kReference_m_s = 10.0;
 constexpr double kPressureSlope = 7.0 / 3.0;
 constexpr double kCorner_hz = 5.0;
 constexpr double kTile_s = 16.0;  // after which the noise repeats; inaudible, since the wind on top does not repeat
-/// How much louder the face in the wind hears it than the mean of all, and the one in the lee less, as a part of the
+/// How much more wind than the mean of all the face in the wind receives, and the one in the lee less, as a part of the
 /// speed.
 constexpr double kFaceEffect = 0.35;
 

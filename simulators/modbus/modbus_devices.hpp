@@ -46,7 +46,7 @@ struct ModbusSlave {
   std::uint8_t id = 1;        ///< from the factory
   std::uint8_t function = 3;  ///< the only one that it supports: 3 or 4
   void (*measure)(const ModbusAir& air, ModbusRegisterBank& registers) = nullptr;
-  /// A register whose reading clears lull, mean and gust; 0 where there is none.
+  /// A register whose reading clears lull, mean and gust; 0 if there is none.
   std::uint16_t clearing_register = 0;
 };
 

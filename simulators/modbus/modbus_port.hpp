@@ -28,7 +28,7 @@ class ModbusPort {
   virtual std::vector<int> descriptors() const = 0;
   /// The requests that have arrived on those of the descriptors that can be read. Never waits.
   virtual std::vector<ClientRequest> receive(std::span<const int> ready) = 0;
-  /// Sends bytes to a client; nothing where it has gone.
+  /// Sends bytes to a client; does nothing if it has gone.
   virtual void send(int client, std::span<const std::uint8_t> bytes) = 0;
 
   /// Closes all connections and the port.

@@ -33,7 +33,7 @@ std::uint16_t sum_of(std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint16_t>(sum);
 }
 
-/// The length of a request of this function on a serial line, CRC included; 0 where that is not known yet.
+/// The length of a request of this function on a serial line, CRC included; 0 if that is not known yet.
 std::size_t rtu_length(const ModbusBytes& bytes) {
   constexpr std::size_t kFixed = 8;
   constexpr std::uint8_t kWriteCoils = 15;

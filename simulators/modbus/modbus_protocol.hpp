@@ -24,11 +24,11 @@ struct SlaveRequest {
   std::uint16_t transaction = 0;  ///< TCP only
   std::uint8_t unit = 0;
   std::uint8_t function = 0;
-  std::uint16_t address = 0;  ///< of functions 1 to 4; otherwise whatever is at that place
+  std::uint16_t address = 0;  ///< of functions 1 to 4; otherwise the bytes at that place
   std::uint16_t count = 0;
 };
 
-/// Takes the first whole request out of the bytes of a TCP client; nothing while it is incomplete. Bytes that cannot be
+/// Takes the first whole request out of the bytes of a TCP client; nullopt while it is incomplete. Bytes that cannot be
 /// Modbus empty `incoming`.
 std::optional<SlaveRequest> take_tcp_request(ModbusBytes& incoming);
 

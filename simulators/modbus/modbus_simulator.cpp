@@ -127,7 +127,7 @@ class ModbusSimulator::State {
   }
 
   void reply(const ModbusPort::ClientRequest& received) {
-    // Where nobody has that id, a gateway says so, and a serial line stays silent.
+    // If no slave has that id, a gateway reports it, and a serial line stays silent.
     const SlaveRequest& request = received.request;
     SimulatedSlave* const slave = slave_of(request.unit);
     if (slave == nullptr) {

@@ -36,7 +36,7 @@ std::string usual_path(PushProtocol protocol) {
   return protocol == PushProtocol::kAmbient ? "/data/report/?" : "/data/report/";
 }
 
-/// `wind`: nothing where the anemometer is not heard.
+/// `wind`: nullptr if the anemometer is not received.
 std::string ecowitt_form(const std::string& station, const PushedWind* wind) {
   std::string form = fmt::format(
       "PASSKEY={}&stationtype=GW1100A_V2.4.5&runtime=3728&heap=24412&dateutc=2026-05-18+16:32:04&tempinf=80.42"

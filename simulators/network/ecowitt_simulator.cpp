@@ -31,7 +31,7 @@ constexpr std::string_view kGatewayName = "GW1000-WIFI5B1C V1.7.6";
 constexpr std::size_t kGatewayGarbageBytes = 40;
 const GatewayBytes kLiveDataRequest = {0xFF, 0xFF, 0x27, 0x03, 0x2A};
 
-/// What the anemometer has said last.
+/// The last values of the anemometer.
 struct RadioWind {
   double speed_m_s = 0.0;
   double gust_m_s = 0.0;

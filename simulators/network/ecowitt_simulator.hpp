@@ -14,7 +14,7 @@ struct EcowittOptions {
   std::uint16_t port = 45000;     ///< 0 takes a free one
   double interval_s = 16.0;       ///< of the anemometer's radio
   double late_s = 5.0;            ///< the delay of a late reply
-  std::string search_host = {};   ///< where it answers who searches for gateways, by UDP; empty: nowhere
+  std::string search_host = {};   ///< where it replies to UDP searches for gateways; empty: nowhere
   std::uint16_t search_port = 0;  ///< 0 takes a free one; a real gateway's is 46000
   std::uint64_t seed = 1;         ///< of the bytes of the garbage fault
 };
@@ -26,7 +26,7 @@ struct EcowittOptions {
 /// command), late, disconnect, unplug (the anemometer is not heard).
 class EcowittSimulator final : public core::Simulator {
  public:
-  /// Throws std::runtime_error where the address cannot be listened on.
+  /// Throws std::runtime_error if the address cannot be listened on.
   EcowittSimulator(const EcowittOptions& options, core::MeasuredWind wind);
   ~EcowittSimulator() override;
 

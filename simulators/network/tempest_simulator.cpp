@@ -85,7 +85,7 @@ class TempestSimulator::State {
 
   static std::int64_t hub_time_s(double time_s) { return static_cast<std::int64_t>(kHubClock_s + time_s); }
 
-  /// The serial number that a station says: another one, where that is the fault.
+  /// Returns the serial number that a station sends: a wrong one under that fault.
   std::string name_of_station(const std::string& station) const {
     return fault_ == core::FaultKind::kWrongId ? station.substr(0, 3) + "99999999" : station;
   }

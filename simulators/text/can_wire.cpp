@@ -36,7 +36,7 @@ class CanWire final : public TextWire {
   std::vector<int> descriptors() const override { return {}; }
   std::string read(std::span<const int> /*ready*/) override { return {}; }
 
-  /// One frame. What is none cannot be said on a bus. An interface that has gone away is looked for again each time.
+  /// Writes one frame; ignores bytes that are not one. Looks again each time for an interface that has gone away.
   void write(std::string_view bytes) override {
     if (bytes.size() != CAN_MTU) return;
     if (socket_ < 0 && !connect()) return;
@@ -52,7 +52,7 @@ class CanWire final : public TextWire {
   std::string place() const override { return "sending to CAN interface " + interface_; }
 
  private:
-  /// False: errno says why not.
+  /// Returns false on failure, with the reason in errno.
   bool connect() {
     sockaddr_can place{};
     place.can_family = AF_CAN;

@@ -16,7 +16,7 @@ struct SerialOrTcpOptions {
   std::string link;
   std::string tcp;
 
-  /// Returns the group of options of which one says how the device is connected.
+  /// Returns the group of options of which one selects the connection of the device.
   CLI::Option_group& add_to(CLI::App& command, const std::string& what_tcp_is = "a server at HOST:PORT");
   /// Throws CLI::ValidationError, std::runtime_error for an address that cannot be listened on.
   std::unique_ptr<TextWire> make_wire() const;
@@ -29,15 +29,15 @@ void print_place(const TextWire& wire);
 struct TextOptions {
   SerialOrTcpOptions line = {};
   std::string udp;
-  std::string can;                      ///< of the commands whose device has frames to say
+  std::string can;                      ///< of the commands whose device sends frames
   WebSocketWireOptions websocket = {};  ///< its path: what clients ask for
   std::string websocket_place;          ///< HOST:PORT; empty: no WebSocket
   double rate_hz = 4.0;
   core::CommonOptions common;
 
-  /// Returns the group of options of which one says how the device is connected.
+  /// Returns the group of options of which one selects the connection of the device.
   CLI::Option_group& add_to(CLI::App& command);
-  /// Of a device that can speak by WebSocket, too; after add_to().
+  /// Adds the options of a device that also has a WebSocket server; after add_to().
   void add_websocket_to(CLI::App& command);
 
   /// Prints the device's address, for scripts that wait for that line, and runs it to its end. Throws

@@ -93,7 +93,7 @@ void TextSimulator::send(const std::string& message, double time_s, std::optiona
   send_after(0.0, message, time_s);
 }
 
-/// At once where there is no delay, unless something waits: bytes keep their order.
+/// Sends at once if there is no delay, unless something waits: bytes keep their order.
 void TextSimulator::send_after(double delay_s, const std::string& bytes, double time_s) {
   if (delay_s == 0.0 && waiting_.empty()) return wire_->write(bytes);
   const double due_s = time_s + delay_s;

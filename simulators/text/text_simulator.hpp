@@ -29,13 +29,13 @@ class TextDevice {
   virtual std::vector<std::string> send_messages(const core::PlayedMoment& moment,
                                                  std::optional<core::FaultKind> fault) = 0;
 
-  /// What it says to each new client, with its line end.
+  /// Returns its greeting to each new client, with its line end.
   virtual std::string greeting() const { return {}; }
 
-  /// Does a client get nothing but the greeting until it has said something?
+  /// Does a client get only the greeting until it has sent something?
   virtual bool waits_for_clients() const { return false; }
 
-  /// A client has said this line, without its end.
+  /// Takes a line that a client has sent, without its end.
   virtual void hear(std::string_view /*line*/) {}
 
   /// Is this line, without its end, the device's request?

@@ -24,12 +24,14 @@ class TextWire {
   virtual std::string read(std::span<const int> ready) = 0;
   /// What each client gets first. A wire that knows no clients does not send it.
   virtual void greet_with(const std::string& /*bytes*/) {}
-  /// From now on a client gets nothing but its greeting until it has said something. A wire that hears nobody sends on.
+  /// From now on a client gets only its greeting until it has sent something. A wire that cannot receive continues to
+  /// send.
   virtual void wait_for_clients() {}
   /// Sends the bytes to all clients.
   virtual void write(std::string_view bytes) = 0;
 
-  /// Drops its clients and refuses those that come, for as long as it is wanted. Only a wire that can say so does.
+  /// Drops its clients and refuses those that come, for as long as it is wanted. Only a wire whose protocol can refuse
+  /// does so.
   virtual void refuse(bool /*is_wanted*/) {}
 
   /// Closes the port and all connections. A second call does nothing.
@@ -44,7 +46,7 @@ class TextWire {
 /// A serial port; `link`, if not empty, is the name that it has each time it is plugged in. Throws std::system_error.
 std::unique_ptr<TextWire> make_pty_wire(const std::string& link);
 
-/// A TCP server; port 0 takes a free one. Throws std::runtime_error where the address cannot be listened on.
+/// A TCP server; port 0 takes a free one. Throws std::runtime_error if the address cannot be listened on.
 std::unique_ptr<TextWire> make_tcp_wire(const std::string& host, std::uint16_t port);
 
 struct WebSocketWireOptions {
@@ -54,14 +56,14 @@ struct WebSocketWireOptions {
   std::string token = {};  ///< a client without it gets HTTP 401; empty: none is wanted
 };
 
-/// A WebSocket server, each message as text. Throws std::runtime_error where the address cannot be listened on.
+/// A WebSocket server, each message as text. Throws std::runtime_error if the address cannot be listened on.
 std::unique_ptr<TextWire> make_websocket_wire(const WebSocketWireOptions& options);
 
 /// Datagrams to one address, one for each write. Throws std::runtime_error for a text that is no address.
 std::unique_ptr<TextWire> make_udp_wire(const std::string& host, std::uint16_t port);
 
 /// A CAN interface of this machine; each write is a frame (`struct can_frame` of linux/can.h). Throws
-/// std::runtime_error where it is not there at first.
+/// std::runtime_error if it is missing at first.
 std::unique_ptr<TextWire> make_can_wire(const std::string& interface);
 
 }  // namespace yuragi::simulators::text

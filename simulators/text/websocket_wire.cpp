@@ -30,8 +30,8 @@ namespace websocket = boost::beast::websocket;
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
-/// What a client may say at once.
-constexpr std::size_t kMaxSaid = 4096;
+/// The longest message that a client may send.
+constexpr std::size_t kLongestSaid = 4096;
 /// More than this waits only for a client that does not read: it is dropped.
 constexpr std::size_t kMaxWaiting = 1000;
 
@@ -56,7 +56,7 @@ class WebSocketPeer : public std::enable_shared_from_this<WebSocketPeer> {
     if (waiting_.size() > kMaxWaiting) return end();
     send_next();
   }
-  /// What it has said, each message with a line's end.
+  /// Returns the messages that it has sent, each with a line's end.
   std::string take_said() { return std::exchange(said_, {}); }
   bool has_spoken() const { return has_spoken_; }
   bool has_ended() const { return has_ended_; }

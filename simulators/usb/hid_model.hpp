@@ -51,14 +51,14 @@ class HidModel : public UsbDevice {
   bool out(std::uint8_t endpoint, std::span<const std::uint8_t> data) final;
 
  protected:
-  /// `known_faults` must live for ever.
+  /// `known_faults` must have static storage.
   HidModel(const HidIdentity& identity, std::span<const core::FaultKind> known_faults, const HidModelOptions& options);
 
   /// Advances to now_s().
   virtual void play() = 0;
   /// Takes an output report, received by either way (without a report id). False: refused.
   virtual bool take_output(std::span<const std::uint8_t> report) = 0;
-  /// The reply to GET_REPORT for input report `id`; nothing: refused.
+  /// Returns the reply to GET_REPORT for input report `id`; nullopt: refused.
   virtual std::optional<UsbBytes> input_report(std::uint8_t id);
 
   double now_s() const noexcept { return now_s_; }

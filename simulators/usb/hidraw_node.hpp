@@ -13,8 +13,8 @@
 namespace yuragi::simulators::usb {
 
 /// /dev/hidrawN of a simulated device, with the kernel's usbhid behind it: reports are read while a program has it
-/// open, and kept until it reads them; writes become SET_REPORT, or go to the interrupt OUT end point where there is
-/// one. Source: Linux 6.1, drivers/hid/hidraw.c and drivers/hid/usbhid/hid-core.c.
+/// open, and kept until it reads them; writes become SET_REPORT, or go to the interrupt OUT end point if there is one.
+/// Source: Linux 6.1, drivers/hid/hidraw.c and drivers/hid/usbhid/hid-core.c.
 class HidrawNode final : public EmulatedNode {
  public:
   /// `path`: the node's file inside the testbed. `host` must outlive unplug().

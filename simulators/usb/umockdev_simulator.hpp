@@ -14,7 +14,7 @@ namespace yuragi::simulators::usb {
 /// and returns with new ones; udev's listeners get a uevent for both.
 class UmockdevSimulator final : public core::Simulator {
  public:
-  /// Throws std::runtime_error where this program does not run in umockdev (see is_in_umockdev()).
+  /// Throws std::runtime_error if this program does not run in umockdev (see is_in_umockdev()).
   explicit UmockdevSimulator(std::vector<std::unique_ptr<UsbPort>> ports);
   ~UmockdevSimulator() override;
 

@@ -21,7 +21,7 @@ bool is_in_umockdev() noexcept;
 /// Thread-safe: no.
 class UmockdevTestbed {
  public:
-  /// Throws std::runtime_error where is_in_umockdev() is false.
+  /// Throws std::runtime_error if is_in_umockdev() is false.
   UmockdevTestbed();
   ~UmockdevTestbed();
   UmockdevTestbed(const UmockdevTestbed&) = delete;

@@ -49,11 +49,11 @@ class UsbDevice {
   virtual void advance(double time_s, const core::PlayedMoment& wind, std::optional<core::FaultKind> fault) = 0;
 
   /// A control transfer. `data` is what the host sends (empty if it reads). Returns what the host receives, at most
-  /// `setup.length` bytes; nothing for a request that the device refuses (a stall).
+  /// `setup.length` bytes; nullopt for a request that the device refuses (a stall).
   virtual std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) = 0;
 
   /// The data that waits at an IN end point (its number without the direction bit), at most `max_size` bytes: one
-  /// interrupt report, or bulk data. Nothing: the host has to wait (NAK).
+  /// interrupt report, or bulk data. Nullopt: the host has to wait (NAK).
   virtual std::optional<UsbBytes> in(std::uint8_t endpoint, std::size_t max_size) = 0;
 
   /// Takes data that the host sends to an OUT end point. False: refused (a stall).

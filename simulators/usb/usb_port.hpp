@@ -34,7 +34,7 @@ struct UsbOutcome {
 
 /// A simulated device in its wind, for the code that attaches it to a host (USB/IP, umockdev): transfers go in,
 /// outcomes come out, at once or when the device has data. Two faults are played here, for every device alike: a silent
-/// device receives and sends nothing (but its descriptors), an unplugged one does not exist, and its data is lost.
+/// device receives and sends nothing (except its descriptors), an unplugged one does not exist, and its data is lost.
 /// Pure. Thread-safe: no.
 class UsbPort {
  public:

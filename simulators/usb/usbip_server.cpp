@@ -18,9 +18,9 @@ namespace {
 namespace asio = boost::asio;
 using tcp = asio::ip::tcp;
 
-/// A host that leaves so many bytes unread has gone, or is hostile.
-constexpr std::size_t kMaxUnread = std::size_t{1024} * 1024;
-constexpr std::size_t kMaxClients = 64;
+/// A host that leaves this many bytes unread has gone, or is hostile.
+constexpr std::size_t kMostUnread = std::size_t{1024} * 1024;
+constexpr std::size_t kMostClients = 64;
 
 }  // namespace
 

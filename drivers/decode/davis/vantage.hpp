@@ -30,11 +30,11 @@ namespace yuragi::drivers::decode::davis {
 //   95, 96    LF CR
 //   97, 98    checksum of all before it, high byte first
 //
-// All other numbers have their low byte first. The manual says 0.1 mph of the gust; recorded packets, and weewx issue
-// 686, show whole mph.
+// All other numbers have their low byte first. According to the manual the gust is in 0.1 mph; recorded packets, and
+// weewx issue 686, show whole mph.
 //
-// A console that has lost its anemometer says a speed of 0, by the manual. Of a true calm it tells the direction of the
-// vane, of a lost anemometer none: a speed of 0 without a direction is no wind.
+// According to the manual, a console that has lost its anemometer sends a speed of 0. In a true calm it also sends the
+// direction of the vane, for a lost anemometer none: a speed of 0 without a direction is no wind.
 
 inline constexpr std::size_t kVantagePacket = 99;
 
@@ -51,14 +51,14 @@ bool begins_vantage_packet(ByteSpan beginning) noexcept;
 /// Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_vantage_packet(ByteSpan packet) noexcept;
 
-/// What such a packet says besides the wind, without its time; nothing where decode_vantage_packet() would refuse it as
-/// kTooShort, kMalformed or kBadChecksum. `rain_of_a_tip_mm`: of the station's rain collector; empty: rain is left out.
-/// The rain total is that since midnight. Values are not checked for their range (wind::plausible_part). Thread-safe
-/// and realtime-safe: yes.
+/// Returns the other quantities in such a packet, without its time; nullopt if decode_vantage_packet() would refuse it
+/// as kTooShort, kMalformed or kBadChecksum. `rain_of_a_tip_mm`: of the station's rain collector; empty: rain is left
+/// out. The rain total is that since midnight. Values are not checked for their range (wind::plausible_part).
+/// Thread-safe and realtime-safe: yes.
 std::optional<wind::StationQuantities> decode_vantage_quantities(ByteSpan packet,
                                                                  std::optional<double> rain_of_a_tip_mm) noexcept;
 
-/// What the rain collector's tip is, in mm, by the console's setup bits (its EEPROM at 0x2b); `reply` is that byte and
+/// Returns the rain collector's tip in mm, from the console's setup bits (its EEPROM at 0x2b); `reply` is that byte and
 /// its checksum. kTooShort, kMalformed (longer), kBadChecksum, kInvalid (a collector that is not known). Thread-safe
 /// and realtime-safe: yes.
 Result<double, Refusal> decode_vantage_rain_of_a_tip_mm(ByteSpan reply) noexcept;

@@ -21,12 +21,12 @@ class VantageAssembler {
  public:
   using Packet = Result<ByteSpan, Refusal>;
 
-  /// Takes bytes from the front of `bytes` until a packet is whole or they are used up: then nothing. The view is valid
-  /// until the next call; its checksum is right. Refusals: kBadChecksum (or not the end of a packet), kMalformed (bytes
-  /// that belong to none; told once for all that come together).
+  /// Takes bytes from the front of `bytes` until a packet is complete, or they are used up: then it returns nullopt.
+  /// The view is valid until the next call; its checksum is right. Refusals: kBadChecksum (or not the end of a packet),
+  /// kMalformed (bytes that belong to none; returned once for adjacent ones).
   std::optional<Packet> next(ByteSpan& bytes) noexcept;
 
-  /// What has come of a packet will not be continued. Returns whether there was any.
+  /// Discards an incomplete packet. Returns whether there was one.
   bool cut() noexcept;
 
  private:
@@ -35,7 +35,7 @@ class VantageAssembler {
   std::array<std::uint8_t, kVantagePacket> bytes_{};
   std::size_t size_ = 0;
   bool is_taken_ = false;    // bytes_ is the packet of the last call
-  bool is_outside_ = false;  // the bytes before belonged to no packet, and it has been told
+  bool is_outside_ = false;  // the bytes before belonged to no packet, and were refused
 };
 
 }  // namespace yuragi::drivers::decode::davis

@@ -19,7 +19,7 @@ constexpr double kHpaPerInchOfMercury = 33.86389;
 /// By rain_size; 0 is reserved.
 constexpr std::array<double, 5> kRainOfSizes_mm = {0.0, 0.254, 0.2, 0.1, 0.0254};
 
-/// A finite number; nothing where it is missing, null or something else.
+/// Returns a finite number; nullopt if it is missing, null or something else.
 std::optional<double> number_at(const Json& record, const char* key) {
   const auto found = record.find(key);
   if (found == record.end() || !found->is_number()) return std::nullopt;

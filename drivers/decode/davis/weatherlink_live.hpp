@@ -26,7 +26,7 @@ namespace yuragi::drivers::decode::davis {
 //             rx_state (2: the station is searched for, and the values are old)
 //             data_structure_type 3: bar_sea_level (inHg)
 //
-// A value that is not there is null. In a calm the direction is 0, which is none then.
+// A missing value is null. In a calm the direction is 0 and has no meaning.
 
 /// One message that has conditions.
 struct LiveConditions {

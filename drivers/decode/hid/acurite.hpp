@@ -14,7 +14,7 @@ namespace yuragi::drivers::decode::hid {
 // AcuRite 01025, 01035, 01036, 02032, 02064 (USB 24c0:0003).
 // Source: weewx drivers/acurite.py and issue 39; wxforum topic 27244 (speed); drivers/SOURCES.md S2.4.
 //
-// Nothing is sent without a request: input report 1 is requested every 18 s. Its contents alternate, so that a
+// The console sends only on request: input report 1 is requested every 18 s. Its contents alternate, so that a
 // direction comes every 36 s.
 //
 //   0   1, the report's id
@@ -28,8 +28,8 @@ namespace yuragi::drivers::decode::hid {
 //   9   00 or ff
 //
 // Speed is 0 at n = 0, else 0.8278 n + 1 km/h. A tip is 0.01 inch. Temperature is n / 18 - 40 degrees Celsius. The
-// pressure would be in report 2, which is not requested: its sense depends on the console's sensor and on constants in
-// it, and by weewx what it says is often far from the pressure at the station.
+// pressure would be in report 2, which is not requested: its meaning depends on the console's sensor and on constants
+// in it, and according to weewx it is often far from the pressure at the station.
 
 inline constexpr std::size_t kAcuriteReport1 = 10;
 
@@ -39,8 +39,8 @@ inline constexpr std::size_t kAcuriteReport1 = 10;
 /// yes.
 Result<DecodedWind, Refusal> decode_acurite(ByteSpan report) noexcept;
 
-/// What such a report says besides the wind, without its time: rain beside a direction, else temperature and humidity;
-/// nothing where decode_acurite() refuses it. Values are not checked for their range (wind::plausible_part).
+/// Returns the other quantities in such a report, without its time: rain beside a direction, otherwise temperature and
+/// humidity; nullopt if decode_acurite() refuses it. Values are not checked for their range (wind::plausible_part).
 /// Thread-safe and realtime-safe: yes.
 std::optional<wind::StationQuantities> decode_acurite_quantities(ByteSpan report) noexcept;
 

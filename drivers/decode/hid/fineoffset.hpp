@@ -64,8 +64,8 @@ std::uint16_t previous_fineoffset_position(std::uint16_t position, FineOffsetMod
 /// realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_fineoffset_record(ByteSpan record) noexcept;
 
-/// What such a record says besides the wind, without its time; nothing where decode_fineoffset_record() would refuse
-/// it as kTooShort or kMalformed. Without contact to the sensors outside it is the pressure alone. Values are not
+/// Returns the other quantities in such a record, without its time; nullopt if decode_fineoffset_record() would refuse
+/// it as kTooShort or kMalformed. Without contact to the outdoor sensors it is only the pressure. Values are not
 /// checked for their range (wind::plausible_part). Thread-safe and realtime-safe: yes.
 std::optional<wind::StationQuantities> decode_fineoffset_quantities(ByteSpan record) noexcept;
 

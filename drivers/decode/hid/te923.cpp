@@ -19,7 +19,7 @@ std::array<std::uint8_t, 8> te923_command(std::uint8_t command, std::uint32_t ad
   return report;
 }
 
-/// The speed at `at`; none where the digits are the mark for no sensor or no digits.
+/// The speed at `at`; none if the digits are the mark for no sensor or no digits.
 std::optional<double> te923_speed_m_s(ByteSpan block, std::size_t at) {
   const unsigned ones = block[at] >> 4U;
   const unsigned tenths = block[at] & 0x0FU;
@@ -39,7 +39,7 @@ std::optional<Refusal> te923_refusal(ByteSpan block) {
   return std::nullopt;
 }
 
-/// The temperature at `at`; none where a digit is none, or the block marks it as invalid.
+/// The temperature at `at`; none if a digit is none, or the block marks it as invalid.
 std::optional<double> te923_temperature_c(ByteSpan block, std::size_t at) {
   constexpr unsigned kHalfTenth = 0x20;
   constexpr unsigned kIsValid = 0x40;

@@ -47,9 +47,9 @@ std::array<std::uint8_t, 8> encode_te923_acknowledgement(std::uint32_t address) 
 /// either: the block keeps an old one. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_te923(ByteSpan block) noexcept;
 
-/// What such a block says besides the wind, without its time; nothing where decode_te923() would refuse it as anything
-/// but kInvalid. The console counts the rain itself: it does not say whether it still hears the gauge. Values are not
-/// checked for their range (wind::plausible_part). Thread-safe and realtime-safe: yes.
+/// Returns the other quantities in such a block, without its time; nullopt if decode_te923() would refuse it, except as
+/// kInvalid. The console counts the rain itself: the block does not show whether it still receives the gauge. Values
+/// are not checked for their range (wind::plausible_part). Thread-safe and realtime-safe: yes.
 std::optional<wind::StationQuantities> decode_te923_quantities(ByteSpan block) noexcept;
 
 }  // namespace yuragi::drivers::decode::hid

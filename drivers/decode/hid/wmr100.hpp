@@ -50,22 +50,23 @@ ByteSpan wmr100_report_bytes(ByteSpan report) noexcept;
 struct Wmr100Stream {
   std::array<std::uint8_t, kWmr100LongestFrame + 1> frame{};  ///< and the first ff behind it
   std::size_t size = 0;
-  bool is_skipping = false;    ///< nothing more of this frame is wanted
+  bool is_skipping = false;    ///< the rest of this frame is ignored
   bool was_ff = false;         ///< the last byte was ff
   std::size_t ended_size = 0;  ///< of the frame that the last byte ended
 };
 
-/// Takes the stream's next byte. Where that ends a frame: the wind, or why there is none (the order of
-/// decode_wmr100_frame(), and kMalformed for a frame without end); else nothing. A wind frame ends with its eleventh
-/// byte, so that it need not wait for the next sensor's. Whatever is broken, the frame after the next ff ff is read.
-/// Memory is bounded. Realtime-safe: yes; thread-safe: for distinct streams.
+/// Takes the stream's next byte. If that ends a frame, returns its wind, or why it has none (the order of
+/// decode_wmr100_frame(), and kMalformed for a frame without end); otherwise nullopt. A wind frame ends with its
+/// eleventh byte, so that it need not wait for the next sensor's. After any damage the frame after the next ff ff is
+/// read. Memory is bounded. Realtime-safe: yes; thread-safe: for distinct streams.
 std::optional<Result<DecodedWind, Refusal>> take_wmr100_byte(Wmr100Stream& stream, std::uint8_t byte) noexcept;
 
-/// The stream ends here: the wind of its last frame if that was still waiting for the ff ff behind it; nothing if not.
+/// Ends the stream. Returns the wind of its last frame if that was still waiting for the ff ff behind it; otherwise
+/// nullopt.
 std::optional<Result<DecodedWind, Refusal>> finish_wmr100(Wmr100Stream& stream) noexcept;
 
-/// The frame of which take_wmr100_byte() or finish_wmr100() has just told the wind, or why it has none, without its
-/// ff ff; empty where they told nothing. It points into `stream`, until the next byte. Thread-safe: for distinct
+/// Returns the frame whose wind or refusal take_wmr100_byte() or finish_wmr100() has just returned, without its ff ff;
+/// empty if they returned nullopt. It points into `stream`, and is valid until the next byte. Thread-safe: for distinct
 /// streams; realtime-safe: yes.
 ByteSpan ended_wmr100_frame(const Wmr100Stream& stream) noexcept;
 
@@ -74,9 +75,9 @@ ByteSpan ended_wmr100_frame(const Wmr100Stream& stream) noexcept;
 /// average, which cannot be: it is left out. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_wmr100_frame(ByteSpan frame) noexcept;
 
-/// What such a frame says besides the wind, without its time: temperature and humidity outdoors, pressure at the
-/// station, or rain; nothing where it is damaged, of another length than its kind has, or another sensor's. Values are
-/// not checked for their range (wind::plausible_part). Thread-safe and realtime-safe: yes.
+/// Returns the other quantities in such a frame, without its time: temperature and humidity outdoors, pressure at the
+/// station, or rain; nullopt if it is damaged, has a wrong length for its kind, or is another sensor's. Values are not
+/// checked for their range (wind::plausible_part). Thread-safe and realtime-safe: yes.
 std::optional<wind::StationQuantities> decode_wmr100_quantities(ByteSpan frame) noexcept;
 
 }  // namespace yuragi::drivers::decode::hid

@@ -23,7 +23,7 @@ constexpr std::size_t kWmr300Channel = 7;
 constexpr std::size_t kWmr300Magic = 12;
 constexpr std::size_t kWmr300SumAt = 52;
 
-/// The number at `at`; none where the console has none.
+/// The number at `at`; none if the console has none.
 std::optional<double> wmr300_number(ByteSpan packet, std::size_t at) {
   if (packet[at] == kWmr300NoData) return std::nullopt;
   return big_endian_16(packet, at);

@@ -45,23 +45,23 @@ inline constexpr std::array<std::uint8_t, 5> kWmr300Heartbeat = {0xA6, 0x91, 0xC
 
 /// The wind of a packet, or the first thing that is wrong: kTooShort, kNotMine (another packet), kMalformed (a length
 /// that 0xD4 does not have), kBadChecksum, kInvalid (no data), kImplausible. Bytes behind the packet are the report's
-/// padding. The packet's state is all in itself: nothing is kept. Thread-safe and realtime-safe: yes.
+/// padding. No state is kept between packets. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_wmr300(ByteSpan packet) noexcept;
 
-/// What a packet says besides the wind, without its time: temperature and humidity outdoors, pressure at the station,
-/// or rain; nothing where it is damaged, of another length than its kind has, or another sensor's. The bytes behind it
-/// are the report's padding. Values are not checked for their range (wind::plausible_part). Thread-safe and
+/// Returns the other quantities in a packet, without its time: temperature and humidity outdoors, pressure at the
+/// station, or rain; nullopt if it is damaged, has a wrong length for its kind, or is another sensor's. The bytes
+/// behind it are the report's padding. Values are not checked for their range (wind::plausible_part). Thread-safe and
 /// realtime-safe: yes.
 std::optional<wind::StationQuantities> decode_wmr300_quantities(ByteSpan packet) noexcept;
 
-/// Is this the console's reply to a heartbeat? If it does not send data yet, it must be told to start.
+/// Is this the console's reply to a heartbeat? If it does not send data yet, it needs encode_wmr300_begin() to start.
 bool is_wmr300_identity(ByteSpan packet) noexcept;
 
 /// The packet that makes the console that replied with `identity` send data; is_wmr300_identity() holds for it.
 std::array<std::uint8_t, 6> encode_wmr300_begin(ByteSpan identity) noexcept;
 
-/// Is the packet whole and undamaged, whatever its kind? Data packets end with a sum; what has none passes by its head
-/// alone. Thread-safe and realtime-safe: yes.
+/// Is the packet, of any kind, complete and undamaged? Data packets end with a sum; of others only the head is checked.
+/// Thread-safe and realtime-safe: yes.
 bool is_sound_wmr300(ByteSpan packet) noexcept;
 
 /// Must this packet be acknowledged? Any data packet, also one that decode_wmr300() refuses as kNotMine.

@@ -23,7 +23,7 @@ double signed_8(std::uint8_t byte) {
   return static_cast<std::int8_t>(byte);
 }
 
-/// A value of such a type; nothing where the type is unknown, the bytes are not its size, or it is not finite.
+/// Returns a value of such a type; nullopt if the type is unknown, the size is wrong, or it is not finite.
 std::optional<double> value_of(std::uint8_t type, ByteSpan bytes) {
   constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
   constexpr std::uint8_t kFirst = 0x10;
@@ -59,7 +59,7 @@ std::optional<double> value_of(std::uint8_t type, ByteSpan bytes) {
   return value;
 }
 
-/// A status, a channel, and, where the status is good, the type and the value.
+/// A status, a channel, and, if the status is good, the type and the value.
 std::optional<UmbChannel> channel_of(std::uint8_t status, ByteSpan bytes) {
   if (bytes.size() < 2) return {};
   UmbChannel channel{.channel = little_endian_16(bytes, 0), .status = status, .value = {}};

@@ -100,13 +100,13 @@ struct UmbReply {
   std::array<UmbChannel, kMaxUmbChannels> channels{};
   std::size_t count = 0;
 
-  /// That channel; nullptr where the reply does not have it.
+  /// Returns that channel; nullptr if the reply does not have it.
   const UmbChannel* find(std::uint16_t channel) const noexcept;
 };
 
 /// The reply in one frame; or the first thing that is wrong with it: kTooShort, kMalformed (longer, or not the layout),
-/// kBadChecksum, kNotMine (a request, another command, or not from `address` where one is given), kException (the
-/// status of the whole is not 0), kMalformed (its channels). Thread-safe and realtime-safe: yes.
+/// kBadChecksum, kNotMine (a request, another command, or not from `address` if one is given), kException (the status
+/// of the whole is not 0), kMalformed (its channels). Thread-safe and realtime-safe: yes.
 Result<UmbReply, Refusal> decode_umb_reply(std::optional<std::uint16_t> address, ByteSpan frame) noexcept;
 
 /// The wind of a reply: the fast channels before the others. kInvalid (no speed and no direction), kImplausible. An
@@ -114,8 +114,8 @@ Result<UmbReply, Refusal> decode_umb_reply(std::optional<std::uint16_t> address,
 /// left out. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> wind_of(const UmbReply& reply) noexcept;
 
-/// What it says besides the wind, without its time. Values are not checked for their range (wind::plausible_part).
-/// Thread-safe and realtime-safe: yes.
+/// Returns the other quantities in a reply, without its time. Values are not checked for their range
+/// (wind::plausible_part). Thread-safe and realtime-safe: yes.
 wind::StationQuantities quantities_of(const UmbReply& reply) noexcept;
 
 }  // namespace yuragi::drivers::decode::lufft

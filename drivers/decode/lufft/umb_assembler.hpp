@@ -21,12 +21,12 @@ class UmbAssembler {
  public:
   using Frame = Result<ByteSpan, Refusal>;
 
-  /// Takes bytes from the front of `bytes` until a frame is whole or they are used up: then nothing. The view is valid
-  /// until the next call; its layout and its checksum are right. Refusals: kBadChecksum (or not the end of a frame),
-  /// kMalformed (bytes that belong to none; told once for all that come together).
+  /// Takes bytes from the front of `bytes` until a frame is complete, or they are used up: then it returns nullopt. The
+  /// view is valid until the next call; its layout and its checksum are right. Refusals: kBadChecksum (or not the end
+  /// of a frame), kMalformed (bytes that belong to none; returned once for adjacent ones).
   std::optional<Frame> next(ByteSpan& bytes) noexcept;
 
-  /// What has come of a frame will not be continued. Returns whether there was any.
+  /// Discards an incomplete frame. Returns whether there was one.
   bool cut() noexcept;
 
  private:
@@ -35,7 +35,7 @@ class UmbAssembler {
   std::array<std::uint8_t, kMaxUmbFrame> bytes_{};
   std::size_t size_ = 0;
   std::size_t taken_ = 0;    // of bytes_: the frame of the last call
-  bool is_outside_ = false;  // the bytes before belonged to no frame, and it has been told
+  bool is_outside_ = false;  // the bytes before belonged to no frame, and were refused
 };
 
 }  // namespace yuragi::drivers::decode::lufft

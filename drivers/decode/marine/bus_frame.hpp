@@ -10,8 +10,8 @@
 
 namespace yuragi::drivers::decode::marine {
 
-// What the ways to write down a frame of an NMEA 2000 bus have in common. Nothing here allocates, throws or keeps
-// state. Thread-safe and realtime-safe: yes.
+// What the text formats of NMEA 2000 frames have in common. Nothing here allocates, throws or keeps state. Thread-safe
+// and realtime-safe: yes.
 
 /// One CAN frame.
 struct BusFrame {
@@ -20,7 +20,7 @@ struct BusFrame {
   std::size_t size = 0;  ///< of the data
 };
 
-/// What an identifier says. Source: drivers/SOURCES.md S11.
+/// The content of an identifier. Source: drivers/SOURCES.md S11.
 struct BusIdentifier {
   std::uint8_t priority = 0;  ///< 0: first; 7: last
   std::uint32_t pgn = 0;      ///< which message it is

@@ -29,7 +29,7 @@ Result<BusWind, Refusal> BusLineDecoder::decode(std::string_view line) {
 Result<BusWind, Refusal> BusLineDecoder::decode_json(std::string_view line) {
   if (const auto told = canboat_angle_unit(line); told && !options_.angle_unit) angle_unit_ = told;
   const auto said = decode_canboat({.angle_unit = angle_unit_}, line);
-  // Without a known unit only what can be nothing but degrees is decoded.
+  // Without a known unit only angles that must be in degrees are decoded.
   if (said && said->wind.direction_deg && !angle_unit_) angle_unit_ = AngleUnit::kDegrees;
   lacks_angle_unit_ = said && !angle_unit_;
   return said;

@@ -11,7 +11,7 @@
 
 namespace yuragi::drivers::decode::marine {
 
-/// How a gateway or program writes what is said on an NMEA 2000 bus.
+/// How a gateway or program writes the messages of an NMEA 2000 bus.
 enum class BusLineFormat : std::uint8_t {
   kAuto,  ///< detected, line by line
   kYachtDevices,
@@ -24,11 +24,11 @@ inline constexpr std::size_t kMaxBusLine = 8192;
 
 struct BusLineOptions {
   BusLineFormat format = BusLineFormat::kAuto;
-  std::optional<AngleUnit> angle_unit;  ///< of canboat; nothing: as its lines show it
+  std::optional<AngleUnit> angle_unit;  ///< of canboat; nullopt: as its lines show it
 };
 
-/// Decodes the lines of one source in their order, and keeps what is said once: canboat's unit of angles, and how a CAN
-/// controller does. Thread-safe: no.
+/// Decodes the lines of one source in their order, and keeps what is sent only once: canboat's unit of angles, and the
+/// state of a CAN controller. Thread-safe: no.
 class BusLineDecoder {
  public:
   explicit BusLineDecoder(const BusLineOptions& options) : options_(options), angle_unit_(options.angle_unit) {}
@@ -38,7 +38,7 @@ class BusLineDecoder {
   /// Another stream of lines begins.
   void restart() { *this = BusLineDecoder(options_); }
 
-  /// The last wind of canboat came without a direction that was believed: nothing says in which unit its angles are.
+  /// Returns true if the last wind of canboat has no direction because the unit of its angles is unknown.
   bool lacks_angle_unit() const noexcept { return lacks_angle_unit_; }
   ControllerState controller() const noexcept { return controller_; }
 
@@ -47,7 +47,7 @@ class BusLineDecoder {
   Result<BusWind, Refusal> decode_dump(std::string_view line);
 
   BusLineOptions options_;
-  std::optional<AngleUnit> angle_unit_;  // nothing: not known yet
+  std::optional<AngleUnit> angle_unit_;  // nullopt: not known yet
   bool lacks_angle_unit_ = false;
   ControllerState controller_ = ControllerState::kGood;
 };

@@ -25,7 +25,7 @@ constexpr FieldNames kWindSpeedNames = {"Wind Speed", "windSpeed", "WindSpeed"};
 constexpr FieldNames kWindAngleNames = {"Wind Angle", "windAngle", "WindAngle"};
 constexpr FieldNames kReferenceNames = {"Reference", "reference", "Reference"};
 
-/// Nothing where it is not there or null.
+/// Returns nullptr if it is missing or null.
 const CanboatJson* field_of(const CanboatJson& fields, const FieldNames& names) {
   for (const char* name : names) {
     const auto found = fields.find(name);
@@ -42,7 +42,7 @@ std::optional<double> number_of(const CanboatJson& value) {
   return number ? *number : std::nullopt;
 }
 
-/// Nothing where there is none. kMalformed where it is no number.
+/// Returns nullopt if there is none, kMalformed if it is not a number.
 Result<std::optional<double>, Refusal> number_field(const CanboatJson& fields, const FieldNames& names) {
   const CanboatJson* const value = field_of(fields, names);
   if (value == nullptr) return std::optional<double>();

@@ -16,9 +16,9 @@ namespace yuragi::drivers::decode::marine {
 //   can0  20000004   [8]  00 10 00 00 00 00 00 00   ERRORFRAME
 //
 // Identifiers of 8 digits have 29 bits, those of 3 digits 11, which NMEA 2000 does not use. From 20000000 on they are
-// no frame of the bus, but what its controller says of itself. Sources: drivers/SOURCES.md S11.
+// not frames of the bus, but reports of its controller about itself. Sources: drivers/SOURCES.md S11.
 
-/// How a CAN controller does, as it says itself.
+/// The state of a CAN controller, as it reports it.
 enum class ControllerState : std::uint8_t {
   kGood,
   kPassive,  ///< so many errors that it must not disturb others any more; it still receives
@@ -28,7 +28,7 @@ enum class ControllerState : std::uint8_t {
 /// Does it begin as such a line does?
 bool looks_like_candump(std::string_view line) noexcept;
 
-/// What a line says of the controller; nothing where it is another one. Thread-safe and realtime-safe: yes.
+/// Returns the controller's state in a line; nullopt if it is another line. Thread-safe and realtime-safe: yes.
 std::optional<ControllerState> candump_controller_state(std::string_view line) noexcept;
 
 /// The wind in one line. Refusals, in this order: kTooShort (it ends before its data), kMalformed (not this format),

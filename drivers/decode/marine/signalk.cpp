@@ -23,7 +23,7 @@ bool is_speed(std::size_t quantity) {
   return quantity <= static_cast<std::size_t>(SignalKQuantity::kSpeedOverGround);
 }
 
-/// The text of that name in an object, cut and printable; empty where there is none.
+/// The text of that name in an object, cut and printable; empty if there is none.
 std::string shown_text(const SignalKJson& object, const char* name) {
   const auto found = object.find(name);
   if (found == object.end() || !found->is_string()) return {};
@@ -38,7 +38,7 @@ std::string full_text(const SignalKJson& object, const char* name) {
   return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-/// "$source", or what "source" says of it: "n2k.105".
+/// Returns "$source", or the same made from "source": "n2k.105".
 std::string source_of(const SignalKJson& update) {
   std::string named = shown_text(update, "$source");
   const auto source = update.find("source");

@@ -20,7 +20,7 @@ namespace yuragi::drivers::decode::marine {
 //    {"$source":"n2k.105","timestamp":"2026-06-21T15:09:17.012Z","values":[
 //     {"path":"environment.wind.speedApparent","value":4.01},{"path":"environment.wind.angleApparent","value":-0.22}]}]}
 //
-// Values are in m/s and radians; angles from the bow are negative to port. What is not known is null. A server sends
+// Values are in m/s and radians; angles from the bow are negative to port. An unknown value is null. A server sends
 // each value of a message in a delta of its own, with the message's source and time. Sources: drivers/SOURCES.md S11.
 
 /// Deltas of one message have some hundred bytes, those of many values some thousand.
@@ -39,10 +39,10 @@ enum class SignalKQuantity : std::uint8_t {
 };
 inline constexpr std::size_t kSignalKQuantities = 8;
 
-/// m/s, or degrees clockwise in [0, 360); empty: not said, or null.
+/// m/s, or degrees clockwise in [0, 360); empty: not sent, or null.
 using SignalKValues = std::array<std::optional<double>, kSignalKQuantities>;
 
-/// What one update says of the wind.
+/// The wind in one update.
 struct SignalKUpdate {
   std::string source;     ///< which of the server's sources; printable, at most 64 bytes
   std::string timestamp;  ///< as sent, at most 64 bytes; empty: none
@@ -59,12 +59,12 @@ struct SignalKHello {
   std::string self;       ///< the context of its own vessel; empty: it has none
 };
 
-/// The server's first message; nothing where the line is another one. Thread-safe: yes.
+/// Returns the server's first message; nullopt if the line is another one. Thread-safe: yes.
 std::optional<SignalKHello> signalk_hello(std::string_view line);
 
 /// The updates of one line that have a value of the wind. Refusals, in this order: kMalformed (no JSON object, or not
 /// this format), kNotMine (no value of the wind), kInvalid (null alone), kImplausible (a speed that is none). An
-/// impossible angle is left out. Never throws for any line, but for want of memory. Thread-safe: yes.
+/// impossible angle is left out. Never throws for any line, except if memory runs out. Thread-safe: yes.
 Result<SignalKDelta, Refusal> decode_signalk(std::string_view line);
 
 /// A wind that values of one moment make, in one frame.
@@ -74,8 +74,8 @@ struct SignalKWind {
 };
 inline constexpr std::size_t kSignalKFrames = 5;
 
-/// The winds that these values make, best frame first: each with a speed; where its direction is not there, its
-/// direction is empty. A direction from north has the speed over ground, or the true one. Thread- and realtime-safe.
+/// The winds that these values make, best frame first: each with a speed; without a direction, that is empty. A
+/// direction from north has the speed over ground, or the true one. Thread- and realtime-safe.
 std::array<std::optional<SignalKWind>, kSignalKFrames> signalk_winds(const SignalKValues& values) noexcept;
 
 }  // namespace yuragi::drivers::decode::marine

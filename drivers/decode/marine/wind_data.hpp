@@ -30,19 +30,19 @@ enum class WindDataReference : std::uint8_t {
   kApparent,  ///< the bow, of the wind that is felt on board
   kBoat,      ///< the bow, with the vessel's motion over the ground taken out
   kWater,     ///< the bow, with the vessel's motion through the water taken out
-  kUnknown,   ///< not said (7): for a device that stands still its own mark
+  kUnknown,   ///< not sent (7): for a device that stands still its own mark
 };
 inline constexpr std::array<std::string_view, 6> kWindDataReferenceNames = {"north", "magnetic", "apparent",
                                                                             "boat",  "water",    "unknown"};
 
-/// The wind that one device on the bus says.
+/// The wind that one device on the bus reports.
 struct BusWind {
   DecodedWind wind;
   WindDataReference reference = WindDataReference::kUnknown;
   std::uint8_t address = 0;  ///< of the device on the bus
 };
 
-/// The same as decoders of all devices say it: a true wind is one that counts from the bow.
+/// Returns the same in the terms of all decoders: a true wind is measured from the bow.
 WindReference wind_reference_of(WindDataReference reference) noexcept;
 
 /// A direction in degrees of an angle in radians in [0, 2 pi], as it is rounded to 0.0001; empty for any other.

@@ -17,7 +17,7 @@ struct MicAnalyserOptions {
   double rate_hz = 48000.0;  ///< above 0
   std::size_t channels = 1;  ///< 1 to kMicMaxChannels
   double low_hz = 20.0;      ///< the wind's band, 0 < low < high
-  double high_hz = 200.0;    ///< cut where the rate ends
+  double high_hz = 200.0;    ///< limited by the sample rate
 };
 
 /// Sound to MicBlocks: Hann segments of an eighth to a quarter of a second that overlap by half, each without its mean

@@ -40,7 +40,7 @@ struct MicHello {
 /// One channel of a block.
 struct MicChannel {
   std::array<float, kMicMaxBands> power{};  ///< mean square in each band, mean over the segments
-  float high_power = 0.0F;                  ///< of the band above the wind's; 0 where there is none
+  float high_power = 0.0F;                  ///< of the band above the wind's; 0 if there is none
   float total_power = 0.0F;                 ///< of the samples, without their mean
   float clipped = 0.0F;                     ///< part of the samples at full scale, 0 to 1
   float peak = 0.0F;                        ///< largest magnitude without the mean; 0: digital silence

@@ -46,8 +46,8 @@ using MicCalibration = std::variant<MicPowerLaw, MicCurve>;
 /// by a power law. Thread-safe and realtime-safe: yes.
 double mic_speed_m_s(const MicCalibration& calibration, double power, double noise_power) noexcept;
 
-/// The inverse: the level of a band, dB, that gives this wind. Nothing where many levels do (a calm).
-/// Thread-safe and realtime-safe: yes.
+/// The inverse: returns the level of a band, dB, that gives this wind; nullopt if many levels do (a calm). Thread-safe
+/// and realtime-safe: yes.
 std::optional<double> mic_level_db(const MicCalibration& calibration, double speed_m_s, double noise_power) noexcept;
 
 /// "-62:0 -50:1.2 -40:3.4" (dB:m/s). The failure's text: what is wrong.
@@ -63,8 +63,8 @@ struct MicFit {
 /// The power law with the least squared error in speed. Fails with too few pairs or too little difference between them.
 Result<MicPowerLaw, Failure> fit_mic_power_law(std::span<const MicLevelAndSpeed> pairs, double noise_power);
 
-/// The power law through two known winds; the noise is taken off both. Fails where they are too much alike, or where no
-/// power law goes through both.
+/// The power law through two known winds; the noise is taken off both. Fails if they are too similar, or if no power
+/// law goes through both.
 Result<MicPowerLaw, Failure> mic_power_law_through(const MicLevelAndSpeed& soft, const MicLevelAndSpeed& loud,
                                                    double noise_power);
 

@@ -51,7 +51,7 @@ MicDirection::MicDirection(const std::vector<double>& faces_deg, double smoothin
       for (std::size_t j = 0; j < 3; ++j) normal[i][j] += basis.back()[i] * basis.back()[j];
     }
   }
-  // 6.75 for three faces at thirds of the circle; near 0 where two of three face the same way.
+  // 6.75 for three faces at thirds of the circle; near 0 if two of three face the same way.
   if (determinant(normal) < 0.5) {
     throw std::invalid_argument("the microphones' faces are too similar for a direction: spread them out");
   }

@@ -18,10 +18,10 @@ struct MicDirectionEstimate {
 class MicDirection {
  public:
   /// Where each microphone faces, degrees clockwise from north: three at least, not all within one half circle's line.
-  /// Throws std::invalid_argument where a cosine cannot be fitted to them.
+  /// Throws std::invalid_argument if a cosine cannot be fitted to them.
   MicDirection(const std::vector<double>& faces_deg, double smoothing_s);
 
-  /// Adds the speeds by each microphone, valid for `duration_s`. Nothing in a calm.
+  /// Adds the speeds by each microphone, valid for `duration_s`. Returns nullopt in a calm.
   std::optional<MicDirectionEstimate> add(std::span<const double> speeds_m_s, double duration_s) noexcept;
 
   void restart() noexcept;

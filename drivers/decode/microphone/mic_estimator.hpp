@@ -19,7 +19,7 @@ namespace yuragi::drivers::decode::microphone {
 
 struct MicEstimatorOptions {
   MicCalibration calibration = MicPowerLaw{};
-  /// Of a calm, dB re full scale; nothing: found while running (MicNoiseFloor). A curve needs none.
+  /// Of a calm, dB re full scale; nullopt: found while running (MicNoiseFloor). A curve needs none.
   std::optional<double> noise_floor_db = std::nullopt;
   double noise_memory_s = 86400.0;
   /// Is what all microphones record alike taken for sound, not wind? One microphone alone cannot distinguish them.
@@ -37,7 +37,7 @@ struct MicEstimate {
   std::optional<double> gust_m_s;       ///< strongest mean over 3 s of the last 10 min (WMO-No. 8, 2021, I.5)
   double direction_confidence = 0.0;    ///< 0 to 1
   double level_db = 0.0;                ///< of the wind in its band, without sound; what a calibration is made of
-  double floor_db = 0.0;                ///< what was taken for a calm; -200: nothing
+  double floor_db = 0.0;                ///< the level used for a calm; -200: none
   double sound_part = 0.0;              ///< of the band's power that was taken for sound, 0 to 1
   unsigned silent_channels = 0;         ///< a bit for each that is digitally silent
   bool is_clipping = false;
@@ -58,14 +58,14 @@ class MicEstimator {
   /// Throws std::invalid_argument for faces that are no direction's, or more than there are channels.
   MicEstimator(const MicEstimatorOptions& options, const MicHello& hello);
 
-  /// Nothing until a whole window has been recorded. Refuses: kInvalid (digital silence: muted, or unplugged without an
-  /// error; or samples that are no numbers; or a window in which two channels carry the same signal, twins()),
-  /// kImplausible (noise at full scale, as strong above the wind's band as in it: a broken cable or a wrong sample
-  /// format). A refused block empties the window.
+  /// Returns nullopt until a whole window has been recorded. Refuses: kInvalid (digital silence: muted, or unplugged
+  /// without an error; or samples that are no numbers; or a window in which two channels carry the same signal,
+  /// twins()), kImplausible (noise at full scale, as strong above the wind's band as in it: a broken cable or a wrong
+  /// sample format). A refused block empties the window.
   Result<std::optional<MicEstimate>, Refusal> add(const MicBlock& block);
 
   /// Two channels, counted from 0, that carry the same signal: a mono input that was opened with more channels. All of
-  /// it would be taken for sound, and a storm for a calm. Of the last window; nothing while sound is not ignored.
+  /// it would be taken for sound, and a storm for a calm. Of the last window; nullopt while sound is not ignored.
   const std::optional<std::array<std::size_t, 2>>& twins() const noexcept { return twins_; }
 
   const MicHello& hello() const noexcept { return hello_; }

@@ -58,14 +58,14 @@ class MicFrameReader {
  public:
   struct Item {
     Result<MicFrame, Refusal> frame;
-    std::vector<std::uint8_t> bytes;  ///< the whole frame; empty where none was found
+    std::vector<std::uint8_t> bytes;  ///< the whole frame; empty if none was found
   };
 
   void push(std::span<const std::uint8_t> bytes);
 
-  /// The next frame, or why what stood there is none: kMalformed (not the protocol: skipped up to the next mark),
+  /// Returns the next frame, or why it is not one: kMalformed (not the protocol: skipped up to the next mark),
   /// kBadChecksum, kNotMine (a block before any hello, or of another shape), kTooShort (a payload that ends too early),
-  /// kInvalid (a number that cannot be). Nothing: more bytes are needed.
+  /// kInvalid (an impossible number). Nullopt: more bytes are needed.
   std::optional<Item> next();
 
   /// Forgets everything, for a new worker.

@@ -16,7 +16,7 @@ struct RunningPair {
 
   /// Values that held for `duration_s`; what is older than `memory_s` fades.
   void add(double a, double b, double duration_s, double memory_s) noexcept;
-  /// -1 to 1; 0 where one of them does not move.
+  /// -1 to 1; 0 if one of them does not move.
   double correlation() const noexcept;
 };
 

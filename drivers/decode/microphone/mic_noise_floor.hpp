@@ -21,7 +21,7 @@ class MicNoiseFloor {
   /// Level in dB re full scale, held for `duration_s`.
   void add(double level_db, double duration_s) noexcept;
 
-  /// The floor in dB; nothing until an hour has been recorded, or half the memory if that is less.
+  /// Returns the floor in dB; nullopt until an hour has been recorded, or half the memory if that is less.
   std::optional<double> floor_db() const noexcept;
 
  private:

@@ -54,7 +54,7 @@ struct ModbusRegisters {
 
 struct ModbusRefusal {
   Refusal why = Refusal::kMalformed;
-  std::uint8_t exception = 0;  ///< the device's exception code, where `why` is kException
+  std::uint8_t exception = 0;  ///< the device's exception code, if `why` is kException
 };
 
 /// The registers in one whole message that came after `request`, or the first thing that is wrong with it, in this

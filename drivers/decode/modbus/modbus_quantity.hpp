@@ -49,9 +49,9 @@ struct ModbusQuantity {
 /// Registers that a number of this type takes: 1 or 2.
 std::size_t register_count(RegisterType type) noexcept;
 
-/// The number that `registers` (register_count() of them, in wire order) hold, scaled, whatever its unit; or why there
-/// is none: kTooShort, kInvalid (the device's mark), kImplausible (out of the stated range, or not finite).
-/// Thread-safe, realtime-safe: yes.
+/// The number that `registers` (register_count() of them, in wire order) hold, scaled, in any unit; or why there is
+/// none: kTooShort, kInvalid (the device's mark), kImplausible (out of the stated range, or not finite). Thread-safe,
+/// realtime-safe: yes.
 Result<double, Refusal> decode_number(const ModbusQuantity& quantity,
                                       std::span<const std::uint16_t> registers) noexcept;
 

@@ -75,7 +75,7 @@ std::uint8_t length_of_item(std::uint8_t id) {
 /// Where the values of a reply stand, by their ids.
 class Items {
  public:
-  /// Reads them up to the first of unknown id. Nothing where one is cut off or comes twice.
+  /// Reads them up to the first of unknown id. Returns nullopt if one is cut off or comes twice.
   static std::optional<Items> of(ByteSpan bytes) {
     Items items;
     std::bitset<256> seen;
@@ -91,7 +91,7 @@ class Items {
     return items;
   }
 
-  /// Unsigned numbers of the items' own lengths; nothing where the item is not there.
+  /// Unsigned numbers of the items' own lengths; nullopt if the item is missing.
   std::optional<double> number(ItemId id, double unit) const {
     if (values_[id].empty()) return std::nullopt;
     std::uint32_t number = 0;

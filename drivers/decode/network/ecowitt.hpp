@@ -34,22 +34,22 @@ inline constexpr std::array<std::uint8_t, 5> kEcowittRequest = {0xFF, 0xFF, 0x27
 /// Longer than any reply: all items together have less than 400 bytes.
 inline constexpr std::size_t kMaxEcowittReply = 1024;
 
-/// What a reply says.
+/// The values in a reply.
 struct EcowittValues {
   /// Without its time. Values are not checked for their range (wind::plausible_part).
   wind::StationQuantities quantities = {};
-  /// kInvalid: it says no speed. kImplausible.
+  /// kInvalid: it has no speed. kImplausible.
   Result<DecodedWind, Refusal> wind = Refusal::kInvalid;
 };
 
-/// How many bytes the whole reply has that begins so; kTooShort (it cannot be told yet), kMalformed (no such reply),
+/// Returns the size of the whole reply that begins so, in bytes; kTooShort (not known yet), kMalformed (no such reply),
 /// kNotMine (the reply to another command). Thread-safe and realtime-safe: yes.
 Result<std::size_t, Refusal> ecowitt_reply_size(ByteSpan beginning) noexcept;
 
 /// A whole reply, or the first thing that is wrong with it: as ecowitt_reply_size(), kTooShort, kBadChecksum,
-/// kMalformed (items that do not fit). What comes after an item of unknown id is not read. A gust below the mean wind
-/// is left out. The checksum is a sum of 8 bits: it finds each change of one byte, and of what is changed in several
-/// places all but 1 of 256. Thread-safe and realtime-safe: yes.
+/// kMalformed (items that do not fit). Items after one of unknown id are not read. A gust below the mean wind is left
+/// out. The checksum is a sum of 8 bits: it finds each change of one byte, and 255 of 256 changes in several places.
+/// Thread-safe and realtime-safe: yes.
 Result<EcowittValues, Refusal> decode_ecowitt(ByteSpan reply) noexcept;
 
 }  // namespace yuragi::drivers::decode::network

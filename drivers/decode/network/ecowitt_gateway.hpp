@@ -30,7 +30,7 @@ struct EcowittGateway {
 };
 
 /// An answer, or what is wrong with it: kTooShort, kMalformed, kNotMine (another command's), kBadChecksum. The IPv4
-/// address in it is not read: whom the answer came from says it. Thread-safe: yes.
+/// address in it is not read: the sender's address is used. Thread-safe: yes.
 Result<EcowittGateway, Refusal> decode_ecowitt_gateway(ByteSpan answer);
 
 }  // namespace yuragi::drivers::decode::network

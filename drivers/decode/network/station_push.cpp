@@ -60,7 +60,7 @@ void for_each_part(std::string_view form, Take&& take) {
 /// The values of a form, by name.
 class PushFields {
  public:
-  /// Nothing where one of them stands there twice.
+  /// Returns nullopt if one of them occurs twice.
   static std::optional<PushFields> of(std::string_view form) noexcept {
     PushFields fields;
     bool are_single = true;

@@ -28,20 +28,20 @@ namespace yuragi::drivers::decode::network {
 //   rate of rain            rainratein (rrain_piezo)                                              inches an hour
 //   time                    dateutc                     dateutc            dateutc
 //
-// A value that is missing is -9999, empty, or left out. The time is that of the gateway's clock, which nobody sets
-// where there is no internet: it is not used.
+// A value that is missing is -9999, empty, or left out. The time is that of the gateway's clock, which is wrong without
+// internet: it is not used.
 
-/// Longer than any push: stations with all sensors that a gateway can hear say less than 4 KiB.
-inline constexpr std::size_t kMaxStationPush = 16UL * 1024;
+/// Longer than any push: stations with all sensors that a gateway can receive send less than 4 KiB.
+inline constexpr std::size_t kLongestStationPush = 16UL * 1024;
 
-/// What a push says. The views are parts of the form.
+/// The values in a push. The views are parts of the form.
 struct StationPush {
-  std::string_view identity = {};  ///< PASSKEY or ID, as it stands in the form: a secret; empty: it says neither
-  std::string_view kind = {};      ///< what the station is, percent-encoded: "GW2000A_V2.1.5"; empty: it does not say
+  std::string_view identity = {};  ///< PASSKEY or ID, as it stands in the form: a secret; empty: it has neither
+  std::string_view kind = {};      ///< what the station is, percent-encoded: "GW2000A_V2.1.5"; empty: not sent
   /// Without its time. Values are not checked for their range (wind::plausible_part).
   wind::StationQuantities quantities = {};
-  /// kInvalid: it says no speed. kMalformed: what stands there is no number. kImplausible. A gust below the mean wind
-  /// is left out.
+  /// kInvalid: it has no speed. kMalformed: the speed is not a number. kImplausible. A gust below the mean wind is left
+  /// out.
   Result<DecodedWind, Refusal> wind = Refusal::kInvalid;
 };
 
@@ -51,9 +51,9 @@ struct PushTarget {
   std::string_view form = {};
 };
 
-/// "/data/report/?PASSKEY=..." in its parts. Stations whose path was typed without a question mark at its end say
-/// "/data/report/PASSKEY=...", and some firmware says "PASSKEY=..." and no path at all: where there is no question
-/// mark, the form begins behind the last slash before the first '='. Thread-safe and realtime-safe: yes.
+/// Splits "/data/report/?PASSKEY=..." into its parts. Stations whose path was typed without a question mark at its end
+/// send "/data/report/PASSKEY=...", and some firmware sends "PASSKEY=..." without a path: without a question mark, the
+/// form begins behind the last slash before the first '='. Thread-safe and realtime-safe: yes.
 PushTarget split_push_target(std::string_view target) noexcept;
 
 /// A form, without the line end behind it, or the first thing that is wrong with it: kTooShort (empty), kMalformed (too
@@ -62,7 +62,7 @@ PushTarget split_push_target(std::string_view target) noexcept;
 Result<StationPush, Refusal> decode_station_push(std::string_view form) noexcept;
 
 /// Any bytes as they may be shown and recorded: each part between '&' that speaks of a key, a password or a token is
-/// "(secret)", but for the names PASSKEY and PASSWORD. What is left of a form can be decoded. Thread-safe: yes.
+/// "(secret)", except the names PASSKEY and PASSWORD. What is left of a form can be decoded. Thread-safe: yes.
 std::string without_push_secrets(std::string_view form);
 
 /// A value of a form as text for people: decoded, visible ASCII alone, at most 40 characters. Thread-safe: yes.

@@ -40,7 +40,7 @@ bool is_serial_number(const std::string& text) {
   return !text.empty() && text.size() <= kMaxSerialNumber && is_printable;
 }
 
-/// The text of that name in an object; empty where there is none.
+/// The text of that name in an object; empty if there is none.
 std::string text_of(const Json& message, const char* name) {
   const auto found = message.find(name);
   return found != message.end() && found->is_string() ? found->get_ref<const std::string&>() : std::string();
@@ -83,14 +83,15 @@ wind::StationQuantities quantities_of(const Json& values, const ObservationLayou
   said.pressure_hpa = value_at(values, layout.pressure);
   said.relative_humidity_percent = value_at(values, layout.humidity);
   said.rain_total_mm = value_at(values, layout.rain_of_day);
-  // A station that saves its battery reports less often than each minute; what its rain is then the sum of is not said.
+  // A station that saves its battery reports less often than each minute; over which time it then sums the rain is
+  // unknown.
   const auto rain_of_minute_mm = value_at(values, layout.rain_of_minute);
   if (rain_of_minute_mm && value_at(values, layout.report_interval) == 1.0)
     said.rain_rate_mm_h = *rain_of_minute_mm * kMinutesInHour;
   return said;
 }
 
-/// Adds what `values` say. Returns why they cannot be used.
+/// Adds `values`. Returns why they cannot be used; nullopt if they can.
 std::optional<Refusal> take_rapid_wind(const Json& values, TempestMessage& taken) {
   if (const auto refusal = values_refusal(values, 3)) return refusal;
   taken.kind = TempestKind::kRapidWind;

@@ -50,7 +50,7 @@ struct TempestMessage {
 
 /// A datagram of a hub, or what is wrong with it: kTooShort (empty, or too few values), kMalformed (not JSON, or not
 /// such a message). JSON has no checksum: a digit that was changed on the way is another number, which only its range
-/// can give away. Allocates at most some ten times kMaxTempestMessage; throws std::bad_alloc where there is no such
+/// can give away. Allocates at most some ten times kLongestTempestMessage; throws std::bad_alloc if there is no such
 /// memory, and nothing else for any bytes. Thread-safe: yes.
 Result<TempestMessage, Refusal> decode_tempest(std::string_view datagram);
 
@@ -61,7 +61,7 @@ class TempestWinds {
   /// False for one that has been heard already: a machine with two interfaces in the hub's network hears everything
   /// twice. Not for kOther.
   bool is_new(const TempestMessage& message) noexcept;
-  /// Of one that is new: an observation is the wind where no rapid wind has come since the one before.
+  /// Of one that is new: an observation is the wind if no rapid wind has come since the one before.
   bool is_wind(const TempestMessage& message) noexcept;
 
  private:

@@ -21,7 +21,7 @@ struct FtOptions {
 };
 
 /// The wind in one line, or why there is none: as sentence_of() refuses, then kNotMine (a reply to another command),
-/// kMalformed, kInvalid (its status says so, or no value is there), kImplausible. Thread-safe and realtime-safe: yes.
+/// kMalformed, kInvalid (by its status, or without a value), kImplausible. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_ft(const FtOptions& options, std::string_view line) noexcept;
 
 }  // namespace yuragi::drivers::decode::text

@@ -101,7 +101,7 @@ Result<GillMessage, Refusal> gill_message_of(const GillOptions& options, std::st
   if (!is_gill || (options.node && node[0] != *options.node)) return Refusal::kNotMine;
   if (!fields.are_all) return Refusal::kMalformed;
 
-  // The status is the last field, but for a WindMaster's; the comma behind it makes one more, which is empty.
+  // The status is the last field, except in a WindMaster's line; the comma behind it makes one more, which is empty.
   message.last = fields.count - 1;
   if (fields[message.last].empty()) --message.last;
   for (const std::size_t at : {std::size_t{3}, std::size_t{4}}) {

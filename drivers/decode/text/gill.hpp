@@ -38,13 +38,13 @@ struct GillOptions {
 
 /// The wind in one line, with or without its STX and line end; or an NMEA sentence, as the device sends it in modes M5
 /// to M16. Refusals, in this order: kTooShort (it ends before its checksum), kBadChecksum, kNotMine (not this format,
-/// or another node), kMalformed, kInvalid (its status says so, or no value is there), kImplausible. The direction is
-/// clockwise from the device's north mark. Thread-safe and realtime-safe: yes.
+/// or another node), kMalformed, kInvalid (by its status, or without a value), kImplausible. The direction is clockwise
+/// from the device's north mark. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_gill(const GillOptions& options, std::string_view line) noexcept;
 
-/// The vertical wind of a WindMaster's line, without its time; nothing in other lines, and where decode_gill() refuses
-/// the line but for the values of its horizontal wind. Not checked for its range (wind::plausible_part). Thread-safe
-/// and realtime-safe: yes.
+/// Returns the vertical wind of a WindMaster's line, without its time; nullopt for other lines, and if decode_gill()
+/// refuses the line for another reason than the values of its horizontal wind. Not checked for its range
+/// (wind::plausible_part). Thread-safe and realtime-safe: yes.
 std::optional<wind::StationQuantities> decode_gill_quantities(const GillOptions& options,
                                                               std::string_view line) noexcept;
 

@@ -27,7 +27,7 @@ struct LineTexts {
 
 constexpr std::array<std::string_view, 3> kDegreeWords = {"deg", "degrees", "\xC2\xB0"};
 
-/// The size of a unit of that word for that quantity; nothing where it is none.
+/// Returns the size of the unit with that name for that quantity; nullopt if it is not a unit.
 std::optional<double> unit_named(std::string_view word, bool is_direction) {
   if (is_direction)
     return std::ranges::find(kDegreeWords, word) != kDegreeWords.end() ? std::optional(1.0) : std::nullopt;
@@ -50,7 +50,7 @@ LineText with_unit(std::string_view text) {
   return end > 0 ? LineText{text.substr(0, end), trimmed(text.substr(end))} : LineText{text, {}};
 }
 
-/// The value of a number in the quantity's unit, or in `unit` where the line says one.
+/// Returns the value of a number in the quantity's unit, or in `unit` if the line has one.
 LineValue scaled(const LineOptions& options, const LineQuantity& quantity, double number, std::optional<double> unit) {
   if (number == options.invalid) return std::optional<double>();
   const double value = (number * quantity.scale + quantity.offset) * unit.value_or(quantity.unit);

@@ -15,7 +15,7 @@ namespace yuragi::drivers::decode::text {
 //
 //   4.2,270,6.1                      columns
 //   speed=4.2 direction=270; gust=6.1    keys; ':' does as well as '=', and blank, tab, ',', ';' and '&' separate
-//   speed: 15.1 km/h, direction: 270 deg    the same, with units: one that the line says counts before the configured
+//     speed: 15.1 km/h, direction: 270 deg    the same, with units: one in the line counts before the configured
 //   one
 //   {"wind": {"speed": 4.2}}             JSON; a key is a name, or a JSON pointer (RFC 6901) such as /wind/speed
 //
@@ -51,10 +51,9 @@ struct LineOptions {
 };
 
 /// The wind in one line, or why there is none: kTooShort (an empty line), kNotMine (a comment: it begins with '#'; or
-/// it has none of the keys), kMalformed (what should be a number is none, or a key comes twice, or JSON that is none),
-/// kInvalid (no value is
-/// there), kImplausible. A unit that is not known is kMalformed where it stands at the number itself. Lines that end
-/// before a column leave it empty. Thread-safe: yes. Realtime-safe: yes, but for JSON, which allocates.
+/// it has none of the keys), kMalformed (a value is not a number, a key comes twice, or invalid JSON), kInvalid (no
+/// value), kImplausible. An unknown unit is kMalformed if it stands at the number itself. Lines that end before a
+/// column leave it empty. Thread-safe: yes. Realtime-safe: yes, except JSON, which allocates.
 Result<DecodedWind, Refusal> decode_line(const LineOptions& options, std::string_view line) noexcept;
 
 }  // namespace yuragi::drivers::decode::text

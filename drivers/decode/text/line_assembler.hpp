@@ -18,9 +18,9 @@ enum class LineEnding : std::uint8_t {
   kEtx,      ///< at ETX too
 };
 
-/// Makes lines of bytes, however these were split on their way. Bounded: a line longer than it is told is refused once
+/// Makes lines of bytes, however these were split on their way. Bounded: a line longer than `longest` is refused once
 /// and skipped up to its end. STX begins a line anew; empty lines, and an ETX at the beginning of one, are skipped.
-/// Every other byte is kept, whatever it is.
+/// All other bytes are kept.
 ///
 ///     while (!bytes.empty()) {
 ///       if (const auto line = assembler.next(bytes)) use(*line);

@@ -21,7 +21,7 @@ std::string_view capital(std::string_view field) {
   return is_small ? kCapitals.substr(static_cast<std::size_t>(field[0] - 'a'), 1) : field;
 }
 
-/// Is a word in capitals the same, but for the case?
+/// Is a word in capitals the same, ignoring case?
 bool is_word(std::string_view word, std::string_view capitals) {
   if (word.size() != capitals.size()) return false;
   for (std::size_t i = 0; i < word.size(); ++i) {
@@ -150,8 +150,8 @@ XdrRole xdr_role(std::string_view id, int first_id) {
   }
 }
 
-/// Are these quadruples, each of a type of one letter? Fields that have moved up by one that was lost are none. What is
-/// behind the last one must be empty.
+/// Are these quadruples, each of a type of one letter? Fields after a lost one have moved up, and are not quadruples.
+/// What is behind the last one must be empty.
 bool are_xdr_quadruples(const TextFields& fields) {
   std::size_t at = 1;
   for (; at + 3 < fields.count; at += 4) {
@@ -219,7 +219,7 @@ constexpr double kHectopascalsPerBar = 1000.0;
 constexpr double kHectopascalsPerPascal = 0.01;
 constexpr double kHectopascalsPerInchOfMercury = 33.86389;  // at 0 degrees Celsius
 
-/// A number, times a factor; nothing where there is none.
+/// Returns a number times a factor; nullopt if there is none.
 std::optional<double> scaled(std::string_view field, double factor) {
   const NmeaValue number = parse_number(field);
   if (!number || !*number) return std::nullopt;

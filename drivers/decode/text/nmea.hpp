@@ -33,14 +33,14 @@ struct NmeaOptions {
 
 /// The wind in one line, without its line end, or why there is none: as sentence_of() refuses, then kNotMine (another
 /// sentence, or XDR without wind), kMalformed (fields, units or letters that the sentence does not have, or no status
-/// where that is refused), kInvalid (its status says so, or no value is there), kImplausible. One half may be empty; an
-/// impossible direction is, where there is a speed beside it.
-/// Where a sentence has the speed in several units, m/s is taken first. Thread-safe and realtime-safe: yes.
+/// where that is refused), kInvalid (by its status, or without a value), kImplausible. One half may be empty; an
+/// impossible direction is left empty if there is a speed beside it. If a sentence has the speed in several units, m/s
+/// is taken first. Thread-safe and realtime-safe: yes.
 Result<DecodedWind, Refusal> decode_nmea(const NmeaOptions& options, std::string_view line) noexcept;
 
-/// What one line says besides the wind, without its time; nothing where it is no sound sentence, or says nothing of the
-/// kind. Values are not checked for their range (wind::plausible_part); one that is no number, or has another unit, is
-/// left out alone.
+/// Returns the other quantities in one line, without its time; nullopt if the sentence is invalid, or has none. Values
+/// are not checked for their range (wind::plausible_part); only a value that is not a number, or has another unit, is
+/// left out.
 ///
 ///   MDA   pressure in bar (field 3, B), else in inches of mercury (field 1, I); air temperature (field 5, C); relative
 ///         humidity (field 9)

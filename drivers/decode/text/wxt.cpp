@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kWxtHead = 3;  // address, R, number
 constexpr std::size_t kWxtCrc = 3;   // characters
 
-/// A field of a message: whether it is there, and its value in our unit where the device says that it is valid.
+/// A field of a message: whether it is present, and its value in our unit if the device marks it as valid.
 struct WxtField {
   bool is_there = false;
   std::optional<double> value;

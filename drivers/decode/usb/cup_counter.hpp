@@ -19,7 +19,7 @@ namespace yuragi::drivers::decode::usb {
 /// longest_window_s, all finite.
 struct CupCalibration {
   double metres_per_pulse = 0.1;  ///< wind that passes between two pulses: the slope, m/s for each pulse a second
-  double offset_m_s = 0.0;        ///< the wind below which the cup stands; added where any pulse came
+  double offset_m_s = 0.0;        ///< the wind below which the cup stands; added if any pulse came
   std::uint32_t enough_pulses = 4;
   double shortest_window_s = 0.05;  ///< however many pulses: two reads close together make no gust of a late one
   double longest_window_s = 1.0;
@@ -33,10 +33,10 @@ struct CupState {
 };
 
 /// Takes the counter's next value, `elapsed_s` after the one before, by the times at which they were read. Where that
-/// closes the window: the speed in m/s, exactly 0 if no pulse came. Nothing while it stays open, and for the first
-/// value. The counter may wrap at 2^32. kImplausible where it has gone back (the device was reset), or on by more than
-/// any wind can drive it, or where time has not gone on (negative, not finite): the window begins anew with this value.
-/// A reset that looks like a wrap (from just below 2^32 to a small count) is not detected, but bounded in the same way.
+/// closes the window: the speed in m/s, exactly 0 if no pulse came. Nullopt while it stays open, and for the first
+/// value. The counter may wrap at 2^32. kImplausible if it has gone back (the device was reset), or on by more than
+/// any wind can drive it, or if time has not advanced (negative, not finite): the window begins anew with this value. A
+/// reset that looks like a wrap (from just below 2^32 to a small count) is not detected, but bounded in the same way.
 /// Realtime-safe: yes; thread-safe: for distinct states.
 std::optional<Result<double, Refusal>> advance_cup(CupState& state, const CupCalibration& cup, std::uint32_t count,
                                                    double elapsed_s) noexcept;

@@ -42,7 +42,7 @@ struct LabjackCommand {
 
 struct LabjackRefusal {
   Refusal why = Refusal::kMalformed;
-  std::uint8_t error = 0;  ///< the device's error code, where `why` is kException; 0: it found our sum wrong
+  std::uint8_t error = 0;  ///< the device's error code, if `why` is kException; 0: it found our sum wrong
 };
 
 // All functions: thread-safe and realtime-safe. A reply is refused for the first thing that is wrong with it: kTooShort
@@ -52,7 +52,7 @@ struct LabjackRefusal {
 /// Counter 0 or 1 alone, on FIO4 (also on the U3-HV), and FIO0 to FIO3 analogue: what LabjackRequest relies on. The
 /// counter begins at 0.
 LabjackCommand encode_labjack_configuration(std::uint8_t counter) noexcept;
-/// kInvalid where the device did not do what the command requested.
+/// kInvalid if the device did not do what the command requested.
 Result<void, LabjackRefusal> decode_labjack_configuration(std::uint8_t counter, ByteSpan reply) noexcept;
 
 /// The parts of a feedback command, in this order.

@@ -90,7 +90,7 @@ TEST(CanTrouble, SaysWhatToType) {
   EXPECT_EQ(failure_with("vcan0", ENETDOWN), "the CAN interface vcan0 is down: sudo ip link set vcan0 up");
   EXPECT_THAT(failure_with("can7", ENODEV), HasSubstr("no CAN interface can7"));
   EXPECT_THAT(failure_with("can0", EAFNOSUPPORT), HasSubstr("modprobe can_raw"));
-  EXPECT_THAT(failure_with("can0", EPERM), HasSubstr("may not open the CAN interface can0"));
+  EXPECT_THAT(failure_with("can0", EPERM), HasSubstr("no permission to open the CAN interface can0"));
   EXPECT_THAT(failure_with("can0", EIO), HasSubstr("ip -details link show can0"));
 }
 

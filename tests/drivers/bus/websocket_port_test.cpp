@@ -195,8 +195,7 @@ TEST(WebSocketPort, SaysWhatIsNoWebSocketServer) {
   ScriptedServer silent(answering(""));
   address.port = silent.port();
   address.connect_timeout = 50ms;
-  EXPECT_THAT(trouble_at(address),
-              testing::AnyOf(HasSubstr("does not answer"), HasSubstr("is not a WebSocket server")));
+  EXPECT_THAT(trouble_at(address), testing::AnyOf(HasSubstr("does not reply"), HasSubstr("is not a WebSocket server")));
 }
 
 TEST(WebSocketPort, JoinsFragmentsAndKeepsMessagesApart) {

@@ -78,7 +78,7 @@ TEST_F(VantageFault, Silence) {
     connect(wire);
     ASSERT_TRUE(is_live()) << bench_.sink.last_detail();
     bench_.run(1.0);
-    expect_no_wind(FaultKind::kSilence, 6.0, "is silent: check its power");
+    expect_no_wind(FaultKind::kSilence, 6.0, "was asked for packets, but sends none: check its power");
     bench_.run(10.0, FaultKind::kSilence);
     EXPECT_GE(bench_.sink.count(decode::Refusal::kTimeout), 3);
     EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("does not wake up"));

@@ -107,7 +107,8 @@ TEST_F(WeatherLinkLiveFault, WrongId) {
   bench_.run(35.0, FaultKind::kWrongId);
   EXPECT_GE(bench_.sink.count(decode::Refusal::kNotMine), 12) << "the broadcasts of a neighbour's";
   expect_only_the_wind();
-  EXPECT_THAT(bench_.sink.last_detail(), HasSubstr("without broadcasts: check that this machine is in its network"));
+  EXPECT_THAT(bench_.sink.last_detail(),
+              HasSubstr("without broadcasts: check the firewall, and that this machine is in the same network"));
   ASSERT_TRUE(is_live());
   expect_return();
 }

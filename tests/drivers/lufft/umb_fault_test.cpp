@@ -154,7 +154,7 @@ TEST_F(UmbFault, BadChecksum) {
 TEST_F(UmbFault, WrongId) {
   connect(Wire::kPty);
   ASSERT_TRUE(is_live());
-  expect_no_wind(FaultKind::kWrongId, 12.0, "another device than Lufft 7001h replies");
+  expect_no_wind(FaultKind::kWrongId, 12.0, "a device other than Lufft 7001h replies");
   EXPECT_GE(bench_.sink.count(decode::Refusal::kNotMine), 3);
   expect_return();
 }

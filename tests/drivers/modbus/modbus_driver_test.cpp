@@ -506,7 +506,7 @@ TEST(ModbusDriver, SaysWhoElseHasThePort) {
   const auto sensor = open_sensor({{"transport", std::string("rtu")}, {"device", port.device()}});
   Bench bench;
   bench.poll(*sensor);
-  EXPECT_THAT(bench.sink.last_detail(), HasSubstr("another program reads it"));
+  EXPECT_THAT(bench.sink.last_detail(), HasSubstr("another program uses it"));
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(ModbusProfile, StatesWhatItsSpeedIsWithTheSource) {
               AllOf(StartsWith("device.toml:"), HasSubstr("speed.value: is \"median\"; allowed: one of \"mean\"")));
   EXPECT_THAT(error_of(minimal("", "value = \"mean\"\n")), HasSubstr("speed.value_source: is missing"));
   EXPECT_THAT(error_of(minimal("", "value = \"mean\"\nvalue_source = \"\"\n")), HasSubstr("value_source: is empty"));
-  EXPECT_THAT(error_of(minimal("", "averaging_s = 3\n")), HasSubstr("speed.averaging_s: is given without value"));
+  EXPECT_THAT(error_of(minimal("", "averaging_s = 3\n")), HasSubstr("speed.averaging_s: is set without value"));
   EXPECT_THAT(error_of(minimal("", "value = \"instant\"\naveraging_s = 3\nvalue_source = \"z\"\n")),
               HasSubstr("speed.averaging_s: is above 0"));
   EXPECT_THAT(
@@ -216,11 +216,11 @@ TEST(ModbusProfile, CannotLeaveOutWhoConfirmsIt) {
   EXPECT_THAT(error_of(name + "confirmed_by = [\"maker\"]\n" + speed),
               HasSubstr(": unconfirmed: is missing; allowed: a text"));
   EXPECT_THAT(error_of(name + "confirmed_by = [\"hearsay\"]\nunconfirmed = \"\"\n" + speed),
-              StartsWith("device.toml:3:16: confirmed_by: holds something else"));
+              StartsWith("device.toml:3:16: confirmed_by: contains an entry that is not allowed"));
   EXPECT_THAT(error_of(name + "confirmed_by = \"maker\"\nunconfirmed = \"\"\n" + speed),
               HasSubstr("confirmed_by: is not a list"));
   EXPECT_THAT(error_of(name + "confirmed_by = []\nunconfirmed = \"\"\n" + speed),
-              StartsWith("device.toml:4:15: unconfirmed: is empty, and nobody confirms the profile"));
+              StartsWith("device.toml:4:15: unconfirmed: is empty, but confirmed_by is empty, too"));
   EXPECT_EQ(error_of(name + "confirmed_by = []\nunconfirmed = \"all\"\n" + speed), "no error");
 }
 
@@ -294,8 +294,10 @@ TEST(ModbusProfile, ErrorsAreFoundWhereverTheyAre) {
   EXPECT_THAT(error_of(minimal("", "scale = 0.0\n")), HasSubstr("speed.scale: is 0;"));
   EXPECT_THAT(error_of(minimal("", "scale = nan\n")), HasSubstr("speed.scale: is nan; allowed: a finite number"));
   EXPECT_THAT(error_of(minimal("", "scale = \"1\"\n")), HasSubstr("speed.scale: is not a number"));
-  EXPECT_THAT(error_of(minimal("", "invalid = [70000]\n")),
-              HasSubstr("speed.invalid: holds something else; allowed: a list of whole numbers from 0 to 65535"));
+  EXPECT_THAT(
+      error_of(minimal("", "invalid = [70000]\n")),
+      HasSubstr(
+          "speed.invalid: contains an entry that is not allowed; allowed: a list of whole numbers from 0 to 65535"));
   EXPECT_THAT(error_of(minimal("", "invalid = 3\n")), HasSubstr("speed.invalid: is not a list"));
   EXPECT_THAT(error_of(minimal("", "map = \"degrees\"\n")), HasSubstr("speed.map: is not known here"));
   EXPECT_THAT(error_of(minimal("", "read_has_side_effect = 1\n")),

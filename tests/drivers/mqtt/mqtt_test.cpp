@@ -626,7 +626,7 @@ TEST(MqttDriver, RefusesAPasswordThatIsNotThereOrGivenTwice) {
        {ParameterValues::Map{{"password", std::string("hunter2")}, {"password_file", file}},
         ParameterValues::Map{{"password", std::string("hunter2")}, {"password_env", std::string("HOME")}},
         ParameterValues::Map{{"password_file", file}, {"password_env", std::string("HOME")}}}) {
-    EXPECT_THAT(refusal_of(twice), AllOf(HasSubstr("password: is given more than once"), Not(HasSubstr("hunter2"))));
+    EXPECT_THAT(refusal_of(twice), AllOf(HasSubstr("password: is set more than once"), Not(HasSubstr("hunter2"))));
   }
 }
 

@@ -173,7 +173,7 @@ TEST_F(NmeaSensorTest, FallsBackToTheDirectionThatIsLeftAndReturns) {
     run(750ms);
     if (second == 20) {
       expect_last(6.6878, {});
-      EXPECT_THAT(sink.last_detail(), HasSubstr("MWV of WI without a direction, since MWD of WI gives none"));
+      EXPECT_THAT(sink.last_detail(), HasSubstr("MWV of WI without a direction, because MWD of WI has none"));
     }
   }
   expect_last(6.6878, 67.5);

@@ -139,7 +139,7 @@ TEST(SignalKWebSocket, RefusesSettingsThatCannotWork) {
   EXPECT_THAT(open({{"token", Secret("a\r\nHost: b")}}),
               ThrowsMessage<std::runtime_error>(HasSubstr("token: is not a token: it contains blanks")));
   EXPECT_THAT(open({{"token", Secret("a")}, {"token_env", std::string("B")}}),
-              ThrowsMessage<std::runtime_error>(HasSubstr("token: is given more than once")));
+              ThrowsMessage<std::runtime_error>(HasSubstr("token: is set more than once")));
   EXPECT_THAT(open({{"token_env", std::string("YURAGI_NO_SUCH_TOKEN")}}),
               ThrowsMessage<std::runtime_error>(HasSubstr("token_env: the environment variable")));
 }

@@ -78,7 +78,7 @@ TEST_F(ScenarioFile, TellsEachMistakeWithItsPlace) {
   EXPECT_THAT(complaint_about("[[wind]]\n[[wind]]\nat = 5\nramp = 9\n[[wind]]\nat = 13\n" + device),
               StartsWith(":6:6: wind.at: must be after"));
   EXPECT_THAT(complaint_about("[[wind]]\nrecording = \"a\"\nspeed = 2\n" + device),
-              StartsWith(":3:9: wind.speed: is not known here; at, ramp, recording are"));
+              StartsWith(":3:9: wind.speed: is not known here; allowed: at, ramp, recording"));
   EXPECT_THAT(complaint_about("[[wind]]\n[[device]]\nname = \"a\"\n"), StartsWith(":2:1: device.simulate: must be"));
   EXPECT_THAT(complaint_about("[[wind]]\n" + device + "faults = \"silence@1+1\"\n"),
               StartsWith(":5:10: device.faults: must be a list"));
