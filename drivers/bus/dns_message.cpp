@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t kMaxServices = 16;
 /// No message of multicast DNS is longer (RFC 6762, section 17).
-constexpr std::size_t kLongestMessage = 9000;
-constexpr std::size_t kLongestLabel = 63;
+constexpr std::size_t kMaxMessage = 9000;
+constexpr std::size_t kMaxLabel = 63;
 /// The class of a record, without the bit that makes others discard cached records (RFC 6762, section 10.2).
 constexpr unsigned kClassMask = 0x7FFF;
 

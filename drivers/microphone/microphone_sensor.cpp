@@ -12,7 +12,7 @@ namespace {
 constexpr Nanoseconds kBelievableAge = std::chrono::seconds(5);
 
 /// A worker that does not start in time gets up to this many times longer: the machine may be slow.
-constexpr int kMostPatience = 8;
+constexpr int kMaxPatience = 8;
 
 }  // namespace
 

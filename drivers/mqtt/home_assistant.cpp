@@ -18,7 +18,7 @@ namespace {
 using Announcement = nlohmann::json;
 
 /// Longer texts are not names or topics, and would fill the list.
-constexpr std::size_t kLongestAnnouncedText = 200;
+constexpr std::size_t kMaxAnnouncedText = 200;
 
 /// The text under that key, or under its abbreviation; empty if there is none, or no printable one.
 std::string text_of(const Announcement& announcement, const char* key, const char* abbreviation) {

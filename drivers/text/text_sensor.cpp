@@ -26,7 +26,7 @@ constexpr Nanoseconds kFirstSilence = 120s;
 /// A reply that is later than this is not expected any more.
 constexpr Nanoseconds kLatestReply = 2s;
 /// The silence after which a device is opened again doubles so often.
-constexpr int kMostDoublings = 6;
+constexpr int kMaxDoublings = 6;
 /// A device that does not reply gets fewer requests: the interval grows up to this many times.
 constexpr int kRarestRequest = 8;
 /// So many blocks at most are discarded at the beginning; a device that sends more does not stop.

@@ -12,7 +12,7 @@ namespace {
 /// A device that hangs looks like one that is slow: after this many rounds in a row without a sample it counts as hung.
 constexpr int kRoundsBeforeReopen = 3;
 /// Two counts give a speed only if the time between them is at least this many times its uncertainty: to within 20 %.
-constexpr int kLeastTimesOfDoubt = 5;
+constexpr int kMinTimesOfDoubt = 5;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 }  // namespace

@@ -17,7 +17,7 @@ namespace {
 
 constexpr mode_t kMode = 0640;  // as a recording
 /// A holder removes the file when it ends; a program that opened it before that tries again with the next one.
-constexpr int kMaxTries = 100;
+constexpr int kMaxLockTries = 100;
 
 /// The file that locks a recording; nullopt if its name cannot be looked up.
 std::optional<std::filesystem::path> lock_file_of(const std::filesystem::path& recording) {

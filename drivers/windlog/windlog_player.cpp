@@ -17,7 +17,7 @@ constexpr double kMaxWait_s = 1e9;
 // Stands for "never" after the end; a clock can add this to any time.
 constexpr Nanoseconds kAfterTheEnd = std::chrono::hours(24);
 // The minimum of readings in a cross-fade, or it would be a step; and its maximum part of the recording.
-constexpr int kLeastReadingsOfFade = 3;
+constexpr int kMinReadingsOfFade = 3;
 constexpr int kParts = 3;
 // A held reading is repeated no more often than this.
 constexpr Nanoseconds kMinHoldInterval = std::chrono::milliseconds(100);

@@ -47,7 +47,7 @@ class WindlogWriter {
   Result<void, Failure> set_previous_part(UtcTime begin);
 
   /// Adds a sensor to the session; returns the id that append() takes. Fails if the recording would have readings of
-  /// more than kMostSeries names.
+  /// more than kMaxSeries names.
   Result<std::int64_t, Failure> add_sensor(std::string_view name, std::string_view driver, std::string_view options);
 
   /// Adds a reading. One that is not plausible, or whose time cannot be, is a failure of the caller's and undoes

@@ -72,7 +72,7 @@ std::vector<const toml::table*> entries_of(const toml::table& around, std::strin
   }
   if (list->size() > most) {
     mistakes.add(list->get(most)->source(), path,
-                 "is one of " + std::to_string(list->size()) + "; allowed: at most " + std::to_string(most));
+                 "too many: " + std::to_string(list->size()) + " (maximum " + std::to_string(most) + ")");
     return entries;
   }
   for (const toml::node& entry : *list) entries.push_back(entry.as_table());

@@ -31,7 +31,7 @@ using boost::asio::ip::tcp;
 using boost::system::error_code;
 
 /// The longest message that a client may send.
-constexpr std::size_t kLongestSaid = 4096;
+constexpr std::size_t kMaxSaid = 4096;
 /// More than this waits only for a client that does not read: it is dropped.
 constexpr std::size_t kMaxWaiting = 1000;
 

@@ -19,8 +19,8 @@ namespace asio = boost::asio;
 using tcp = asio::ip::tcp;
 
 /// A host that leaves this many bytes unread has gone, or is hostile.
-constexpr std::size_t kMostUnread = std::size_t{1024} * 1024;
-constexpr std::size_t kMostClients = 64;
+constexpr std::size_t kMaxUnread = std::size_t{1024} * 1024;
+constexpr std::size_t kMaxClients = 64;
 
 }  // namespace
 

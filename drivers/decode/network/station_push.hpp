@@ -32,7 +32,7 @@ namespace yuragi::drivers::decode::network {
 // internet: it is not used.
 
 /// Longer than any push: stations with all sensors that a gateway can receive send less than 4 KiB.
-inline constexpr std::size_t kLongestStationPush = 16UL * 1024;
+inline constexpr std::size_t kMaxStationPush = 16UL * 1024;
 
 /// The values in a push. The views are parts of the form.
 struct StationPush {

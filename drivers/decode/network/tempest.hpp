@@ -50,7 +50,7 @@ struct TempestMessage {
 
 /// A datagram of a hub, or what is wrong with it: kTooShort (empty, or too few values), kMalformed (not JSON, or not
 /// such a message). JSON has no checksum: a digit that was changed on the way is another number, which only its range
-/// can give away. Allocates at most some ten times kLongestTempestMessage; throws std::bad_alloc if there is no such
+/// can give away. Allocates at most some ten times kMaxTempestMessage; throws std::bad_alloc if there is no such
 /// memory, and nothing else for any bytes. Thread-safe: yes.
 Result<TempestMessage, Refusal> decode_tempest(std::string_view datagram);
 

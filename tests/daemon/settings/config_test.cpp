@@ -206,7 +206,7 @@ TEST(Config, TellsEachMistakeOfACameraWithItsPlace) {
   EXPECT_THAT(mistakes_of("[[camera]]\nname = \"a\"\nfov = 180\n"), StartsWith("wall.toml:3:7: camera.fov: "));
   std::string many;
   for (std::size_t i = 0; i <= look::kMaxCameras; ++i) many += "[[camera]]\nname = \"" + std::to_string(i) + "\"\n";
-  EXPECT_EQ(mistakes_of(many), "wall.toml:65:1: camera: is one of 33; allowed: at most 32");
+  EXPECT_EQ(mistakes_of(many), "wall.toml:65:1: camera: too many: 33 (maximum 32)");
 }
 
 TEST(Config, HasAlerts) {
@@ -258,7 +258,7 @@ TEST(Config, TellsEachMistakeOfAnAlertWithItsPlace) {
   std::string many;
   for (std::size_t i = 0; i <= kMaxAlerts; ++i)
     many += "[[alert]]\ncommand = \"x\"\nname = \"" + std::to_string(i) + "\"\n";
-  EXPECT_EQ(mistakes_of(many), "wall.toml:193:1: alert: is one of 65; allowed: at most 64");
+  EXPECT_EQ(mistakes_of(many), "wall.toml:193:1: alert: too many: 65 (maximum 64)");
 }
 
 TEST(Config, AnEmptyFileIsTheDefaultInstallation) {
@@ -317,7 +317,7 @@ TEST(Config, EveryMistakeIsToldAtItsPlaceWithWhatIsAllowed) {
                              HasSubstr("\"synthetic\"")));
   std::string many;
   for (int i = 0; i < 256; ++i) many += "[[sensor]]\ndriver = \"synthetic\"\nname = \"" + std::to_string(i) + "\"\n";
-  EXPECT_THAT(mistakes_of(many), testing::StrEq("wall.toml:766:1: sensor: is one of 256; allowed: at most 255"));
+  EXPECT_THAT(mistakes_of(many), testing::StrEq("wall.toml:766:1: sensor: too many: 256 (maximum 255)"));
   EXPECT_THAT(mistakes_of("[[sensor]]\ndriver = \"barometer\"\n"),
               StartsWith("wall.toml:2:10: sensor.driver: is \"barometer\"; allowed: one of"));
   EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\nlinks = [1, 2]\n"),

@@ -145,7 +145,8 @@ TEST(CalibrationFit, RefusesALineThatWouldBeNonsense) {
   EXPECT_THAT(fit_line(Pairs{}).error().message, HasSubstr("two are the least"));
   EXPECT_THAT(fit_line(Pairs{{3.0, 3.0}, {3.5, 4.0}}).error().message, HasSubstr("2 m/s between"));
   EXPECT_THAT(fit_line(Pairs{{3.0, 3.0}, {3.0, 9.0}}).error().message, HasSubstr("it is stuck"));
-  EXPECT_THAT(fit_line(Pairs{{9.0, 3.0}, {3.0, 9.0}}).error().message, HasSubstr("reads less when the reference reads more"));
+  EXPECT_THAT(fit_line(Pairs{{9.0, 3.0}, {3.0, 9.0}}).error().message,
+              HasSubstr("reads less when the reference reads more"));
   EXPECT_THAT(fit_line(Pairs{{1.0, 2.0}, {1.5, 9.0}}).error().message, HasSubstr("is its unit right"));
   EXPECT_THAT(fit_line(beside_truth(1.0, 0.0, 4.0)).error().message, HasSubstr("agree too little"));
   using Limits = std::numeric_limits<double>;
