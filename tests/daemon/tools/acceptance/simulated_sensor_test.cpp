@@ -47,7 +47,7 @@ TEST(SimulationPlan, PlaysTheSlaveIdsOfTheEntry) {
               Contains("renke-rs-fsjt-rs-fxjt-n01@5"));
   EXPECT_THAT(plan_of_entry("driver = \"modbus\"\nprofile = \"calypso-ulp\"\nspeed_slave = 9").arguments,
               Contains("calypso-ulp@9"));
-  EXPECT_THAT(why_not("driver = \"modbus\"\nspeed_slave = 5\ndirection_slave = 9"), HasSubstr("or the next"));
+  EXPECT_THAT(why_not("driver = \"modbus\"\nspeed_slave = 5\ndirection_slave = 9"), HasSubstr("or is the next id"));
   EXPECT_THAT(why_not("driver = \"modbus\"\ndirection_slave = 9"), HasSubstr("direction_slave"));
 }
 
