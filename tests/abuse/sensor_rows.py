@@ -284,6 +284,6 @@ def many_sensors(bench):
     path = bench.file("257.toml", "".join(sensor.format(number) for number in range(257)) + MEADOW)
     for command in (("check-config", path), ("run", "--listen", "127.0.0.1:0", "--config", path)):
         done = bench.run(*command)
-        bench.expect(done.returncode == 78 and "at most 255" in done.stderr, f"257: {done.returncode} {done.stderr}")
+        bench.expect(done.returncode == 78 and "maximum 255" in done.stderr, f"257: {done.returncode} {done.stderr}")
     bench.count(255, "sensors at 4 Hz")
     bench.figure("257 are refused at start, with the limit")
