@@ -24,7 +24,8 @@ std::unique_ptr<sensor::Sensor> open_with(const ParameterValues::Map& given) {
 TEST(MicrophoneDriver, SaysWhatIsWrongWithItsParameters) {
   const auto opening = [](const ParameterValues::Map& given) { return [given] { open_with(given); }; };
   EXPECT_THAT(opening({{"curve", std::string("-60:1")}}), ThrowsMessage<std::runtime_error>(HasSubstr("dB:m/s")));
-  EXPECT_THAT(opening({{"faces", std::string("0 120 240")}}), ThrowsMessage<std::runtime_error>(HasSubstr("as many")));
+  EXPECT_THAT(opening({{"faces", std::string("0 120 240")}}),
+              ThrowsMessage<std::runtime_error>(HasSubstr("one direction for each channel")));
   EXPECT_THAT(opening({{"faces", std::string("0 x")}}), ThrowsMessage<std::runtime_error>(HasSubstr("degrees")));
   EXPECT_THAT(opening({{"faces", std::string("0 0 9")}, {"channels", std::int64_t{3}}}),
               ThrowsMessage<std::runtime_error>(HasSubstr("spread them out")));
