@@ -255,7 +255,7 @@ void run_field(FieldOptions options) {
     throw ExitError(kExitUsage, fmt::format("--size, --frames: too large: {:.0f} GB (maximum 100 GB)", bytes / 1e9));
   }
   if (options.recording && !drivers::windlog::recording_exists(*options.recording)) {
-    throw ExitError(kExitNoInput, options.recording->string() + ": this recording does not exist");
+    throw ExitError(kExitNoInput, options.recording->string() + ": there is no such recording");
   }
   const std::filesystem::path beside = std::filesystem::path(options.output).replace_extension(".json");
   if (beside == options.output) {

@@ -125,7 +125,7 @@ GroundPlace parse_place(const std::string& option, const std::string& text) {
 
 const std::filesystem::path& existing(const std::filesystem::path& file) {
   if (!drivers::windlog::recording_exists(file))
-    throw ExitError(kExitNoInput, file.string() + ": this recording does not exist");
+    throw ExitError(kExitNoInput, file.string() + ": there is no such recording");
   return file;
 }
 

@@ -113,7 +113,7 @@ gain = 1.0          # from the institute
         log = self.recording([(0.5 * i, "roof", 3.0 + noise.gauss(0, 0.8), None) for i in range(200)])
         config = self.file("wall.toml", self.TWO_SENSORS)
         told = self.yuragi("calibrate", "zero", "--config", config, "--sensor", "roof", "--recording", log, "--yes", code=65)
-        self.assertIn("this is no calm", told)
+        self.assertIn("the air is not still", told)
         self.assertEqual(self.read("wall.toml"), self.TWO_SENSORS)
         self.assertEqual(sorted(os.listdir(self.folder)), ["field.csv", "field.windlog", "wall.toml"])
 
@@ -312,7 +312,7 @@ driver = "modbus"
         self.assertAlmostEqual(self.value("gain"), 1.1, delta=0.01)
         told = self.yuragi("calibrate", "north", "--config", config, "--connect", NOBODY, "--bearing", 10, "--for", 6, "--yes")
         self.assertAlmostEqual(self.value("north_offset"), 20.0, delta=1.0)
-        self.assertIn("is no zero error", self.yuragi("calibrate", "zero", "--config", config, "--connect", NOBODY, "--for", 6, "--yes", code=65))
+        self.assertIn("not a zero error", self.yuragi("calibrate", "zero", "--config", config, "--connect", NOBODY, "--for", 6, "--yes", code=65))
 
     def test_the_daemon_that_has_the_device_is_asked_and_what_it_calibrated_is_undone(self):
         old = "[sensor.calibration]\ngain = 1.5\noffset = 1.0\nnorth_offset = 90\n"

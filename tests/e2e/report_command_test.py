@@ -324,7 +324,7 @@ class ReportCommand(unittest.TestCase):
             file.execute("DELETE FROM reading_1")
         text, numbers = self.report(log)
         page, figures = self.check_page(text)
-        self.assertIn("holds no readings", page.text)
+        self.assertIn("has no readings", page.text)
         self.assertEqual((figures, numbers["readings"], numbers["sensors"]), ([], 0, []))
 
     def test_a_calm_and_a_steady_wind_have_numbers(self):

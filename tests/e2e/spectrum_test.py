@@ -60,7 +60,7 @@ class Spectrum(unittest.TestCase):
             (["--sigma", "1", "--ustar", "1", "--frequency", "1"], "excludes"),
             ([], "--frequency"),
             (["--plot", "a.pdf"], ".png or .svg"),
-            (["--plot", "/no/such/folder/a.png"], "there is no such folder"),
+            (["--plot", "/no/such/folder/a.png"], "the folder does not exist"),
         ):
             run = subprocess.run([YURAGI, "spectrum", *arguments], capture_output=True, text=True)
             self.assertIn(run.returncode, (64, 73), arguments)
