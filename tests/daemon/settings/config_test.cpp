@@ -82,7 +82,7 @@ TEST(Config, HasTheColorsAndThePictureOfACloth) {
                   HasSubstr("wall.toml:7:11: scene.color_2: is \"#12345\"; allowed: \"#rrggbb\""),
                   HasSubstr("wall.toml:10:9: scene.color: is \"red\"; allowed"))));
   EXPECT_THAT(mistakes_of("[[scene]]\nkind = \"grass\"\ncolor = \"#112233\"\n"),
-              HasSubstr("color: is not a parameter"));
+              HasSubstr("color: is not a known key"));
 }
 
 TEST(Config, RefusesNamesWithControlCharactersAtTheirPlace) {

@@ -220,9 +220,9 @@ TEST(ConfigText, IsReadFromARegularFileOfSensibleSizeOnly) {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder / "wall.toml";
   EXPECT_THAT(mistake_of(file), HasSubstr(":1:1: file: does not exist"));
-  EXPECT_THAT(mistake_of(folder.path()), HasSubstr("no regular file"));
+  EXPECT_THAT(mistake_of(folder.path()), HasSubstr("not a regular file"));
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
-  EXPECT_THAT(mistake_of(folder / "pipe"), HasSubstr("no regular file")) << "and nobody was waited for";
+  EXPECT_THAT(mistake_of(folder / "pipe"), HasSubstr("not a regular file")) << "and nobody was waited for";
 
   std::ofstream(file) << "seed = 3\n";
   EXPECT_EQ(read_config_text(file), "seed = 3\n");

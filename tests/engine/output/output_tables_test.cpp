@@ -115,7 +115,7 @@ TEST(Outputs, RefuseBlendsThatMeetWithinACrop) {
 TEST(Outputs, RefuseTwoWindowsOnOneMonitorAndTwoOutputsOfOneName) {
   EXPECT_THAT(mistake_in("[[output]]\n[[output.window]]\n[[output.window]]\n"), HasSubstr("primary monitor"));
   EXPECT_THAT(mistake_in("[[output]]\n[[output.window]]\nmonitor = \"A\"\n[[output.window]]\nmonitor = \"A\"\n"),
-              HasSubstr("\"A\" is that of another window"));
+              HasSubstr("\"A\" is used by another window"));
   EXPECT_THAT(mistake_in("[[output]]\n[[output]]\n"), HasSubstr("used twice"));
   EXPECT_THAT(mistake_in("[[output]]\nname = \"\"\n"), HasSubstr("1 to 64"));
 }
@@ -127,8 +127,8 @@ TEST(Outputs, RefuseAScreenThatNobodyCanLookThrough) {
                              "\"\nscreen_upper_left = \"" + upper_left + "\"\neye = \"" + eye + "\"");
   };
   EXPECT_EQ(screen("0 0 0", "2 0 0", "0 1 0", "1 1 3"), "");
-  EXPECT_THAT(screen("0 0 0", "0 0 0", "0 1 0", "1 1 3"), HasSubstr("no size"));
-  EXPECT_THAT(screen("0 0 0", "2 0 0", "1 1 0", "1 1 3"), HasSubstr("no rectangle"));
+  EXPECT_THAT(screen("0 0 0", "0 0 0", "0 1 0", "1 1 3"), HasSubstr("without area"));
+  EXPECT_THAT(screen("0 0 0", "2 0 0", "1 1 0", "1 1 3"), HasSubstr("not form a rectangle"));
   EXPECT_THAT(screen("0 0 0", "2 0 0", "0 1 0", "1 1 -3"), HasSubstr("behind the screen"));
   EXPECT_THAT(screen("0 0", "2 0 0", "0 1 0", "1 1 3"), HasSubstr("X Y Z in meters"));
   EXPECT_THAT(mistake_in_output("eye = \"0 0 1\""), HasSubstr("is missing"));
@@ -137,7 +137,7 @@ TEST(Outputs, RefuseAScreenThatNobodyCanLookThrough) {
 TEST(Outputs, RefuseTooMany) {
   std::string many = "[[output]]\n";
   for (std::size_t i = 0; i <= kMaxWindows; ++i) many += "[[output.window]]\nmonitor = \"" + std::to_string(i) + "\"\n";
-  EXPECT_THAT(mistake_in(many), HasSubstr("at most 16"));
+  EXPECT_THAT(mistake_in(many), HasSubstr("maximum 16"));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@ uniform sampler2D picture;
 out vec4 color;
 
 const float kLeast = 0.04;      // a smaller leap of brightness is left alone
-const float kMinPart = 0.10;  // of the brightness
+const float kLeastPart = 0.10;  // of the brightness
 const float kLongest_px = 6.0;  // along an edge
 const float kFine = 0.85;       // of what is smaller than a pixel, that is spread
 
@@ -24,7 +24,7 @@ void main() {
   float lowest = min(own, min(min(corners.x, corners.y), min(corners.z, corners.w)));
   float highest = max(own, max(max(corners.x, corners.y), max(corners.z, corners.w)));
   float leap = highest - lowest;
-  if (leap < max(kLeast, kMinPart * highest)) {
+  if (leap < max(kLeast, kLeastPart * highest)) {
     color = vec4(here, 1.0);
     return;
   }
