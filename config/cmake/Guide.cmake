@@ -1,4 +1,7 @@
 # The guide as HTML, for the package and for the daemon's page: in share/yuragi/guide beside bin.
+if(YURAGI_SANITIZE) # nobody reads the guide of such a build
+  return()
+endif()
 set(guide ${PROJECT_BINARY_DIR}/share/yuragi/guide)
 file(GLOB guide_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/config/guide/*)
 add_custom_command(OUTPUT ${guide}/keys.html

@@ -49,10 +49,9 @@ std::optional<HttpResponse> Guide::answer(const HttpRequest& request) const {
                    files_.empty() ? "the guide is not installed beside this program; read config/guide in the sources"
                                   : "the guide has no page " + name + "; " + std::string(kGuidePath) + " lists all");
   }
-  return HttpResponse{
-      .content_type = *content_type_of(file->first),
-      .body = file->second,
-      .fields = {{"Cache-Control", "no-cache"}, {"Content-Security-Policy", std::string(content_security_policy())}}};
+  HttpResponse response = page_response(*content_type_of(file->first));
+  response.body = file->second;
+  return response;
 }
 
 }  // namespace yuragi::daemon::web
